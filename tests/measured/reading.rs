@@ -36,7 +36,7 @@ fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> 
 /// Whether the reader says of a record what is to be said: two antennas, as on the Esso Osaka, sometimes give the same
 /// heading ten times and then another one, or jump; and there the order of the rudder was recorded for its angle.
 fn are_expected(warnings: &[Warning], of_antennas: bool) -> bool {
-    let of_esso = ["the heading is frozen", "the heading jumps", "the rudder jumps from one row to the next"];
+    let of_esso = ["the heading is frozen", "the heading jumps", "the rudder jumps within a row"];
     warnings.iter().all(|warning| of_antennas && of_esso.iter().any(|begin| warning.text.starts_with(begin)))
 }
 

@@ -1,11 +1,10 @@
-//! One line of a table into its cells: the separators, how the separator of a file is recognised, and what counts as a
-//! number. It knows nothing of channels.
+//! Cells of a line of a table: separators, recognition of the separator of a file, numbers and missing values.
 
 use std::ops::Range;
 
 use serde::Deserialize;
 
-/// What stands between two cells of a line.
+/// Separator of the cells of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Separator {
@@ -20,7 +19,7 @@ pub enum Separator {
 }
 
 impl Separator {
-    /// All separators, the one hardest to meet by accident first.
+    /// All separators, the least likely by accident first.
     pub const ALL: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blank];
 
     fn is(self, character: char) -> bool {
@@ -50,21 +49,21 @@ impl Separator {
             _ if line.contains('"') => self.split_quoted(line, take),
             None => line.split_whitespace().for_each(take),
             Some(mark) => {
-                let mut rest = line;
-                while let Some(end) = rest.bytes().position(|byte| byte == mark) {
-                    take(rest[..end].trim());
-                    rest = &rest[end + 1..];
+                let mut tail = line;
+                while let Some(end) = tail.bytes().position(|byte| byte == mark) {
+                    take(tail[..end].trim());
+                    tail = &tail[end + 1..];
                 }
-                take(rest.trim());
+                take(tail.trim());
             }
         }
     }
 
     fn split_quoted<'a>(self, line: &'a str, mut take: impl FnMut(&'a str)) {
-        let mut rest = line;
+        let mut tail = line;
         loop {
             let is_blank = |c: char| c.is_whitespace() && (self == Separator::Blank || !self.is(c));
-            let cell = rest.trim_start_matches(is_blank);
+            let cell = tail.trim_start_matches(is_blank);
             if self == Separator::Blank && cell.is_empty() {
                 return;
             }
@@ -73,7 +72,7 @@ impl Separator {
             let end = cell[from..].find(|c| self.is(c)).map(|at| from + at);
             take(inside.unwrap_or(cell[..end.unwrap_or(cell.len())].trim_end()));
             let Some(end) = end else { return };
-            rest = cell[end..].split_at(cell[end..].chars().next().map_or(1, char::len_utf8)).1;
+            tail = cell[end..].split_at(cell[end..].chars().next().map_or(1, char::len_utf8)).1;
         }
     }
 }
@@ -87,14 +86,14 @@ fn closing_quote(text: &str) -> Option<usize> {
     Some(at)
 }
 
-/// The text of a cell that stood in quotes, with doubled quotes made single.
+/// Text of a quoted cell, with doubled quotes made single.
 pub fn unquoted(cell: &str) -> String {
     cell.replace("\"\"", "\"")
 }
 
-/// The separator whose cells make most sense: the highest `score`, and the earlier of [`Separator::ALL`] on a tie.
+/// Most plausible separator of a line: the highest `score` of its cells, the earlier of [`Separator::ALL`] on a tie.
 ///
-/// Where nothing scores, the first separator that occurs in the line at all.
+/// Where no cells score, the first separator that occurs in the line.
 pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
     let mut ranges = Vec::new();
     let mut best = (0, 0, Separator::Blank);
@@ -110,14 +109,14 @@ pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
     best.2
 }
 
-/// What a cell holds.
+/// Content of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cell {
     /// A finite number.
     Number(f64),
     /// A finite number written with a decimal comma.
     CommaNumber(f64),
-    /// Nothing, or one of the usual words for nothing.
+    /// An empty cell or one of the usual marks of a missing value.
     Missing,
     /// Anything else.
     Text,
@@ -144,8 +143,8 @@ pub fn cell(text: &str, separator: Separator) -> Cell {
         Ok(_) => return Cell::Text,
         Err(_) => {}
     }
-    const NOTHING: [&str; 6] = ["", "na", "n/a", "null", "none", "-"];
-    if NOTHING.iter().any(|word| text.eq_ignore_ascii_case(word)) {
+    const MISSING_MARKS: [&str; 6] = ["", "na", "n/a", "null", "none", "-"];
+    if MISSING_MARKS.iter().any(|word| text.eq_ignore_ascii_case(word)) {
         return Cell::Missing;
     }
     // Only digits, signs, one mark and an exponent: a word like "nand" must not become a number by replacing letters.

@@ -1,5 +1,5 @@
-//! The quantities a record can hold beside time, each with the column names and units it is known by. A column name is
-//! `quantity_unit`; this module knows both halves and the factor to SI units, and nothing of files.
+//! Channels of a record: quantities beside time, each with its column names and units. A column name is
+//! `quantity_unit`; this module holds both halves and the factor to SI units. Tables are read in [`crate::reader`].
 
 use ship::angle::{DEGREE, KNOT};
 use ship::particulars::Dimension;
@@ -72,8 +72,8 @@ pub enum Unit {
     PerSecond,
 }
 
-/// Every unit in the order of its declaration: how it ends a column name, its name in words, the factor to SI units and
-/// radians, and how it is written, without blanks and in small letters.
+/// Every unit in the order of its declaration: suffix of a column name, name in messages, factor to SI units and
+/// radians, and the notations of a table in small letters without blanks.
 pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
     (Unit::Second, "s", "seconds", 1.0, "s, sec, secs, second, seconds, sek"),
     (Unit::Millisecond, "ms", "milliseconds", 1e-3, "ms, msec"),
@@ -98,26 +98,26 @@ pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
 ];
 
 impl Unit {
-    /// The unit as it ends a column name.
+    /// The unit as the suffix of a column name.
     pub fn id(self) -> &'static str {
         UNITS[self as usize].1
     }
 
-    /// The unit in words, for messages.
+    /// Name of the unit in messages.
     pub fn spoken(self) -> &'static str {
         UNITS[self as usize].2
     }
 
-    /// What a number in this unit is multiplied with to be in SI units and radians.
+    /// Factor from this unit to SI units and radians.
     pub fn to_si(self) -> f64 {
         UNITS[self as usize].3
     }
 }
 
-/// Column name of time in files this crate writes.
+/// Column name of time in written files.
 pub const TIME_COLUMN: &str = "t_s";
 
-/// Units that a quantity may have, the one files are written in first, and its exponents of second and metre.
+/// Units of a quantity, the unit of written files first, and its exponents of second and metre.
 type Units = (&'static [Unit], Dimension);
 
 const TIMES: [Unit; 4] = [Unit::Second, Unit::Millisecond, Unit::Microsecond, Unit::Minute];
@@ -127,7 +127,7 @@ const SPEED: Units = (&[Unit::MetrePerSecond, Unit::Knot], [-1, 1]);
 const LENGTH: Units = (&[Unit::Metre], [0, 1]);
 const REVOLUTIONS: Units = (&[Unit::PerSecond, Unit::PerMinute], [-1, 0]);
 
-/// Every channel, in the order in which files are written, with the beginning of its column name and its units.
+/// Every channel in the column order of written files, with the quantity of its column name and its units.
 const CHANNELS: [(Channel, &str, Units); 15] = [
     (Channel::Heading, "heading", ANGLE),
     (Channel::Rudder, "rudder", ANGLE),
@@ -147,13 +147,13 @@ const CHANNELS: [(Channel, &str, Units); 15] = [
 ];
 
 impl Channel {
-    /// Every channel, in the order in which files are written: that of their declaration.
+    /// Every channel in the column order of written files, which is the order of declaration.
     pub const ALL: [Channel; CHANNELS.len()] = {
         let mut all = [Channel::Heading; CHANNELS.len()];
-        let mut place = 0;
-        while place < all.len() {
-            all[place] = CHANNELS[place].0;
-            place += 1;
+        let mut index = 0;
+        while index < all.len() {
+            all[index] = CHANNELS[index].0;
+            index += 1;
         }
         all
     };
@@ -163,55 +163,53 @@ impl Channel {
         CHANNELS[self as usize].2.1
     }
 
-    /// The quantity as it begins a column name.
+    /// The quantity as the beginning of a column name.
     pub fn quantity(self) -> &'static str {
         CHANNELS[self as usize].1
     }
 
-    /// What it is called in messages.
+    /// Name of the quantity in messages.
     pub fn spoken(self) -> &'static str {
         match self {
             Channel::YawRate => "yaw rate",
             Channel::Rudder => "rudder angle",
             Channel::RudderOrder => "rudder order",
-            other => other.quantity(),
+            channel => channel.quantity(),
         }
     }
 
-    /// The units a column of this channel may have; the first is the one files are written in.
+    /// Units of this channel in a table; the first is the unit of written files.
     pub fn units(self) -> &'static [Unit] {
         CHANNELS[self as usize].2.0
     }
 
-    /// Whether it is an angle or its rate.
+    /// `true` for an angle or an angular rate.
     pub(crate) fn is_angle(self) -> bool {
         self.units().iter().any(|unit| matches!(unit, Unit::Radian | Unit::RadianPerSecond))
     }
 
-    /// The unit this channel is written in.
+    /// Unit of this channel in written files.
     pub fn written_unit(self) -> Unit {
         self.units()[0]
     }
 
-    /// The column name this channel has in a unit, for example `heading_deg`.
+    /// Column name of this channel in a unit, for example `heading_deg`.
     pub fn name_in(self, unit: Unit) -> String {
         format!("{}_{}", self.quantity(), unit.id())
     }
 
-    /// The column name this channel is written under, for example `heading_deg`.
+    /// Column name of this channel in written files, for example `heading_deg`.
     pub fn column_name(self) -> String {
         self.name_in(self.written_unit())
     }
 
-    /// Every column name this channel is read from, for messages: `heading_deg or heading_rad`.
+    /// Every column name of this channel, for messages: `heading_deg or heading_rad`.
     pub fn accepted_names(self) -> String {
         self.units().iter().map(|unit| self.name_in(*unit)).collect::<Vec<_>>().join(" or ")
     }
 }
 
-/// The channel and unit a column name stands for; `None` for a name that is not known and for time.
-///
-/// Blanks around the name and the case of its letters do not matter.
+/// Channel and unit of a column name; `None` for an unknown name and for time. Surrounding blanks and case are ignored.
 pub fn column(name: &str) -> Option<(Channel, Unit)> {
     let name = name.trim().to_ascii_lowercase();
     Channel::ALL.into_iter().find_map(|channel| {
@@ -221,7 +219,7 @@ pub fn column(name: &str) -> Option<(Channel, Unit)> {
     })
 }
 
-/// The unit of a column that holds time (`t_s`, `t_ms`, `t_min`); `None` for any other name.
+/// Unit of a time column (`t_s`, `t_ms`, `t_min`); `None` for any other name.
 pub fn time_column(name: &str) -> Option<Unit> {
     let name = name.trim().to_ascii_lowercase();
     let suffix = name.strip_prefix("t_")?;

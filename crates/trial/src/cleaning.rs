@@ -1,6 +1,6 @@
-//! What is cleaned in the columns of a table before they are a record: rudder angles that no rudder has, channels that
-//! repeat an old value until the next one comes, a heading that stood still while the ship turned, and single readings
-//! that are wrong. Each is located and told; nothing is changed where a sound record could look the same.
+//! Cleaning of the columns of a table before they become a record: impossible rudder angles, channels that repeat an
+//! old value until the next one arrives, a heading that is frozen while the ship turns, and single wrong readings.
+//! Every change is located and reported; columns stay as they are where a sound record could look the same.
 
 mod north;
 pub(crate) mod readings;
@@ -10,81 +10,85 @@ use document::{Code, Warning};
 
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::words::{counted, instant};
+use crate::wording::{counted, instant};
 
-/// Angle beyond which no rudder goes, rad.
-pub(crate) const NO_RUDDER: f64 = 1.6;
+/// Rudder angle beyond which a reading is impossible, rad.
+pub(crate) const IMPOSSIBLE_RUDDER: f64 = 1.6;
 
-/// Angle that the rest of a record with such values stays within, rad: otherwise its unit is wrong, not a reading.
-const ANY_RUDDER: f64 = 1.05;
+/// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not single readings.
+const MAX_RUDDER: f64 = 1.05;
 
-/// Largest share of rows that may be left out as readings of no rudder.
-pub(crate) const LARGEST_SHARE: f64 = 0.1;
+/// Maximum share of rows with an impossible rudder angle.
+pub(crate) const MAX_IMPOSSIBLE_SHARE: f64 = 0.1;
 
-/// Longest repetition that is looked for, rows.
-const LONGEST_HOLD: usize = 100;
+/// Maximum repetition of a value, rows.
+const MAX_HOLD_ROWS: usize = 100;
 
-/// Fewest changes of a channel that show a rhythm.
-const FEWEST_CHANGES: usize = 12;
+/// Minimum number of changes of a channel that show a rhythm.
+const MIN_CHANGES: usize = 12;
 
-/// Share of the rows in which a channel is read that may repeat old values.
-const READ_IN: f64 = 0.8;
+/// Minimum share of rows with a reading in a channel that may repeat old values.
+const MIN_READ_SHARE: f64 = 0.8;
 
-/// Share of the changes that keep to a rhythm of a channel that repeats old values.
-const IN_STEP: f64 = 0.97;
+/// Minimum share of changes in step with the rhythm of a channel.
+const MIN_IN_STEP_SHARE: f64 = 0.97;
 
-/// Chance at which separate movements fall into one rhythm by accident; a movement of a steady rate has one of its own.
-const ACCIDENT: f64 = 2e-3;
+/// Maximum probability that separate movements share a rhythm by chance; a movement at a steady rate has its own.
+const MAX_CHANCE: f64 = 2e-3;
 
-/// Fewest rows in which a heading stands still before it may be frozen.
-const FROZEN_ROWS: usize = 8;
+/// Minimum number of rows of a frozen heading.
+const MIN_FROZEN_ROWS: usize = 8;
 
-/// Rate at which a frozen heading is left against that of one row in a hundred.
-const THAW: f64 = 3.0;
+/// Minimum rate at the end of a freeze over the 99th percentile of the rates.
+const MIN_THAW_RATIO: f64 = 3.0;
 
-/// Change of heading on either side of a rest, over a time as long, in steps of its digits: at a peak that these do not
-/// resolve it is 8.
-const TURNING: f64 = 20.0;
+/// Minimum change of heading on either side of a freeze, over a time as long, in steps of its digits. At a peak that
+/// the digits do not resolve it is 8.
+const MIN_TURN_STEPS: f64 = 20.0;
 
-/// Numbers that loggers write where a sensor gives nothing, without their sign.
+/// Numbers that loggers write for a missing reading, without their sign.
 const SENTINELS: [f64; 12] =
     [999.0, 999.9, 9999.0, 9999.9, 99999.0, 327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 65535.0];
 
-/// Change from the last reading from which on such a number is no reading, in the unit of the column.
-const NO_READING: f64 = 60.0;
+/// Minimum distance of a sentinel from the last reading, in the unit of the column.
+const MIN_SENTINEL_JUMP: f64 = 60.0;
 
-/// Whether a number stands for a reading that is not there: it is one of those that loggers write then, and far from
-/// the last reading, where there was one. A position may have any value.
+/// `true` for a sentinel: a number that loggers write for a missing reading, far from the last reading if there is
+/// one. A position may have any value.
 pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bool {
     !matches!(channel, Channel::North | Channel::East)
         && SENTINELS.contains(&value.abs())
-        && last.is_none_or(|last| (value - last).abs() > NO_READING)
+        && last.is_none_or(|last| (value - last).abs() > MIN_SENTINEL_JUMP)
 }
 
-/// Cleans the columns; a warning of everything that was done. The single readings it was done to go to `rejected`.
+/// Cleans the columns and returns a warning of every change. Single readings that are changed go to `rejected`.
 pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
-    let mut done = Vec::new();
-    done.extend(written::below_360(columns));
-    done.extend(leave_out_no_rudder(columns, rejected));
-    done.extend(straighten_rudder(columns));
+    let mut warnings = Vec::new();
+    warnings.extend(written::below_360(columns));
+    warnings.extend(drop_impossible_rudder(columns, rejected));
+    warnings.extend(straighten_rudder(columns));
     for channel in [Channel::Heading, Channel::YawRate] {
-        done.extend(drop_repeats(columns, channel));
+        warnings.extend(drop_repeats(columns, channel));
     }
-    done.extend(written::drop_held(columns));
-    done.extend(north::drop_sweeps(columns, rejected));
-    done.extend(drop_frozen(columns, rejected));
-    done.extend(readings::drop_lost_polls(columns, rejected));
-    done.extend(readings::drop_spikes(columns, rejected));
-    done.extend(readings::drop_clipped(columns, rejected));
-    done
+    warnings.extend(written::drop_held(columns));
+    warnings.extend(north::drop_sweeps(columns, rejected));
+    warnings.extend(drop_frozen(columns, rejected));
+    warnings.extend(readings::drop_lost_polls(columns, rejected));
+    warnings.extend(readings::drop_spikes(columns, rejected));
+    warnings.extend(readings::drop_clipped(columns, rejected));
+    warnings
 }
 
-/// Leaves out rows whose rudder angle no rudder has, where they are few.
-fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
+/// Leaves out rows with an impossible rudder angle, where they are few.
+fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
-    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
-    let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
-    if wild.is_empty() || wild.len() as f64 > LARGEST_SHARE * rudder.len() as f64 || rest > ANY_RUDDER {
+    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > IMPOSSIBLE_RUDDER).collect();
+    let possible = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= IMPOSSIBLE_RUDDER);
+    let largest_possible = possible.fold(0.0, f64::max);
+    if wild.is_empty()
+        || wild.len() as f64 > MAX_IMPOSSIBLE_SHARE * rudder.len() as f64
+        || largest_possible > MAX_RUDDER
+    {
         return None;
     }
     let times = reject(Channel::Rudder, &columns.time, rudder, &wild, rejected);
@@ -94,7 +98,7 @@ fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading
     wild.iter().for_each(|&row| keep[row] = false);
     columns.retain(&keep);
     Some(Code::RejectedReadings.warning(format!(
-        "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
+        "{} with an impossible rudder angle ({:.0}°) left out, {}; the rudder is interpolated between its neighbours",
         counted(wild.len(), "row"),
         largest.to_degrees(),
         times
@@ -104,15 +108,15 @@ fn leave_out_no_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading
 /// 2nd, 3rd, 4th, …
 fn ordinal(number: usize) -> String {
     let ending = match (number % 10, number % 100) {
-        (1, rest) if rest != 11 => "st",
-        (2, rest) if rest != 12 => "nd",
-        (3, rest) if rest != 13 => "rd",
+        (1, teen) if teen != 11 => "st",
+        (2, teen) if teen != 12 => "nd",
+        (3, teen) if teen != 13 => "rd",
         _ => "th",
     };
     format!("{number}{ending}")
 }
 
-/// Notes the readings of some rows as rejected; up to six of their times, for a message.
+/// Adds the readings of some rows to `rejected` and returns up to six of their times, for a message.
 fn reject(
     channel: Channel,
     time: &[f64],
@@ -127,7 +131,7 @@ fn reject(
     format!("at t = {} s", shown.join(", "))
 }
 
-/// A channel that repeats its values: every `every` rows, from row `first` on, it has a new one.
+/// Rhythm of a channel that repeats its values: a new value every `every` rows, from row `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Rhythm {
     every: usize,
@@ -135,29 +139,29 @@ struct Rhythm {
 }
 
 impl Rhythm {
-    /// The slowest rhythm that the changes of a channel keep to; `None` where it has none of two rows or more.
+    /// Slowest rhythm of the changes of a channel; `None` for a channel without a rhythm of two rows or more.
     ///
-    /// A rudder of whole degrees that moves at a steady rate changes in a rhythm, too, but in another phase at every
-    /// movement: separate movements have to agree.
+    /// A rudder of whole degrees that moves at a steady rate also changes in a rhythm, but with another phase in every
+    /// movement. Separate movements therefore have to agree.
     fn of(values: &[f64]) -> Option<Self> {
         let changed = |row: &usize| {
             let pair = [values[*row - 1], values[*row]];
             pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
         };
-        // A channel that is not read in every row has a rhythm of its own, which is no repetition.
+        // A channel that is read in some rows only has a rhythm without repetition.
         let read = values.iter().filter(|value| value.is_finite()).count();
-        if (read as f64) < READ_IN * values.len() as f64 {
+        if (read as f64) < MIN_READ_SHARE * values.len() as f64 {
             return None;
         }
-        // More changes than the quickest rhythm has new values are none: most channels end here.
+        // More changes than the quickest rhythm allows: most channels end here.
         let count = (1..values.len()).filter(changed).count();
-        if count < FEWEST_CHANGES || IN_STEP * count as f64 > values.len().div_ceil(2) as f64 {
+        if count < MIN_CHANGES || MIN_IN_STEP_SHARE * count as f64 > values.len().div_ceil(2) as f64 {
             return None;
         }
         let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
         let rhythm = |every: usize| {
-            // More changes than it has new values are no rhythm, and need no counting.
-            if IN_STEP * changes.len() as f64 > values.len().div_ceil(every) as f64 {
+            // More changes than this rhythm allows need no counting.
+            if MIN_IN_STEP_SHARE * changes.len() as f64 > values.len().div_ceil(every) as f64 {
                 return None;
             }
             let mut phases = vec![0usize; every];
@@ -166,14 +170,14 @@ impl Rhythm {
             let movements = 1 + changes.windows(2).filter(|pair| pair[1] - pair[0] > 3 * every).count();
             let accident = (every as f64).powi(1 - movements as i32);
             // A channel that is new in nearly every such row keeps its rhythm without rests.
-            let full = most as f64 > 0.8 * (values.len() / every) as f64 && most >= FEWEST_CHANGES;
-            let keeps = most as f64 >= IN_STEP * changes.len() as f64;
-            // What is given in steps, as an order is, has no movement that goes on with the next new value.
-            let on = changes.windows(2).filter(|pair| pair[1] - pair[0] == every).count();
-            let keeps = keeps && 2 * on > changes.len();
-            (keeps && (full || accident < ACCIDENT)).then_some(Self { every, first })
+            let full = most as f64 > 0.8 * (values.len() / every) as f64 && most >= MIN_CHANGES;
+            let keeps = most as f64 >= MIN_IN_STEP_SHARE * changes.len() as f64;
+            // A channel of steps, such as an order, does not go on changing with the next new value.
+            let continued = changes.windows(2).filter(|pair| pair[1] - pair[0] == every).count();
+            let keeps = keeps && 2 * continued > changes.len();
+            (keeps && (full || accident < MAX_CHANCE)).then_some(Self { every, first })
         };
-        (2..=LONGEST_HOLD.min(values.len() / FEWEST_CHANGES)).rev().find_map(rhythm)
+        (2..=MAX_HOLD_ROWS.min(values.len() / MIN_CHANGES)).rev().find_map(rhythm)
     }
 
     fn is_new(self, row: usize) -> bool {
@@ -181,7 +185,7 @@ impl Rhythm {
     }
 }
 
-/// Draws a straight line between the values of two rows.
+/// Interpolates linearly between the values of two rows.
 pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize) {
     let slope = (values[to] - values[from]) / (time[to] - time[from]);
     for row in from + 1..to {
@@ -189,7 +193,7 @@ pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize
     }
 }
 
-/// Draws straight lines between the new values of a rudder that is repeated in between.
+/// Interpolates between the new values of a rudder that is repeated in between.
 fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
@@ -199,7 +203,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
         draw_line(time, rudder, pair[0], pair[1]);
     }
     Some(Code::MissingValues.warning(format!(
-        "the rudder is new in every {} row only and repeated in between; between the new values it runs straight",
+        "the rudder has a new value in every {} row only; it is interpolated between the new values",
         ordinal(rhythm.every)
     )))
 }
@@ -218,33 +222,33 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
         }
     }
     let (name, every) = (channel.spoken(), ordinal(rhythm.every));
-    let text = format!("the {name} is new in every {every} row only; its repetitions are taken as missing");
+    let text = format!("the {name} has a new value in every {every} row only; repeated values are taken as missing");
     Some(Code::MissingValues.warning(text))
 }
 
-/// Whether a channel keeps one value over as many readings as a freeze has.
-fn rests(values: &[f64]) -> bool {
+/// `true` where a channel keeps its value over the minimum length of a freeze.
+fn has_rest(values: &[f64]) -> bool {
     let (mut last, mut count) = (f64::NAN, 0);
     for &value in values.iter().filter(|value| value.is_finite()) {
         count = if value == last { count + 1 } else { 0 };
         last = value;
-        if count >= FROZEN_ROWS {
+        if count >= MIN_FROZEN_ROWS {
             return true;
         }
     }
     false
 }
 
-/// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
-/// before and after by much more than the heading resolves.
+/// Takes a frozen heading as missing: it leaves its value faster than the ship turns, or the ship turns before and
+/// after by much more than the heading resolves.
 fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
-    if !rests(heading) {
+    if !has_rest(heading) {
         return None;
     }
     let seen: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
-    if seen.len() < 4 * FROZEN_ROWS {
+    if seen.len() < 4 * MIN_FROZEN_ROWS {
         return None;
     }
     let steps: Vec<f64> = seen.windows(2).map(|pair| (heading[pair[1]] - heading[pair[0]]).abs()).collect();
@@ -253,25 +257,25 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     let rates_of_rows = rates.clone();
     let fast = (0.99 * (rates.len() - 1) as f64) as usize;
     let usual = *rates.select_nth_unstable_by(fast, f64::total_cmp).1;
-    let rests = steps.chunk_by(|one, other| *one == 0.0 && *other == 0.0).scan(0, |begin, chunk| {
-        let own = *begin..*begin + chunk.len();
-        *begin = own.end;
-        Some(own)
+    let rests = steps.chunk_by(|before, after| *before == 0.0 && *after == 0.0).scan(0, |begin, chunk| {
+        let range = *begin..*begin + chunk.len();
+        *begin = range.end;
+        Some(range)
     });
     let is_frozen = |rest: &std::ops::Range<usize>| {
         let length = rest.len();
-        // What the digits resolve is the step by which the value is left, or was reached.
+        // The resolution is the step by which the value is left or was reached.
         let step = |at: Option<usize>| at.and_then(|at| steps.get(at)).copied().unwrap_or(0.0);
         let digit = step(rest.start.checked_sub(1)).max(step(Some(rest.end)));
-        let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > TURNING * digit;
+        let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > MIN_TURN_STEPS * digit;
         let before = turned(rest.start.saturating_sub(length)..rest.start);
         let after = turned(rest.end..(rest.end + length).min(steps.len()));
-        let leaves = rates_of_rows.get(rest.end).is_some_and(|rate| *rate > THAW * usual);
-        length >= FROZEN_ROWS && steps[rest.start] == 0.0 && (leaves || (before && after))
+        let leaves = rates_of_rows.get(rest.end).is_some_and(|rate| *rate > MIN_THAW_RATIO * usual);
+        length >= MIN_FROZEN_ROWS && steps[rest.start] == 0.0 && (leaves || (before && after))
     };
-    // A rest of n steps is one of n + 1 rows, the first of which is honest.
+    // A rest of n steps has n + 1 rows, of which the first is a true reading.
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
-    let told: Vec<String> = frozen
+    let spans: Vec<String> = frozen
         .iter()
         .map(|rows| [rows[0], rows[rows.len() - 1]].map(|row| instant(time[row])))
         .map(|[from, to]| format!("from {from} s to {to} s"))
@@ -279,8 +283,8 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     let rows: Vec<usize> = frozen.iter().flat_map(|rows| &rows[1..]).copied().collect();
     reject(Channel::Heading, time, heading, &rows, rejected);
     rows.into_iter().for_each(|row| heading[row] = f64::NAN);
-    let text = || format!("the heading is frozen {}; it is taken as missing there", told.join(", "));
-    (!told.is_empty()).then(|| Code::MissingValues.warning(text()))
+    let text = || format!("the heading is frozen {}; it is taken as missing there", spans.join(", "));
+    (!spans.is_empty()).then(|| Code::MissingValues.warning(text()))
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. It knows the notations
-//! and the calendar; what is a time column and what becomes of the seconds is decided in [`crate::reader`].
+//! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. The notations and the
+//! calendar are here; time columns are chosen in [`crate::reader`].
 //!
 //! The calendar is that of `chrono`. No library reads the notations: jiff and chrono read ISO 8601 and one given
 //! notation at a time, no decimal commas, and no date of which the file has yet to show the month.
@@ -14,12 +14,12 @@ pub const DAY: f64 = 86_400.0;
 enum Date {
     /// Days since 1970-01-01 (Gregorian).
     Day(i64),
-    /// Two numbers up to 31 and a year, of which the file has to show which one is the month.
+    /// Two numbers up to 31 and a year; later dates of the file have to show which number is the month.
     Either { first: u32, second: u32, year: i32 },
 }
 
 impl Date {
-    /// Its day since 1970-01-01, where the first of two numbers is the month or not; `None` where there is no such day.
+    /// Day since 1970-01-01, with the first or the second of two numbers as the month; `None` for an invalid date.
     fn day(self, month_first: bool) -> Option<i64> {
         match self {
             Date::Day(day) => Some(day),
@@ -41,26 +41,26 @@ pub struct Stamp {
     fraction: bool,
 }
 
-/// Days from 1970-01-01 to a date of the Gregorian calendar; `None` where there is no such date.
+/// Days from 1970-01-01 to a date of the Gregorian calendar; `None` for an invalid date.
 pub fn days(year: i32, month: u32, day: u32) -> Option<i64> {
     NaiveDate::from_ymd_opt(year, month, day).map(|date| i64::from(date.to_epoch_days()))
 }
 
-/// The date of a day since 1970-01-01: `2026-11-20`. Damaged days may lie beyond all calendars; theirs is the last.
+/// Date of a day since 1970-01-01: `2026-11-20`. A day beyond the calendar, as in damaged files, gives its last date.
 pub fn date(day: i64) -> impl std::fmt::Display {
     i32::try_from(day).ok().and_then(NaiveDate::from_epoch_days).unwrap_or(NaiveDate::MAX)
 }
 
-/// Reads through the characters of a stamp.
+/// Cursor over the characters of a stamp.
 struct Scan<'a> {
-    rest: &'a [u8],
+    tail: &'a [u8],
 }
 
 impl Scan<'_> {
     fn eat(&mut self, wanted: &[u8]) -> Option<u8> {
-        let first = *self.rest.first()?;
+        let first = *self.tail.first()?;
         wanted.contains(&first).then(|| {
-            self.rest = &self.rest[1..];
+            self.tail = &self.tail[1..];
             first
         })
     }
@@ -71,12 +71,12 @@ impl Scan<'_> {
 
     /// A number of up to nine digits, and how many digits it has.
     fn number(&mut self) -> Option<(u32, usize)> {
-        let digits = self.rest.iter().take(10).take_while(|byte| byte.is_ascii_digit()).count();
+        let digits = self.tail.iter().take(10).take_while(|byte| byte.is_ascii_digit()).count();
         if digits == 0 || digits > 9 {
             return None;
         }
-        let value = self.rest[..digits].iter().fold(0, |sum, digit| 10 * sum + u32::from(digit - b'0'));
-        self.rest = &self.rest[digits..];
+        let value = self.tail[..digits].iter().fold(0, |sum, digit| 10 * sum + u32::from(digit - b'0'));
+        self.tail = &self.tail[digits..];
         Some((value, digits))
     }
 
@@ -84,19 +84,19 @@ impl Scan<'_> {
     fn month(&mut self) -> Option<u32> {
         const MONTHS: [&[u8]; 12] =
             [b"jan", b"feb", b"mar", b"apr", b"may", b"jun", b"jul", b"aug", b"sep", b"oct", b"nov", b"dec"];
-        let letters = self.rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
-        let name = self.rest.get(..3)?;
+        let letters = self.tail.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+        let name = self.tail.get(..3)?;
         let place = MONTHS.iter().position(|month| name.eq_ignore_ascii_case(month))?;
-        self.rest = &self.rest[letters..];
+        self.tail = &self.tail[letters..];
         Some(place as u32 + 1)
     }
 
     fn word(&mut self, word: &[u8]) -> bool {
-        let found = self.rest.get(..word.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(word));
-        if found {
-            self.rest = &self.rest[word.len()..];
+        let is_next = self.tail.get(..word.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(word));
+        if is_next {
+            self.tail = &self.tail[word.len()..];
         }
-        found
+        is_next
     }
 }
 
@@ -174,9 +174,9 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
 
 /// Second of the day from `hhmmss.ss`.
 pub(crate) fn second_of_day(digits: &[u8]) -> Option<f64> {
-    let mut scan = Scan { rest: digits.strip_suffix(b".").unwrap_or(digits) };
+    let mut scan = Scan { tail: digits.strip_suffix(b".").unwrap_or(digits) };
     let (second, _) = read_time(&mut scan).filter(|_| digits.iter().take(6).all(u8::is_ascii_digit))?;
-    scan.rest.is_empty().then_some(second)
+    scan.tail.is_empty().then_some(second)
 }
 
 /// Minutes ahead of UTC, as `Z`, `UTC`, `+01:00`, `+0100` or `+01`.
@@ -198,15 +198,15 @@ impl Stamp {
     /// Reads a stamp: ISO 8601 (`2026-11-20T14:03:05.2Z`, a blank for the T, `/` for the hyphens), `20.11.2026
     /// 14:03:05`, `11/20/2026 2:03:05 PM`, `20-Nov-2026 14:03:05`, or a date or a time of day alone.
     ///
-    /// `None` for anything else, a single number among it.
+    /// `None` for any other text, a single number included.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim().as_bytes();
-        let mut scan = Scan { rest: text };
+        let mut scan = Scan { tail: text };
         let clock_alone = text.iter().take(3).any(|byte| matches!(byte, b':' | b'h'));
         let date = if clock_alone { None } else { Some(read_date(&mut scan)?) };
         let mut stamp = Self { date, second: None, zone: None, fraction: false };
         if date.is_some() {
-            if scan.rest.is_empty() {
+            if scan.tail.is_empty() {
                 // Eight digits may as well be a number.
                 return text.iter().any(|byte| !byte.is_ascii_digit()).then_some(stamp);
             }
@@ -216,19 +216,19 @@ impl Stamp {
         let (second, fraction) = read_time(&mut scan)?;
         (stamp.second, stamp.fraction) = (Some(second), fraction);
         scan.blanks();
-        if !scan.rest.is_empty() {
+        if !scan.tail.is_empty() {
             stamp.zone = Some(read_zone(&mut scan)?);
         }
-        scan.rest.is_empty().then_some(stamp)
+        scan.tail.is_empty().then_some(stamp)
     }
 
-    /// A stamp of date and time from one of each.
+    /// A stamp from a date and a time of day.
     pub fn joined(date: Self, time: Self) -> Self {
         Self { date: date.date, ..time }
     }
 
-    /// A stamp from a day since 1970-01-01, where known, and a second of the day (UTC).
-    pub fn of(day: Option<i64>, second: f64) -> Self {
+    /// A stamp from a day since 1970-01-01, if there is one, and a second of the day (UTC).
+    pub fn new(day: Option<i64>, second: f64) -> Self {
         let fraction = second.fract() != 0.0;
         Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
     }
@@ -249,7 +249,7 @@ impl Stamp {
     }
 }
 
-/// What the clock of a ship shows at time 0 of a record.
+/// Clock of the ship at time 0 of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
     /// Days since 1970-01-01; `None` where the file has times of day alone, or leaves open which number is the month.
@@ -272,10 +272,9 @@ impl Clock {
         Some(date(self.day? + ((self.second + t) / DAY).floor() as i64).to_string())
     }
 
-    /// The time (s) of the record at a stamp; a time of day alone is the first one at or after time 0.
+    /// Time (s) of the record at a stamp; a time of day alone is the first such time at or after time 0.
     pub fn time_of(&self, stamp: &Stamp) -> Option<f64> {
-        let zone = |own: Option<i32>| f64::from(own.unwrap_or(0)) * 60.0;
-        let shift = if stamp.zone.is_some() && self.zone.is_some() { zone(self.zone) - zone(stamp.zone) } else { 0.0 };
+        let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
         match stamp.date {
             None => Some(second.rem_euclid(DAY)),
@@ -285,7 +284,7 @@ impl Clock {
     }
 }
 
-/// Why a stamp has no place on the clock of its file.
+/// Fault of a stamp that has no time on the clock of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StampFault {
     /// It has no time of day.
@@ -294,7 +293,7 @@ pub enum StampFault {
     EitherMonth,
 }
 
-/// Turns the stamps of one file into seconds since its first.
+/// State of a conversion of the stamps of a file to seconds since the first.
 #[derive(Debug, Clone, Default)]
 pub struct Stamps {
     first: Option<Stamp>,
@@ -325,7 +324,7 @@ impl Stamps {
             }
         };
         let zone = match (stamp.zone, first.zone) {
-            (Some(own), Some(begin)) => 60.0 * f64::from(begin - own),
+            (Some(minutes), Some(begin)) => 60.0 * f64::from(begin - minutes),
             _ => 0.0,
         };
         Ok(day as f64 * DAY + second - first.second.unwrap_or(0.0) + zone)
@@ -345,10 +344,10 @@ impl Stamps {
             Some(0)
         } else {
             self.month_first = match (self.month_first, day_first, month_first) {
-                (Some(known), ..) => Some(known),
+                (Some(month_first), ..) => Some(month_first),
                 (None, Some(_), None) => Some(false),
                 (None, None, Some(_)) => Some(true),
-                (None, Some(one), Some(other)) if one != other => match (one == next, other == next) {
+                (None, Some(day), Some(month)) if day != month => match (day == next, month == next) {
                     (true, false) => Some(false),
                     (false, true) => Some(true),
                     _ => return Err(StampFault::EitherMonth),

@@ -1,33 +1,33 @@
-//! What a trial was made with and in, as the form of MSC/Circ.1053, appendix 6, asks for it: particulars of the ship
-//! that no record holds, and the conditions of the trial with what the circular demands of them.
+//! Declared conditions of a trial for the form of MSC/Circ.1053, appendix 6: particulars of the ship that no record
+//! holds, conditions of the trial, and the limits of the circular.
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
 use thiserror::Error;
 
-/// Water depth that a trial needs, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+/// Minimum water depth of a trial, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const FEWEST_DRAUGHTS: f64 = 4.0;
-/// Strongest wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+/// Maximum wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const MOST_BEAUFORT: u8 = 5;
-/// Highest sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+/// Maximum sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const MOST_SEA_STATE: u8 = 4;
-/// Deviation from the full-load draught that is still full load, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
+/// Tolerance of the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
 pub const DRAUGHT_TOLERANCE: f64 = 0.05;
-/// Longest interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
+/// Maximum interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
 pub const LONGEST_INTERVAL: f64 = 20.0;
 
-/// How a ship was loaded at her trial.
+/// Loading condition at the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Loading {
-    /// To the summer load line draught, or within 5 % of it.
+    /// Summer load line draught, with a tolerance of 5 %.
     Full,
-    /// To less, as in ballast.
+    /// A smaller draught, as in ballast.
     Partial,
 }
 
-/// The weather that a trial declares.
+/// Declared weather of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub enum DeclaredWeather {
     /// A calm: neither wind nor waves nor any other moment from outside, as in a towing tank.
@@ -99,47 +99,48 @@ pub struct Conditions {
     pub remark: Option<String>,
 }
 
-/// Where a trial is not, or not known to be, what MSC/Circ.1053 (2002), 2.2, asks for.
+/// Deviation of a trial from the conditions of MSC/Circ.1053 (2002), 2.2, or a condition that is not declared.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Shortcoming {
-    /// Something is not declared.
-    #[error("{what} is not known; {asked} is asked for")]
+    /// A condition is not declared.
+    #[error("{what} is not declared; required: {asked}")]
     Unknown { what: &'static str, asked: &'static str },
     /// The water is too shallow.
-    #[error("water of {draughts:.1} mean draughts; more than {FEWEST_DRAUGHTS} are asked for")]
+    #[error("the water is {draughts:.1} mean draughts deep; required: more than {FEWEST_DRAUGHTS}")]
     Depth { draughts: f64 },
     /// The wind is too strong.
-    #[error("wind of Beaufort {beaufort}; at most {MOST_BEAUFORT} is asked for")]
+    #[error("the wind is Beaufort {beaufort}; required: at most {MOST_BEAUFORT}")]
     Wind { beaufort: u8 },
     /// The sea is too rough.
-    #[error("sea state {state}; at most {MOST_SEA_STATE} is asked for")]
+    #[error("the sea state is {state}; required: at most {MOST_SEA_STATE}")]
     Sea { state: u8 },
     /// Readings are too far apart: the median time between rows.
-    #[error("a reading every {seconds:.0} s; at most {LONGEST_INTERVAL} s are asked for")]
+    #[error("readings are {seconds:.0} s apart; required: at most {LONGEST_INTERVAL} s")]
     Interval { seconds: f64 },
-    /// The ship was not at full load; her draught as a share of that at full load, where both are known.
-    #[error("not at full load{}", draught.map_or_else(String::new, of_full_load))]
+    /// The ship was not at full load; her draught as a share of the draught at full load, where both are declared.
+    #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]
     Load { draught: Option<f64> },
     /// Full load is declared and the draughts say otherwise: the draught as a share of that at full load.
     #[error(
-        "the loading is declared as \"full\", and the draught is {:.0} % of that at full load; 5 % are allowed",
+        "the loading is declared as \"full\", but the draught is {:.0} % of that at full load; tolerance: 5 %",
         100.0 * draught
     )]
     Contradiction { draught: f64 },
     /// The ship was not on an even keel; trim by the stern, m.
     #[error(
-        "trim of {:.2} m by the {}; an even keel is asked for", trim.abs(), if *trim > 0.0 { "stern" } else { "bow" }
+        "the trim is {:.2} m by the {}; required: an even keel", trim.abs(), if *trim > 0.0 { "stern" } else { "bow" }
     )]
     Trim { trim: f64 },
 }
 
-fn of_full_load(share: f64) -> String {
+/// Second half of the message of a partial load; `share` is the draught over that at full load.
+fn draught_note(share: f64) -> String {
     format!(": the draught is {:.0} % of that at full load", 100.0 * share)
 }
 
 impl Conditions {
-    /// The same without blanks around texts.
+    /// The same conditions without blanks around texts.
     pub(crate) fn trimmed(mut self) -> Self {
         let Self { administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, .. } =
             &mut self;
@@ -149,31 +150,31 @@ impl Conditions {
         self
     }
 
-    /// Takes over what [ship] declares of the hull, and completes that with what is declared here. The key of what both
-    /// declare and not alike, where there is one; block coefficients may differ, here it is that at full load.
+    /// Merges the hull particulars of [ship] with those declared here. Returns the key that both declare with different
+    /// values, if any. Block coefficients may differ: the value here is that at full load.
     pub(crate) fn join(&mut self, hull: HullParticulars) -> Option<&'static str> {
         let pairs = [
             ("beam-m", &mut self.beam, hull.beam),
             ("draught-m", &mut self.draught, hull.draught),
             ("rudder-area-m2", &mut self.rudder_area, hull.rudder_area),
         ];
-        let mut other = None;
-        for (key, own, ship) in pairs {
-            other = other.or(own.zip(ship).is_some_and(|(own, ship)| own != ship).then_some(key));
-            *own = ship.or(*own);
+        let mut conflict = None;
+        for (key, form, ship) in pairs {
+            conflict = conflict.or(form.zip(ship).is_some_and(|(form, ship)| form != ship).then_some(key));
+            *form = ship.or(*form);
         }
         let (beam, draught, rudder_area) = (self.beam, self.draught, self.rudder_area);
         let is_full = self.loading() != Some(Loading::Partial);
         let block_coefficient = hull.block_coefficient.or(self.block_coefficient.filter(|_| is_full));
         self.block_coefficient = self.block_coefficient.or(block_coefficient.filter(|_| is_full));
         self.hull = HullParticulars { beam, draught, block_coefficient, rudder_area, ..hull };
-        other
+        conflict
     }
 
-    /// The key of a length that no ship has beside the others, or of a weather beside a declared calm, and what was
-    /// expected.
+    /// Key of a contradictory declaration with the expected value: an impossible ratio of lengths, or weather beside a
+    /// declared calm.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
-        let length = self.particulars.map(|own| own.length);
+        let length = self.particulars.map(|particulars| particulars.length);
         let calm = self.weather.map(|_| 1.0);
         let rules = [
             ("wind-beaufort", self.wind_beaufort.map(f64::from), calm, "0 beside weather = \"none\", or nothing"),
@@ -183,8 +184,9 @@ impl Conditions {
             ("draught-m", self.draught, self.beam, "a draught below beam-m"),
             ("full-load-draught-m", self.full_load_draught, self.beam, "a draught below beam-m"),
         ];
-        let broken =
-            rules.into_iter().find(|(_, one, limit, _)| one.zip(*limit).is_some_and(|(one, limit)| one >= limit));
+        let broken = rules
+            .into_iter()
+            .find(|(_, value, limit, _)| value.zip(*limit).is_some_and(|(value, limit)| value >= limit));
         broken.map(|(key, .., expected)| (key, expected))
     }
 
@@ -193,7 +195,7 @@ impl Conditions {
         Some(self.draught? / self.full_load_draught?)
     }
 
-    /// How the ship was loaded: as it is declared, else by the draughts with the 5 % that are allowed.
+    /// Loading condition: as declared, else from the draughts with a tolerance of 5 %.
     pub fn loading(&self) -> Option<Loading> {
         let by_draught = |share: f64| match (share - 1.0).abs() <= DRAUGHT_TOLERANCE {
             true => Loading::Full,
@@ -202,7 +204,7 @@ impl Conditions {
         self.declared_loading.or_else(|| self.draught_share().map(by_draught))
     }
 
-    /// Mean draught at full load, m: as it is declared, or that of a trial at full load.
+    /// Mean draught at full load, m: as declared, or the draught of a trial at full load.
     pub fn draught_at_full_load(&self) -> Option<f64> {
         let at_trial = || self.draught.filter(|_| self.declared_loading == Some(Loading::Full));
         self.full_load_draught.or_else(at_trial)
@@ -213,7 +215,8 @@ impl Conditions {
         Some(self.water_depth? / self.draught?)
     }
 
-    /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for; current and speed are not looked at.
+    /// Deviations from the conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared. Current and
+    /// speed are not checked.
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
         let unknown = |what, asked| Some(Shortcoming::Unknown { what, asked });
         let depth = match self.depth_in_draughts() {
@@ -266,20 +269,20 @@ mod tests {
 
     #[test]
     fn what_is_not_by_the_book_is_said() {
-        let said = |change: fn(&mut Conditions)| {
+        let message = |change: fn(&mut Conditions)| {
             let mut conditions = deep_and_calm();
             change(&mut conditions);
-            let found = conditions.shortcomings();
-            assert_eq!(found.len(), 1, "{found:?}");
-            found[0].to_string()
+            let shortcomings = conditions.shortcomings();
+            assert_eq!(shortcomings.len(), 1, "{shortcomings:?}");
+            shortcomings[0].to_string()
         };
-        assert!(said(|c| c.water_depth = Some(80.0)).contains("4.0 mean draughts"), "it should exceed four");
-        assert!(said(|c| c.water_depth = None).contains("is not known"));
-        assert!(said(|c| c.wind_beaufort = Some(6)).contains("Beaufort 6"));
-        assert!(said(|c| c.sea_state = Some(5)).contains("sea state 5"));
-        assert!(said(|c| c.full_load_draught = Some(25.0)).contains("80 %"));
-        assert!(said(|c| c.full_load_draught = None).contains("the loading is not known"));
-        assert!(said(|c| c.declared_loading = Some(Loading::Partial)).contains("not at full load"));
+        assert!(message(|c| c.water_depth = Some(80.0)).contains("4.0 mean draughts"), "it should exceed four");
+        assert!(message(|c| c.water_depth = None).contains("is not declared"));
+        assert!(message(|c| c.wind_beaufort = Some(6)).contains("Beaufort 6"));
+        assert!(message(|c| c.sea_state = Some(5)).contains("sea state is 5"));
+        assert!(message(|c| c.full_load_draught = Some(25.0)).contains("80 %"));
+        assert!(message(|c| c.full_load_draught = None).contains("the loading is not declared"));
+        assert!(message(|c| c.declared_loading = Some(Loading::Partial)).contains("not at full load"));
         let in_a_calm = Conditions {
             weather: Some(DeclaredWeather::Calm),
             wind_beaufort: None,
@@ -287,9 +290,9 @@ mod tests {
             ..deep_and_calm()
         };
         assert_eq!(in_a_calm.shortcomings(), []);
-        assert!(said(|c| c.trim = Some(-0.5)).contains("0.50 m by the bow"));
-        let said = said(|c| (c.declared_loading, c.full_load_draught) = (Some(Loading::Full), Some(25.0)));
-        assert!(said.contains("declared as \"full\""), "{said}");
+        assert!(message(|c| c.trim = Some(-0.5)).contains("0.50 m by the bow"));
+        let contradiction = message(|c| (c.declared_loading, c.full_load_draught) = (Some(Loading::Full), Some(25.0)));
+        assert!(contradiction.contains("declared as \"full\""), "{contradiction}");
     }
 
     #[test]

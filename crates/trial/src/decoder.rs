@@ -1,5 +1,5 @@
-//! Guards about decoders of others, which trust what a file states and panic on some of what they do not expect. What a
-//! file may state is for each reader to decide.
+//! Guards around third-party decoders, which trust the sizes stated in a file and panic on some damaged files. Each
+//! reader sets its own limits of the stated sizes.
 
 use std::cell::Cell;
 use std::io;
@@ -10,11 +10,11 @@ use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
 
-/// Bytes at the beginning of a page that are looked at.
-const PAGE_HEAD: usize = 40;
+/// Bytes of a page that are read for its head.
+const PAGE_HEAD_BYTES: usize = 40;
 
 /// Length of the tail of a Parquet file, bytes.
-const TAIL: u64 = 8;
+const TAIL_BYTES: u64 = 8;
 
 thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
@@ -22,7 +22,7 @@ thread_local! {
 
 static QUIET: Once = Once::new();
 
-/// Does work of a decoder; `None` where it panics, of which nothing is shown.
+/// Runs a decoder; `None` where it panics. The message of the panic is not shown.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
     QUIET.call_once(|| {
         let hook = std::panic::take_hook();
@@ -39,10 +39,10 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
     done.ok()
 }
 
-/// What the head of a page of a Parquet file states, which the decoder reserves.
+/// Head of a page of a Parquet file: the sizes for which the decoder reserves memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PageHead {
-    /// Whether it is a dictionary.
+    /// `true` for a dictionary page.
     pub is_dictionary: bool,
     /// Size unpacked, bytes.
     pub unpacked: u64,
@@ -53,22 +53,22 @@ pub struct PageHead {
 }
 
 impl PageHead {
-    /// Reads a head; `None` for what is none.
+    /// Reads a head; `None` for bytes that are not a head.
     ///
     /// A head is a Thrift struct in compact form (Apache Parquet format, `PageHeader`): kind, size unpacked, size
     /// packed, perhaps a checksum, and then the head of a page of its kind, which begins with the number of values.
     fn read(head: &[u8]) -> Option<Self> {
         const NEXT_FIELD_STRUCT: u8 = 0x0c;
         const DICTIONARY: u64 = 2;
-        let mut rest = head;
-        let [kind, unpacked, packed] = [(); 3].map(|()| number(&mut rest));
+        let mut bytes = head;
+        let [kind, unpacked, packed] = [(); 3].map(|()| number(&mut bytes));
         let (kind, unpacked, packed) = (whole(kind?)?, whole(unpacked?)?, whole(packed?)?);
-        if rest.first()? & 0x0f != NEXT_FIELD_STRUCT {
-            number(&mut rest)?;
+        if bytes.first()? & 0x0f != NEXT_FIELD_STRUCT {
+            number(&mut bytes)?;
         }
-        let (field, inner) = rest.split_first()?;
-        rest = inner;
-        let values = whole(number(&mut rest)?)?;
+        let (field, inner) = bytes.split_first()?;
+        bytes = inner;
+        let values = whole(number(&mut bytes)?)?;
         let is_dictionary = kind == DICTIONARY;
         (field & 0x0f == NEXT_FIELD_STRUCT).then_some(Self { is_dictionary, unpacked, packed, values })
     }
@@ -77,14 +77,14 @@ impl PageHead {
 /// The next field of a Thrift struct, if it is a whole number, still zigzag.
 fn number(bytes: &mut &[u8]) -> Option<u64> {
     const NEXT_FIELD_INTEGER: u8 = 0x15;
-    let (&field, mut rest) = bytes.split_first()?;
+    let (&field, mut digits) = bytes.split_first()?;
     let mut zigzag = 0_u64;
     for shift in (0..35).step_by(7) {
-        let (&byte, tail) = rest.split_first()?;
-        rest = tail;
+        let (&byte, tail) = digits.split_first()?;
+        digits = tail;
         zigzag |= u64::from(byte & 0x7f) << shift;
         if byte < 0x80 {
-            *bytes = rest;
+            *bytes = digits;
             return (field == NEXT_FIELD_INTEGER).then_some(zigzag);
         }
     }
@@ -96,11 +96,11 @@ fn whole(zigzag: u64) -> Option<u64> {
     zigzag.is_multiple_of(2).then_some(zigzag / 2)
 }
 
-/// The bytes of a Parquet file, the heads of whose pages are looked at before they are given out.
+/// Bytes of a Parquet file; the head of a page is checked before the page is decoded.
 pub struct CheckedPages<B> {
     /// The bytes.
     pub bytes: B,
-    /// Whether a page may state so much.
+    /// Limit of the sizes that a page may state.
     pub fits: fn(PageHead) -> bool,
 }
 
@@ -113,11 +113,11 @@ impl<B: ChunkReader> Length for CheckedPages<B> {
 impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
     type T = B::T;
 
-    /// The decoder asks in this way for the tail of a file and for the head of every page.
+    /// The decoder reads the tail of a file and the head of every page through this function.
     fn get_read(&self, start: u64) -> Result<Self::T> {
-        if start.checked_add(TAIL) != Some(self.len()) {
+        if start.checked_add(TAIL_BYTES) != Some(self.len()) {
             let left = self.len().saturating_sub(start);
-            let head = self.get_bytes(start, PAGE_HEAD.min(usize::try_from(left)?))?;
+            let head = self.get_bytes(start, PAGE_HEAD_BYTES.min(usize::try_from(left)?))?;
             if !PageHead::read(&head).is_some_and(self.fits) {
                 return Err(io::Error::other("the head of a page is damaged").into());
             }

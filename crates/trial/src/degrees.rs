@@ -8,12 +8,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use ship::ShortNumber;
 use ship::angle::{from_deg, to_deg};
 
-/// An angle or angular rate, rad, or none of it, which a file gives in degrees: for `#[serde(with = "Degrees::<…>")]`.
+/// Serde adapter of an angle or angular rate, degrees in the file and rad here: `#[serde(with = "Degrees::<…>")]`.
 pub struct Degrees<T>(PhantomData<T>);
 
-/// What [`Degrees`] can stand for.
+/// A number or an optional number that [`Degrees`] converts.
 pub trait Angle: Sized {
-    /// The same with every number changed.
+    /// Applies a conversion to the number.
     fn map_angle(self, change: fn(f64) -> f64) -> Self;
 }
 
@@ -29,7 +29,7 @@ impl Angle for Option<f64> {
     }
 }
 
-/// Degrees as they were written: their way to radians and back must not show.
+/// Degrees of an angle (rad), rounded to 14 digits so that a conversion to radians and back does not show.
 pub fn written_deg(angle: f64) -> f64 {
     ShortNumber::rounded(to_deg(angle), 14).0
 }

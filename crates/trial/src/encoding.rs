@@ -1,8 +1,8 @@
-//! How the bytes of a file stand for characters.
+//! Character encoding of a file.
 
 use serde::Deserialize;
 
-/// How bytes stand for characters.
+/// Character encoding of a table.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum Encoding {
     /// UTF-8, and so ASCII; lines that are not are read as Windows code page 1252 where that makes letters of them.

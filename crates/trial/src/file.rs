@@ -1,5 +1,5 @@
-//! Text files that a user names: scenarios, sidecars and records all come in through here. Only files and pipes are
-//! opened, and nothing is read further than its kind may be long, so that no name can fill the memory.
+//! Files that a user names: scenarios, sidecars and records are opened here. Only files and pipes are opened, and reading
+//! stops at the maximum size of the kind of file, so that no name can fill the memory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -7,16 +7,16 @@ use std::path::Path;
 
 use thiserror::Error;
 
-/// A kind of text file.
+/// Kind of a file, with its maximum size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kind {
-    /// What it is called in messages, with its article.
+    /// Name in messages, with its article.
     pub name: &'static str,
-    /// Largest size, bytes.
+    /// Maximum size, bytes.
     pub largest: u64,
 }
 
-/// Why a file cannot be used, without its name.
+/// Error of opening or reading a file, without the name of the file.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum FileError {
@@ -26,12 +26,12 @@ pub enum FileError {
     /// A folder was named.
     #[error("this is a folder; name one file in it")]
     Folder,
-    /// Something else was named that is no file.
+    /// A device or a socket was named.
     #[error("this is neither a file nor a pipe (a device or a socket); name a file")]
     NoFile,
-    /// There is more of it than its kind may have.
+    /// The file is larger than its kind allows.
     #[error(
-        "this file has {} bytes, {} has at most {}; name another one, or use a part of it",
+        "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.largest
     )]
     TooLarge { kind: Kind, size: Option<u64> },
@@ -39,22 +39,22 @@ pub enum FileError {
     #[error("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text; save the file as UTF-8")]
     NotUtf8 { line: usize, byte: u8 },
     /// The system refused to give the bytes.
-    #[error("cannot be read: {0}; check the rights of the file and the disk")]
+    #[error("the file cannot be read: {0}; check its access rights and the disk")]
     Io(io::Error),
 }
 
 impl From<io::Error> for FileError {
     fn from(error: io::Error) -> Self {
-        // A limit reached in the middle of reading comes back in the clothes of an input error.
+        // The limit of `Limited` arrives wrapped in an input error.
         match error.downcast::<Self>() {
-            Ok(own) => own,
+            Ok(limit) => limit,
             Err(error) if error.kind() == ErrorKind::NotFound => Self::NotFound,
             Err(error) => Self::Io(error),
         }
     }
 }
 
-/// An open file that ends with an error where it is longer than its kind may be.
+/// An open file that ends with an error beyond the maximum size of its kind.
 pub struct Limited<'a> {
     file: Box<dyn Read + 'a>,
     kind: Kind,
@@ -81,17 +81,17 @@ impl Read for Limited<'_> {
     }
 }
 
-/// What stands for standard input where a file is named.
+/// Name of standard input in the place of a file.
 pub const STDIN: &str = "-";
 
-/// What a file is called: its path, and of standard input a word that can be the name of something.
+/// Path of a file for names and messages; `stdin` for standard input.
 pub fn called(path: &Path) -> &Path {
     if path == Path::new(STDIN) { Path::new("stdin") } else { path }
 }
 
 /// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
-/// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading,
+/// Fails when there is no such file or its size exceeds that of its kind. A file that hides its size fails in reading,
 /// with an error that becomes a [`FileError`] again.
 pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
     if path == Path::new(STDIN) {

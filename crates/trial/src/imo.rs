@@ -1,9 +1,9 @@
-//! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, against a zig-zag record. It holds
-//! the limits of the turning circle too, for whoever measures one; it measures nothing itself.
+//! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, for a zig-zag record. The limits of
+//! the turning circle are here too; nothing is measured here.
 //!
 //! The criteria are for ships of 100 m and above (chemical and gas carriers of any length) at full load and even keel,
 //! in deep unrestricted water and calm weather, at the test speed: at least 90 % of the speed at 85 % of the maximum
-//! engine output. A record does not show whether that was so. L and V have to be of the same scale as the record.
+//! engine output. A record does not show these conditions. L and V have to be of the same scale as the record.
 
 use document::Quantity;
 use document::fit::CriterionVerdict;
@@ -12,31 +12,32 @@ use ship::angle::to_deg;
 
 use crate::zigzag::{Pair, ZigZag};
 
-/// Shortest ship that the criteria are for, m.
+/// Minimum length of a ship under the criteria, m.
 pub const SHORTEST_M: f64 = 100.0;
-/// Largest advance of a turning circle, ship lengths.
+/// Maximum advance of a turning circle, ship lengths.
 pub const ADVANCE_LENGTHS: f64 = 4.5;
-/// Largest tactical diameter of a turning circle, ship lengths.
+/// Maximum tactical diameter of a turning circle, ship lengths.
 pub const TACTICAL_DIAMETER_LENGTHS: f64 = 5.0;
-/// Longest way for a change of heading by 10 degrees with 10 degrees of rudder, ship lengths.
+/// Maximum distance for a change of heading by 10 degrees with 10 degrees of rudder, ship lengths.
 pub const INITIAL_TURNING_LENGTHS: f64 = 2.5;
-/// Largest first overshoot of the 20/20 zig-zag, degrees.
+/// Maximum first overshoot of the 20/20 zig-zag, degrees.
 pub const FIRST_OVERSHOOT_20_20_DEG: f64 = 25.0;
 
-/// Largest first overshoot of the 10/10 zig-zag, degrees.
+/// Maximum first overshoot of the 10/10 zig-zag, degrees.
 ///
 /// 10 for L/V < 10 s, 20 for L/V ≥ 30 s, else 5 + L/(2V). Source: MSC.137(76), 5.3.3.1.
 pub fn first_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
     between(particulars, 10.0, 20.0, |seconds| 5.0 + 0.5 * seconds)
 }
 
-/// Largest second overshoot of the 10/10 zig-zag, degrees.
+/// Maximum second overshoot of the 10/10 zig-zag, degrees.
 ///
 /// 25 for L/V < 10 s, 40 for L/V ≥ 30 s, else 17.5 + 0.75 L/V. Source: MSC.137(76), 5.3.3.2.
 pub fn second_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
     between(particulars, 25.0, 40.0, |seconds| 17.5 + 0.75 * seconds)
 }
 
+/// Limit as a function of L/V: constant below 10 s and from 30 s on, a line between.
 fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, line: impl Fn(f64) -> f64) -> f64 {
     match length / speed {
         seconds if seconds < 10.0 => short,
@@ -45,13 +46,13 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
     }
 }
 
-/// What limits mean for a ship below the length that they are for; `None` for a longer one.
+/// Caution for a ship shorter than the criteria cover; `None` for a longer ship.
 pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
     (length < SHORTEST_M).then(|| {
         format!(
-            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
-             the 10/10 zig-zag follow L/V, which grows with the square root of the length, here {length:.2} m at \
-             {speed:.2} m/s; for the full-scale ship of a model run `study predict` with her --length-m and --speed-kn"
+            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length); the limits \
+             of the 10/10 zig-zag depend on L/V and are those of a ship of {length:.2} m at {speed:.2} m/s; for the \
+             full-scale ship of a model run `study predict` with her --length-m and --speed-kn"
         )
     })
 }
@@ -66,7 +67,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// The unit as it is written after a number.
+    /// Symbol after a number.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Degrees => "deg",
@@ -75,35 +76,35 @@ impl Unit {
     }
 }
 
-/// One criterion with what was measured.
+/// A criterion with its measured value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Criterion {
-    /// What is limited.
+    /// Name of the limited quantity.
     pub name: &'static str,
-    /// The measured value, in `unit`; its uncertainty is for the reader, the verdict goes by the value.
+    /// Measured value, in `unit`; the verdict uses the value without its uncertainty.
     pub measured: Option<Quantity>,
-    /// The largest value allowed, in `unit`.
+    /// Maximum value, in `unit`.
     pub limit: f64,
     /// Unit of value and limit.
     pub unit: Unit,
 }
 
 impl Criterion {
-    /// Whether it is met.
+    /// Verdict: the measured value against the limit.
     pub fn verdict(&self) -> CriterionVerdict {
         match self.measured {
             None => CriterionVerdict::NotMeasured,
-            Some(own) if own.value <= self.limit => CriterionVerdict::Pass,
+            Some(measured) if measured.value <= self.limit => CriterionVerdict::Pass,
             Some(_) => CriterionVerdict::Fail,
         }
     }
 }
 
-/// The criteria a zig-zag can measure, with the values this one does: overshoots and initial turning of a 10/10, the
-/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial. Initial turning
-/// and first overshoot are those of a ship that goes straight until the first execute.
+/// Criteria of a zig-zag with the measured values: overshoots and initial turning of a 10/10, the first overshoot of a
+/// 20/20. Other pairs, and a record that begins within the trial, have no values. Initial turning and first overshoot
+/// require a ship that goes straight until the first execute.
 ///
-/// The way of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
+/// The distance of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
 /// the latter is slightly long, because a ship loses speed as it begins to turn.
 pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`], [`names`] |
-//! | what is random in a record | [`noise_model`] |
+//! | noise parameters of a record | [`noise_model`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | decoders that may panic | [`decoder`] |
 //! | angles in files | [`degrees`] |
@@ -12,9 +12,9 @@
 //! | particulars and conditions that are declared | [`conditions`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
-//! | what is checked before a record is believed | [`plausibility`] |
+//! | plausibility checks of a record | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
-//! | what a ship can be asked to do | [`manoeuvre`] |
+//! | manoeuvres and their rudder orders | [`manoeuvre`] |
 //! | manoeuvres inside a long log | [`find`] |
 //! | IMO criteria | [`imo`] |
 //! | records of similar ships of different size and speed | [`scale`] |
@@ -43,7 +43,7 @@ mod sidecar_error;
 mod sidecar_keys;
 #[cfg(test)]
 mod testing;
-mod words;
+mod wording;
 pub mod writer;
 pub mod zigzag;
 

@@ -1,6 +1,5 @@
-//! Manoeuvres: what the helm orders when, under which keys a file gives it, and what a list calls it. What it may be in
-//! a simulation and who steers it is in the simulator, how it is seen in a log in [`crate::find`], what is predicted of
-//! it in `predict`.
+//! Manoeuvres: the rudder orders of each, its keys in a file and its name in a list. Helm and steering gear are in the
+//! simulator, detection in a log in [`crate::find`], predicted figures in `predict`.
 //!
 //! In a file angles are in degrees, here in rad; times are in s.
 //!
@@ -19,7 +18,7 @@ use ship::angle::{DEGREE, from_deg, to_deg};
 use crate::degrees::Degrees;
 use crate::zigzag::Side;
 
-/// A manoeuvre: one key, its name.
+/// A manoeuvre; in a file it has one key, its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Manoeuvre {
@@ -70,11 +69,11 @@ pub enum Manoeuvre {
         #[serde(rename = "duration-s")]
         duration: f64,
     },
-    /// The rudder of a record, followed as it is, without helmsman and steering gear.
+    /// The rudder of a record, replayed without helmsman and steering gear.
     Replay {
         /// Record with a rudder, relative to the scenario.
         file: String,
-        /// That rudder, rad; its first point is put at the first execute.
+        /// Recorded rudder, rad; its first point is put at the first execute.
         #[serde(skip)]
         rudder: Option<Polyline>,
     },
@@ -105,7 +104,7 @@ pub enum Manoeuvre {
     },
 }
 
-/// What the helm waits for.
+/// Condition that triggers the next order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trigger {
     /// A time, s: of a step from the order before it, or else from the beginning of the manoeuvre.
@@ -117,48 +116,48 @@ pub enum Trigger {
         /// Size of the deviation, rad.
         angle: f64,
     },
-    /// Nothing more.
+    /// No condition: no order follows.
     Never,
 }
 
 /// One step of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrderStep {
-    /// What is waited for.
+    /// Condition of the order.
     pub trigger: Trigger,
-    /// The rudder ordered then, rad; `None` where the manoeuvre ends.
+    /// Ordered rudder, rad; `None` where the manoeuvre ends.
     pub order: Option<f64>,
-    /// Key of what it depends on, in a scenario.
+    /// Scenario key that the trigger depends on.
     pub key: &'static str,
 }
 
 /// Change of heading of the initial turning test, rad.
 pub const INITIAL_TURN: f64 = 10.0 * DEGREE;
 
-/// Change of heading at which the rudder of a Williamson turn is put over to the other side, and that to the other side
-/// at which it is put amidships, rad.
+/// Changes of heading in a Williamson turn, rad: to the first side until the rudder is shifted, then to the other side
+/// until it is put amidships.
 const WILLIAMSON: [f64; 2] = [PI / 3.0, PI - PI / 9.0];
 
-/// Rudder of a Williamson turn whose rudder is not given.
+/// Default rudder of a Williamson turn, degrees.
 const HARD_OVER_DEG: f64 = 35.0;
 
 impl Manoeuvre {
-    /// A zig-zag with starboard first, until the end of the record.
+    /// A zig-zag with starboard first, until the end of the record; angles in rad.
     pub fn zig_zag(rudder: f64, heading: f64) -> Self {
         Self::ZigZag { rudder, heading, first: Side::Starboard, executes: None, duration: None }
     }
 
-    /// A turning circle to starboard, which still lacks an end.
+    /// A turning circle to starboard with a rudder (rad), without an end.
     pub fn turning_circle(rudder: f64) -> Self {
         Self::TurningCircle { rudder, side: Side::Starboard, duration: None, heading_change: None }
     }
 
-    /// A rudder that was recorded, rad.
+    /// A replay of a recorded rudder, rad.
     pub fn replay(rudder: Polyline) -> Self {
         Self::Replay { file: String::new(), rudder: Some(rudder) }
     }
 
-    /// The same zig-zag, ended by an execute, counted from 1; n executes show n − 2 whole overshoots.
+    /// The same zig-zag until an execute, counted from 1; n executes show n − 2 whole overshoots.
     pub fn until_execute(mut self, number: usize) -> Self {
         if let Self::ZigZag { executes, .. } = &mut self {
             *executes = Some(number);
@@ -166,7 +165,7 @@ impl Manoeuvre {
         self
     }
 
-    /// The same zig-zag or turning circle, ended so long after its first execute, s.
+    /// The same zig-zag or turning circle until a time after its first execute, s.
     pub fn lasting(mut self, time: f64) -> Self {
         if let Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. } = &mut self {
             *duration = Some(time);
@@ -174,7 +173,7 @@ impl Manoeuvre {
         self
     }
 
-    /// The step after so many orders, the first of which is given at once.
+    /// The step after a number of orders; the first order is given at once.
     pub fn step(&self, orders: usize) -> OrderStep {
         use Trigger::{Deviation, Never, Time};
         let (trigger, order, key) = match (self, orders) {
@@ -220,8 +219,7 @@ impl Manoeuvre {
         OrderStep { trigger, order, key }
     }
 
-    /// The steps in order, as long as something is ordered or ends the manoeuvre; those of a zig-zag that only the
-    /// record ends are without end.
+    /// The steps in order, up to the end of the manoeuvre; endless for a zig-zag that ends with the record.
     pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
         let mut ended = false;
         (0..)
@@ -244,7 +242,7 @@ impl Manoeuvre {
         length
     }
 
-    /// Number of executes it has at most.
+    /// Maximum number of executes.
     pub fn most_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
@@ -252,7 +250,7 @@ impl Manoeuvre {
         }
     }
 
-    /// Largest rudder angle asked for, rad.
+    /// Largest ordered rudder angle, rad.
     pub fn rudder(&self) -> f64 {
         match self {
             Self::ZigZag { rudder, .. }
@@ -280,20 +278,20 @@ impl Manoeuvre {
         }
     }
 
-    /// The same manoeuvre to that side; a spiral goes to either.
-    pub fn to(mut self, other: Side) -> Self {
+    /// The same manoeuvre with its first execute to a side; a replay and a spiral stay.
+    pub fn to(mut self, first_side: Side) -> Self {
         match &mut self {
             Self::ZigZag { first: side, .. }
             | Self::TurningCircle { side, .. }
             | Self::PullOut { side, .. }
             | Self::InitialTurning { side, .. }
-            | Self::Williamson { side, .. } => *side = other,
+            | Self::Williamson { side, .. } => *side = first_side,
             Self::Replay { .. } | Self::Spiral { .. } => {}
         }
         self
     }
 
-    /// Name of its key in a scenario, where it has one.
+    /// Name of the manoeuvre: its key in a scenario and on the command line.
     pub fn name(&self) -> &'static str {
         match self {
             Self::ZigZag { .. } => "zig-zag",
@@ -314,7 +312,7 @@ impl Manoeuvre {
     }
 }
 
-/// As it is asked for on the command line, with a blank for the colon: "zig-zag 20/10", "pull-out -20" to port.
+/// Writes the notation of the command line with a blank for the colon: "zig-zag 20/10", "pull-out -20" to port.
 impl fmt::Display for Manoeuvre {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.name(), whole_deg(self.rudder() * self.side().sign()))?;
@@ -325,29 +323,29 @@ impl fmt::Display for Manoeuvre {
     }
 }
 
-/// An angle in degrees without the rounding of its conversion.
+/// An angle (rad) in degrees, rounded to a millionth.
 pub fn whole_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 
-/// A text that names no manoeuvre.
+/// Error of a text that names no manoeuvre.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{0}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
+    "`{0}` is not a manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
      pull-out:RUDDER, spiral:RUDDER or williamson, angles in degrees, negative for port"
 )]
 pub struct NoManoeuvre(pub String);
 
-/// Reads what is asked for on the command line; what ends the manoeuvre is left open, and times of it are 0.
+/// Reads the notation of the command line. The manoeuvre has no end, and its times are 0.
 impl FromStr for Manoeuvre {
     type Err = NoManoeuvre;
 
     fn from_str(text: &str) -> Result<Self, NoManoeuvre> {
         let refused = || NoManoeuvre(text.to_owned());
-        let (name, rest) = text.trim().split_once([':', ' ']).unwrap_or((text.trim(), ""));
-        let (rudder, heading) = match rest.split_once('/') {
+        let (name, angles) = text.trim().split_once([':', ' ']).unwrap_or((text.trim(), ""));
+        let (rudder, heading) = match angles.split_once('/') {
             Some((rudder, heading)) if name == "zig-zag" => (rudder, Some(heading)),
-            _ => (rest, None),
+            _ => (angles, None),
         };
         let angle = |text: &str| -> Result<(f64, Side), NoManoeuvre> {
             let value: f64 = text.trim().parse().map_err(|_| refused())?;
@@ -356,7 +354,7 @@ impl FromStr for Manoeuvre {
             }
             Ok((from_deg(value.abs()), if value < 0.0 { Side::Port } else { Side::Starboard }))
         };
-        if (name, rest) == ("williamson", "") {
+        if (name, angles) == ("williamson", "") {
             return Ok(Self::Williamson { rudder: from_deg(HARD_OVER_DEG), side: Side::Starboard, duration: 0.0 });
         }
         let (rudder, side) = angle(rudder)?;
@@ -375,12 +373,12 @@ impl FromStr for Manoeuvre {
     }
 }
 
-/// Writes a manoeuvre in the words of its [`Display`](fmt::Display): for `serialize_with`.
+/// Writes a manoeuvre as its [`Display`](fmt::Display) text: for `serialize_with`.
 pub fn to_words<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(manoeuvre)
 }
 
-/// Reads these words: for `deserialize_with`.
+/// Reads a manoeuvre from its [`Display`](fmt::Display) text: for `deserialize_with`.
 pub fn from_words<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
@@ -405,8 +403,8 @@ mod tests {
             assert_eq!(name.parse::<Manoeuvre>(), Ok(manoeuvre));
         }
         for wrong in ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "circle:35", "spiral:x", "pull-out:90"] {
-            let said = wrong.parse::<Manoeuvre>().expect_err("refused").to_string();
-            assert!(said.contains("zig-zag:RUDDER/HEADING"), "{said}");
+            let message = wrong.parse::<Manoeuvre>().expect_err("refused").to_string();
+            assert!(message.contains("zig-zag:RUDDER/HEADING"), "{message}");
         }
     }
 }

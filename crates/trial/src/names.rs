@@ -1,10 +1,9 @@
-//! What people call the columns of their tables: a heading, split into the words that name a quantity and the unit
-//! beside them, becomes a [`ColumnMeaning`]. It knows names and units; which column of a table is used is decided by
-//! the reader.
+//! Customary names of columns: the header of a column, split into a quantity and its unit, becomes a [`ColumnMeaning`].
+//! It holds names and units; the reader decides which column of a table is used.
 
 use crate::channel::{Channel, UNITS, Unit, column, time_column};
 
-/// What the name of a column says.
+/// Meaning of a column name: quantity and, where the name has it, unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ColumnMeaning {
     /// Time, or a stamp of date and time.
@@ -23,8 +22,8 @@ pub enum ColumnMeaning {
     Course,
 }
 
-/// Longest name and unit that are looked at, bytes.
-const LONGEST: usize = 80;
+/// Maximum length of a name or unit, bytes; a longer text has no meaning.
+const MAX_NAME_BYTES: usize = 80;
 
 /// Names of the quantities in small letters, words separated by one blank: English first, then German, French, Spanish,
 /// Norwegian and Japanese in Latin letters.
@@ -84,19 +83,19 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
     ]
 };
 
-/// What people call the columns of a record, with what it says.
+/// Customary column names with their meaning.
 pub fn names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
     NAMES.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
 }
 
-/// How units are written.
+/// Notations of units.
 pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
     UNITS.iter().flat_map(|&(unit, .., names)| names.split(", ").map(move |name| (name, unit)))
 }
 
-/// The unit a text stands for, brackets around it left out: `[deg]`, `(°/min)`, `kn`.
+/// Unit of a text with or without brackets: `[deg]`, `(°/min)`, `kn`.
 pub fn unit(text: &str) -> Option<Unit> {
-    if text.len() > LONGEST {
+    if text.len() > MAX_NAME_BYTES {
         return None;
     }
     let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}']);
@@ -109,46 +108,47 @@ pub fn unit(text: &str) -> Option<Unit> {
     units().find(|(name, _)| *name == plain).map(|(_, unit)| unit)
 }
 
-/// A name in words: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
-fn words(name: &str) -> String {
-    let mut words = String::new();
+/// Normalised name: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
+fn normalised(name: &str) -> String {
+    let mut spaced = String::new();
     let mut small_before = false;
     for c in name.chars() {
         if !c.is_alphanumeric() {
-            words.push(' ');
+            spaced.push(' ');
         } else {
             if c.is_uppercase() && small_before {
-                words.push(' ');
+                spaced.push(' ');
             }
-            words.extend(c.to_lowercase());
+            spaced.extend(c.to_lowercase());
         }
         small_before = c.is_lowercase();
     }
-    words.split_whitespace().collect::<Vec<_>>().join(" ")
+    spaced.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn known(words: &str) -> Option<ColumnMeaning> {
-    let plain = names().find(|(name, _)| *name == words).map(|(_, meaning)| meaning);
-    // What the contract calls `wind_true_speed` is named by the same words.
-    plain.or_else(|| {
-        let contract = Channel::ALL.into_iter().find(|channel| channel.quantity().replace('_', " ") == words)?;
-        Some(ColumnMeaning::Channel(contract, None))
+/// Meaning of a normalised name without a unit.
+fn unitless_meaning(normalised: &str) -> Option<ColumnMeaning> {
+    let customary = names().find(|(name, _)| *name == normalised).map(|(_, meaning)| meaning);
+    // `wind true speed` is the quantity `wind_true_speed` of a column name.
+    customary.or_else(|| {
+        let channel = Channel::ALL.into_iter().find(|channel| channel.quantity().replace('_', " ") == normalised)?;
+        Some(ColumnMeaning::Channel(channel, None))
     })
 }
 
-/// What a column name of the contract says, such as `t_s` or `heading_deg`.
+/// Meaning of a `quantity_unit` name such as `t_s` or `heading_deg`.
 pub(crate) fn contract(name: &str) -> Option<ColumnMeaning> {
     let of_channel = |(channel, unit)| ColumnMeaning::Channel(channel, Some(unit));
     time_column(name).map(|unit| ColumnMeaning::Time(Some(unit))).or_else(|| column(name).map(of_channel))
 }
 
-/// What the name of a column says; `None` for a name that is not known, or whose unit its quantity cannot have.
+/// Meaning of a column name; `None` for an unknown name and for a unit that the quantity cannot have.
 ///
 /// A unit may follow in brackets, after a comma, a slash or a blank (`ROT deg/min`, `Heading [°]`, `SOG_kn`), with `in`
 /// before it or not. Case does not matter.
 pub fn meaning(name: &str) -> Option<ColumnMeaning> {
     let name = name.trim();
-    if name.len() > LONGEST {
+    if name.len() > MAX_NAME_BYTES {
         return None;
     }
     if let Some(meaning) = contract(name) {
@@ -157,35 +157,37 @@ pub fn meaning(name: &str) -> Option<ColumnMeaning> {
     let marks =
         name.char_indices().filter(|(_, c)| c.is_whitespace() || matches!(c, '[' | '(' | '{' | ',' | '/' | '_'));
     for (at, mark) in marks {
-        let rest = name[at + usize::from(!matches!(mark, '[' | '(' | '{')) * mark.len_utf8()..].trim();
-        let rest = rest.strip_prefix("in ").unwrap_or(rest);
-        if let (Some(meaning), Some(unit)) = (known(&words(&name[..at])), unit_after(rest)) {
+        let suffix = name[at + usize::from(!matches!(mark, '[' | '(' | '{')) * mark.len_utf8()..].trim();
+        let suffix = suffix.strip_prefix("in ").unwrap_or(suffix);
+        if let (Some(meaning), Some(unit)) = (unitless_meaning(&normalised(&name[..at])), suffix_unit(suffix)) {
             return with_unit(meaning, unit);
         }
     }
-    known(&words(name))
+    unitless_meaning(&normalised(name))
 }
 
-/// A unit at the end of a name, where blanks and `_` may stand for a slash: `deg_s` as well as `deg/s`.
-fn unit_after(text: &str) -> Option<Unit> {
+/// Unit at the end of a name; blanks and `_` may stand for a slash: `deg_s` as well as `deg/s`.
+fn suffix_unit(text: &str) -> Option<Unit> {
     unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
 }
 
-/// The unit of a channel that is written so; `None` where it cannot have it.
-fn fitting(channel: Channel, unit: Unit) -> Option<Unit> {
+/// Unit of a channel for a written unit; `None` where the channel cannot have it.
+fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
     // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
     let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
     Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
 }
 
-/// The same with a unit; `None` where the quantity cannot have it.
+/// The same meaning with a unit; `None` where the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),
         ColumnMeaning::Channel(channel, _) => {
-            fitting(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
+            channel_unit(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
-        ColumnMeaning::OverGround(_) => fitting(Channel::Speed, unit).map(|unit| ColumnMeaning::OverGround(Some(unit))),
+        ColumnMeaning::OverGround(_) => {
+            channel_unit(Channel::Speed, unit).map(|unit| ColumnMeaning::OverGround(Some(unit)))
+        }
         ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
             (unit == Unit::Degree).then_some(meaning)
         }
@@ -248,7 +250,7 @@ mod tests {
         for (place, (name, expected)) in names().enumerate() {
             assert!(names().take(place).all(|(other, _)| other != name), "{name}");
             assert_eq!(meaning(name), Some(expected), "{name}");
-            assert_eq!(words(name), name);
+            assert_eq!(normalised(name), name);
         }
         for (place, (name, expected)) in units().enumerate() {
             assert!(units().take(place).all(|(other, _)| other != name), "{name}");

@@ -1,20 +1,20 @@
-//! What is random in a record.
+//! Noise parameters of a record: compass, gyro, rudder and random yaw moment.
 
 pub use document::Moment;
 
-/// All that is random in a record, in SI units and radians.
+/// Noise parameters of a record, in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseModel {
     /// Standard deviation of the compass error, rad.
     pub heading_sd: f64,
     /// Correlation time of the compass error, s; `None` for white.
     pub heading_correlation: Option<f64>,
-    /// Standard deviation of the white gyro error, rad/s; of use where a record has a yaw rate.
+    /// Standard deviation of the white gyro error, rad/s; used where a record has a yaw rate.
     pub yaw_rate_sd: Option<f64>,
-    /// Which yaw moment.
+    /// Noise law of the random yaw moment.
     pub moment: Moment,
-    /// Its size q as yaw acceleration: (rad/s²)√s for white, the stationary standard deviation in rad/s² for
-    /// Ornstein–Uhlenbeck, (rad/s²)/√s for a walk.
+    /// Size q of the moment as yaw acceleration: (rad/s²)√s for white noise, the stationary standard deviation in rad/s²
+    /// for an Ornstein–Uhlenbeck process, (rad/s²)/√s for a random walk.
     pub moment_level: f64,
     /// Correlation time τ of an Ornstein–Uhlenbeck moment, s.
     pub moment_correlation: f64,

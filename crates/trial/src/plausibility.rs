@@ -1,9 +1,9 @@
-//! What is checked before a record is believed: does anything move, are the units those the column names say, do
-//! rudder, heading and yaw rate have the same sign. The checks use ratios that hold for ships of every size; they do
-//! not judge whether a trial was well executed, nor how good its sensors are.
+//! Plausibility checks of a record: movement of rudder and heading, units of the columns, and the signs of rudder,
+//! heading and yaw rate. The checks use ratios that hold for ships of every size; they do not judge the execution of a
+//! trial or the quality of its sensors.
 //!
-//! An error is raised where a record can hardly be right, and says how to mend it. Where a record is only unusual there
-//! is a warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
+//! An improbable record is an error with a remedy; an unusual record gets a warning. A sidecar with
+//! `plausibility = false` under `[check]` turns errors into warnings.
 
 mod alternation;
 pub(crate) mod derivative;
@@ -19,75 +19,76 @@ use thiserror::Error;
 
 use crate::channel::Channel;
 use crate::record::{RejectedReading, Trial};
-use crate::words::counted;
+use crate::wording::counted;
 use alternation::alternation;
 pub use motion::reversals;
 pub(crate) use motion::{changes, extremes, mean_rate, range};
 use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 use rudder::rudder_movements;
 
-/// Why a record is not believed. Angles in degrees, for people.
+/// Implausibility of a record. Angles in degrees, for people.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Implausible {
     /// Neither heading nor rudder changes.
     #[error(
-        "nothing moves: the heading changes by {heading_deg:.4}° and the rudder by {rudder_deg:.4}°; expected a manoeuvre, \
-         check that the right columns and the right part of the record are used"
+        "nothing moves: the heading changes by {heading_deg:.4}° and the rudder by {rudder_deg:.4}°; check that the right \
+         columns and the right part of the record are used"
     )]
     NothingMoves { heading_deg: f64, rudder_deg: f64 },
     /// The rudder moves and the heading does not.
     #[error(
-        "the heading stays within {heading_deg:.4}° while the rudder moves through {rudder_deg:.1}°; expected the heading to \
-         answer, check that the heading sensor was recorded and the right column is used"
+        "the heading stays within {heading_deg:.4}° while the rudder moves through {rudder_deg:.1}°; check that the \
+         heading sensor was recorded and the right column is used"
     )]
     HeadingConstant { heading_deg: f64, rudder_deg: f64 },
     /// Degrees under a name that says radians.
     #[error(
         "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
-         name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml; if it is named so \
-         already, its numbers are of another scale"
+         name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml; if it already has \
+         that name, its numbers have another scale"
     )]
     RudderInDegrees { largest_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
          under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
-         NAME.trial.toml; if it is named so already, its numbers are of another scale"
+         NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     RudderInRadians { largest_deg: f64, heading_deg: f64 },
     /// Degrees under a name that says radians.
     #[error(
         "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
          under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
-         NAME.trial.toml; if it is named so already, its numbers are of another scale"
+         NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
     /// A yaw rate in another unit than its name says, where it stands for the heading.
     #[error(
-        "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like deg/min under \
-         a name that says deg/s (a factor of 60), or degrees under one that says radians (57.3); name the column yaw_rate_deg_min \
-         (yaw_rate_deg_s), or write `is = \"yaw_rate_deg_min\"` for it in a sidecar NAME.trial.toml"
+        "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks \
+         like deg/min under a name that says deg/s (a factor of 60), or degrees under a name that says radians (57.3); \
+         name the column yaw_rate_deg_min (yaw_rate_deg_s), or write `is = \"yaw_rate_deg_min\"` for it in a sidecar \
+         NAME.trial.toml"
     )]
     YawRateInMinutes { heading_deg: f64, rudder_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
          radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
-         sidecar NAME.trial.toml (if it is named so already, its numbers are of another scale; if all is right, write \
-         `plausibility = false` under [check] there)"
+         sidecar NAME.trial.toml (if it already has that name, its numbers have another scale; if the record is right, \
+         write `plausibility = false` under [check] there)"
     )]
     HeadingInRadians { heading_deg: f64, rudder_deg: f64 },
     /// A channel alternates between two sensors.
     #[error(
-        "the {channel} holds two inputs in turn that disagree by {apart_deg:.1}°: two sensors, or one that comes a second time and \
-         late; leave one of them out of the log (of a table `ignore = true` for its column, in a sidecar NAME.trial.toml)"
+        "the {channel} alternates between two inputs that disagree by {apart_deg:.1}°: two sensors, or a delayed copy of \
+         one; leave one of them out of the log (of a table `ignore = true` for its column, in a sidecar NAME.trial.toml)"
     )]
     TwoInputs { channel: &'static str, apart_deg: f64 },
     /// Heading and integrated yaw rate differ by the factor between two units.
     #[error(
         "the heading changes {ratio:.3} times as much as the integral of the yaw rate, expected 1: one of the two has the wrong \
-         unit in its name (degrees for radians are a factor 57.3, minutes for seconds 60); correct the name, or write \
+         unit in its name (degrees for radians: a factor of 57.3, minutes for seconds: 60); correct the name, or write \
          `is = \"yaw_rate_rad_s\"` (yaw_rate_deg_s, yaw_rate_deg_min, heading_rad, heading_deg) for the column in a sidecar \
          NAME.trial.toml"
     )]
@@ -101,58 +102,56 @@ pub enum Implausible {
     YawRateSign { ratio: f64, culprit: &'static str },
     /// The ship turns round and round away from its rudder.
     #[error(
-        "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, and the ship turns to port under positive \
-         rudder for {share_percent:.0} % of that; write `flip = true` for the rudder column in a sidecar NAME.trial.toml \
-         (the heading, if that grows to port)"
+        "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, {share_percent:.0} % of it to port \
+         under positive rudder; write `flip = true` for the rudder column in a sidecar NAME.trial.toml (for the heading \
+         column, if the heading grows to port)"
     )]
     TurnsAgainstRudder { heading_deg: f64, share_percent: f64 },
     /// The ship turns away from its rudder.
     #[error(
-        "the rudder sign looks flipped: the ship turns to port under positive rudder (K/T = {gain:.2e} 1/s², and the rudder \
-         explains {share_percent:.0} % of the heading that way); positive rudder has to turn it to starboard, write `flip = \
-         true` for the rudder column in a sidecar NAME.trial.toml, [[column]] with `name = \"rudder_deg\"` or what the column \
-         is called (the heading, if that grows to port)"
+        "the rudder sign looks flipped: the ship turns to port under positive rudder (K/T = {gain:.2e} 1/s², which explains \
+         {share_percent:.0} % of the heading); positive rudder has to turn the ship to starboard: write `flip = true` for \
+         the rudder column in a sidecar NAME.trial.toml, under [[column]] with its `name`, such as \"rudder_deg\" (for the \
+         heading column, if the heading grows to port)"
     )]
     RudderFlipped { gain: f64, share_percent: f64 },
 }
 
-/// Ranges below this are the resolution of an instrument, not a movement, deg.
-const STILL_DEG: f64 = 0.01;
+/// Minimum range of a movement, deg; smaller ranges are the resolution of an instrument.
+const MIN_RANGE_DEG: f64 = 0.01;
 
-/// A rudder that moves at least this far can be held against the heading, deg. The smallest amplitude in use is 5° (10°
-/// range).
-const MOVED_DEG: f64 = 4.0;
+/// Minimum range of a rudder that is compared with the heading, deg. The smallest amplitude in use is 5° (10° range).
+const MIN_RUDDER_RANGE_DEG: f64 = 4.0;
 
-/// A heading that moves less says nothing about the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and
-/// more.
-const ANSWERED_DEG: f64 = 1.0;
+/// Minimum range of a heading that shows the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and more.
+const MIN_RESPONSE_DEG: f64 = 1.0;
 
-/// Mean rates of turn of ships and models in a manoeuvre, deg/s.
+/// Bounds of the mean rate of turn of ships and models in a manoeuvre, deg/s.
 pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
 
-/// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
-const REVERSALS_OF_A_DITHER: usize = 24;
+/// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more.
+const MAX_REVERSALS: usize = 24;
 
-/// A heading that moves further is that of a turning circle, where the integrals of heading and rudder grow alike and a
-/// regression cannot tell them apart, deg.
-const TURNED_DEG: f64 = 360.0;
+/// Maximum range of a heading outside a turning circle, deg. In a circle the integrals of heading and rudder grow alike,
+/// and a regression cannot separate them.
+const MAX_SWING_DEG: f64 = 360.0;
 
-/// Share of the heading a flipped rudder has to explain. The zig-zags of KVLCC2 and Esso Osaka reach 0.82 to 0.99 with
-/// the right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
-const DECISIVE_SHARE: f64 = 0.7;
+/// Share of the heading that a flipped rudder has to explain for an error. The zig-zags of KVLCC2 and Esso Osaka reach
+/// 0.82 to 0.99 with the right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
+const ERROR_SHARE: f64 = 0.7;
 
-/// Share from which on a flipped rudder is worth a warning.
-const NOTABLE_SHARE: f64 = 0.4;
+/// Share of the heading that a flipped rudder has to explain for a warning.
+const WARNING_SHARE: f64 = 0.4;
 
 /// Checks a record; returns warnings.
 ///
-/// Fails with [`Implausible`] when nothing moves, a unit is off by the factor between degrees and radians, or rudder,
-/// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in ψ = c₀ + c₁ t + c₂
-/// t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle that of ∫δ dψ.
+/// Fails with [`Implausible`] when nothing moves, a unit is wrong by the factor between degrees and radians, or the
+/// signs of rudder, heading and yaw rate contradict each other. The sign of the rudder is the sign of b = K/T in
+/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle of ∫δ dψ.
 pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
-    let turns = range_deg(trial.heading()) > TURNED_DEG;
+    let turns = range_deg(trial.heading()) > MAX_SWING_DEG;
     let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
     warnings.extend(yaw_rate(trial, response)?);
     warnings.extend(rudder_sign(trial, response)?);
@@ -161,41 +160,40 @@ pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     Ok(warnings)
 }
 
-/// The same of an angle in radians, deg.
+/// Range of an angle in radians, deg.
 fn range_deg(values: &[f64]) -> f64 {
     to_deg(range(values))
 }
 
-/// Whether the heading steps by 2π under its own unit: 6.28 "degrees" between one row and the next.
+/// `true` where a heading in "degrees" steps by 2π: 6.28 between two readings, and no other large steps.
 pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
     let mut last = f64::NAN;
-    let (mut wraps, mut others) = (0, 0);
+    let (mut wraps, mut large_steps) = (0, 0);
     for &psi in heading.iter().filter(|psi| psi.is_finite()) {
         let step_deg = to_deg(psi - last).abs();
         wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.3);
-        others += usize::from((1.0..std::f64::consts::TAU - 0.3).contains(&step_deg));
+        large_steps += usize::from((1.0..std::f64::consts::TAU - 0.3).contains(&step_deg));
         last = psi;
     }
-    wraps > 0 && others == 0
+    wraps > 0 && large_steps == 0
 }
 
-/// Does anything move, and do heading and rudder move by comparable amounts?
+/// Check of movement and angle units: heading and rudder move by comparable amounts.
 fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     let (heading_deg, rudder_deg) = (range_deg(trial.heading()), range_deg(trial.rudder()));
     let largest_deg = to_deg(trial.rudder().iter().fold(0.0, |largest: f64, delta| largest.max(delta.abs())));
-    if heading_deg < STILL_DEG && rudder_deg < STILL_DEG {
+    if heading_deg < MIN_RANGE_DEG && rudder_deg < MIN_RANGE_DEG {
         return Err(Implausible::NothingMoves { heading_deg, rudder_deg });
     }
     // 1.6 rad: no rudder goes beyond 90°.
     if largest_deg > 92.0 {
         return Err(Implausible::RudderInDegrees { largest_deg });
     }
-    if heading_deg < STILL_DEG && rudder_deg >= 1.0 {
+    if heading_deg < MIN_RANGE_DEG && rudder_deg >= 1.0 {
         return Err(Implausible::HeadingConstant { heading_deg, rudder_deg });
     }
-    if rudder_deg < STILL_DEG {
-        let text =
-            format!("the rudder stays at {largest_deg:.2}°, so this record alone does not show the response to it");
+    if rudder_deg < MIN_RANGE_DEG {
+        let text = format!("the rudder stays at {largest_deg:.2}°; this record alone does not show the response to it");
         return Ok(Some(Code::RudderAtRest.warning(text)));
     }
     let ratio = heading_deg / rudder_deg;
@@ -206,8 +204,8 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
         }
         return Ok(Some(Code::AngleUnit.warning(format!(
-            "the rudder never exceeds {largest_deg:.3}°; if all angles are in radians under names that say degrees, name \
-             the columns rudder_rad and heading_rad"
+            "the rudder never exceeds {largest_deg:.3}°; if the angles are in radians, name the columns rudder_rad and \
+             heading_rad"
         ))));
     }
     let reversals = reversals(trial.rudder());
@@ -218,11 +216,11 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
         });
     }
     let in_radians = Implausible::HeadingInRadians { heading_deg, rudder_deg };
-    if rudder_deg >= MOVED_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {
+    if rudder_deg >= MIN_RUDDER_RANGE_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {
         return Err(in_radians);
     }
-    if rudder_deg >= MOVED_DEG && ratio < 0.05 {
-        if reversals <= REVERSALS_OF_A_DITHER {
+    if rudder_deg >= MIN_RUDDER_RANGE_DEG && ratio < 0.05 {
+        if reversals <= MAX_REVERSALS {
             return Err(in_radians);
         }
         return Ok(Some(Code::AngleUnit.warning(in_radians.to_string())));
@@ -230,7 +228,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     Ok(None)
 }
 
-/// Does a channel come from one sensor?
+/// Check that heading and rudder each come from a single sensor.
 fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
     for (channel, values) in [(Channel::Heading, trial.heading()), (Channel::Rudder, trial.rudder())] {
         if let Some(apart) = alternation(trial.time(), values) {
@@ -240,15 +238,15 @@ fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
     Ok(())
 }
 
-/// Does the yaw rate belong to the heading?
+/// Check of the yaw rate against the heading.
 fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
-    let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > STILL_DEG) else {
+    let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > MIN_RANGE_DEG) else {
         return Ok(None);
     };
     let ratio = slope.value;
     if slope.share < 0.9 {
         let percent = 100.0 * slope.share;
-        let text = format!("the yaw rate explains only {percent:.0} % of the change of heading; check that column");
+        let text = format!("the yaw rate explains only {percent:.0} % of the change of heading; check its column");
         return Ok((slope.share < 0.5).then(|| Code::YawRate.warning(text)));
     }
     if (40.0..=75.0).contains(&ratio.abs()) || (40.0..=75.0).contains(&ratio.abs().recip()) {
@@ -266,52 +264,53 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warn
     }))
 }
 
-/// Does the ship turn to the side of its rudder?
+/// Check that the ship turns to the side of the rudder.
 fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
-    let moved = range_deg(trial.rudder()) >= MOVED_DEG && range_deg(trial.heading()) >= ANSWERED_DEG;
+    let moved = range_deg(trial.rudder()) >= MIN_RUDDER_RANGE_DEG && range_deg(trial.heading()) >= MIN_RESPONSE_DEG;
     let Some(slope) = response.filter(|slope| moved && slope.value < 0.0) else { return Ok(None) };
     let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
-    let told = |flipped: Implausible| Some(Code::RudderSign.warning(flipped.to_string()));
-    if heading_deg > TURNED_DEG {
-        // A circle is one movement of the rudder: enough to ask, not to refuse.
-        return Ok(told(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
+    let warning = |flipped: Implausible| Some(Code::RudderSign.warning(flipped.to_string()));
+    if heading_deg > MAX_SWING_DEG {
+        // A circle is a single movement of the rudder: enough for a warning, not for an error.
+        return Ok(warning(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
     }
     let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
     match slope.share {
-        DECISIVE_SHARE.. => Err(flipped),
-        NOTABLE_SHARE.. => Ok(told(flipped)),
+        ERROR_SHARE.. => Err(flipped),
+        WARNING_SHARE.. => Ok(warning(flipped)),
         _ => Ok(None),
     }
 }
 
-/// Does the ship turn as fast as ships and models do?
+/// Check of the mean rate of turn, which shows the unit of the time.
 fn rate_of_turn(trial: &Trial) -> Option<Warning> {
-    if range_deg(trial.rudder()) < MOVED_DEG || range_deg(trial.heading()) < ANSWERED_DEG {
+    if range_deg(trial.rudder()) < MIN_RUDDER_RANGE_DEG || range_deg(trial.heading()) < MIN_RESPONSE_DEG {
         return None;
     }
     let rate_deg_s = to_deg(mean_rate(trial.time(), trial.heading()));
     (!(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s)).then(|| {
         Code::TimeUnit.warning(format!(
-            "the ship turns at {rate_deg_s:.2e}°/s on average, ships and models in a manoeuvre at {} to {}°/s: check the unit of the \
-             time (t_s, t_ms, t_min)",
+            "the ship turns at {rate_deg_s:.2e}°/s on average, expected {} to {}°/s for a ship or model in a manoeuvre: \
+             check the unit of the time (t_s, t_ms, t_min)",
             MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
         ))
     })
 }
 
-/// Time between two headings beyond which some are missing, in their usual intervals.
-const MISSED: f64 = 1.5;
+/// Maximum interval between two headings without a missing heading, usual intervals.
+const MAX_HEADING_INTERVAL: f64 = 1.5;
 
-/// Counts the headings that are missing in rows of the record, and names the longest gap; what was left out as a wrong
-/// reading has its own warning.
+/// Warning of missing headings with their longest gap; rejected readings have another warning.
 fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
     let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;
     let (mut count, mut longest) = (0, (0.0, 0.0));
     for (from, to) in read.windows(2).map(|rows| (rows[0], rows[1])) {
         let (begin, gap) = (time[from], time[to] - time[from]);
-        let is_told = |own: &RejectedReading| own.channel == Channel::Heading && (begin..time[to]).contains(&own.time);
-        if to > from + 1 && gap > MISSED * usual && !trial.rejected().iter().any(is_told) {
+        let is_in_gap = |reading: &RejectedReading| {
+            reading.channel == Channel::Heading && (begin..time[to]).contains(&reading.time)
+        };
+        if to > from + 1 && gap > MAX_HEADING_INTERVAL * usual && !trial.rejected().iter().any(is_in_gap) {
             count += (gap / usual).round() as usize - 1;
             longest = if gap > longest.1 { (begin, gap) } else { longest };
         }
@@ -321,7 +320,7 @@ fn missing_headings(trial: &Trial) -> Option<Warning> {
     (count > 0).then(|| Code::MissingValues.warning(text()))
 }
 
-/// Names gaps in time that are long against the sampling.
+/// Warning of gaps in time that are long against the sampling period.
 fn gaps(trial: &Trial) -> Option<Warning> {
     let period = trial.sampling_period();
     let steps = trial.time().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
@@ -329,7 +328,7 @@ fn gaps(trial: &Trial) -> Option<Warning> {
     let (mut count, mut moved) = (0, 0);
     for (row, (begin, step)) in steps.enumerate().filter(|(_, (_, step))| *step > 10.0 * period) {
         count += 1;
-        moved += usize::from(to_deg((trial.rudder()[row + 1] - trial.rudder()[row]).abs()) > MOVED_DEG);
+        moved += usize::from(to_deg((trial.rudder()[row + 1] - trial.rudder()[row]).abs()) > MIN_RUDDER_RANGE_DEG);
         if step > longest.1 {
             longest = (begin, step);
         }
@@ -338,7 +337,7 @@ fn gaps(trial: &Trial) -> Option<Warning> {
         let (begin, step) = longest;
         let under_way = match moved {
             0 => String::new(),
-            _ => format!("; in {moved} of them the rudder moved at an unknown time, which makes K and T wrong"),
+            _ => format!("; the rudder moved in {moved} of them at an unknown time, which makes K and T wrong"),
         };
         Code::Gap.warning(format!(
             "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s{under_way}",

@@ -57,29 +57,29 @@ pub struct Columns {
     pub time: Vec<f64>,
     /// All other quantities by name; each as long as `time`.
     pub channels: BTreeMap<Channel, Vec<f64>>,
-    /// Columns with a name that is not known, carried as they are.
+    /// Columns with an unknown name, carried unchanged.
     pub unknown: Vec<(String, Vec<f64>)>,
 }
 
 impl Columns {
-    /// Leaves out rows; `keep` has one answer for each.
+    /// Leaves out rows; `keep` has one flag per row.
     pub(crate) fn retain(&mut self, keep: &[bool]) {
-        let of = |values: &mut Vec<f64>| {
+        let retain_rows = |values: &mut Vec<f64>| {
             let mut keep = keep.iter();
             values.retain(|_| keep.next().is_none_or(|keep| *keep));
         };
-        of(&mut self.time);
-        self.channels.values_mut().for_each(of);
-        self.unknown.iter_mut().for_each(|(_, values)| of(values));
+        retain_rows(&mut self.time);
+        self.channels.values_mut().for_each(retain_rows);
+        self.unknown.iter_mut().for_each(|(_, values)| retain_rows(values));
     }
 }
 
-/// A reading that was taken as missing, or told as doubtful, before the record was made.
+/// A reading that cleaning took as missing or reported as doubtful.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RejectedReading {
-    /// What was read.
+    /// Channel of the reading.
     pub channel: Channel,
-    /// When, s.
+    /// Time, s.
     pub time: f64,
     /// The reading, in SI units and radians; of a heading unwrapped.
     pub value: f64,
@@ -96,7 +96,7 @@ pub enum TrialError {
     #[error("{channel:?} has {found} values, time has {expected}")]
     Length { channel: Channel, found: usize, expected: usize },
     /// Too short to be a manoeuvre.
-    #[error("a record needs at least {needed} rows with heading and rudder, this one has {found}")]
+    #[error("a record needs at least {needed} rows with heading and rudder; this record has {found}")]
     TooShort { needed: usize, found: usize },
     /// Time does not increase or is not finite.
     #[error("time must increase: row {row} has {time} s after {before} s")]
@@ -137,20 +137,22 @@ pub struct Trial {
     rejected: Vec<RejectedReading>,
 }
 
-/// The rudder over time, of as many values as times.
+/// Rudder angle (rad) over time (s) through every row. Fails where time does not increase or an angle is not finite.
 fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
-    let found = time.len();
+    let rows = time.len();
     Polyline::new(time, rudder).map_err(|error| match error {
         SignalError::Point { index: row, before, time, .. } if time.is_finite() && time > before => {
             TrialError::Rudder { row }
         }
         SignalError::Point { index: row, before, time, .. } => TrialError::Time { row, before, time },
-        SignalError::Empty | SignalError::Lengths { .. } => TrialError::TooShort { needed: Trial::FEWEST_ROWS, found },
+        SignalError::Empty | SignalError::Lengths { .. } => {
+            TrialError::TooShort { needed: Trial::FEWEST_ROWS, found: rows }
+        }
     })
 }
 
 impl Trial {
-    /// Fewest rows with a heading that make a record.
+    /// Minimum number of rows with a heading.
     pub const FEWEST_ROWS: usize = 8;
 
     /// Checks the columns and makes the record.
@@ -171,9 +173,9 @@ impl Trial {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
             channels.insert(Channel::Heading, integrate(rudder.rows.times(), rate));
         }
-        let found = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
-        if found < Self::FEWEST_ROWS {
-            return Err(TrialError::TooShort { needed: Self::FEWEST_ROWS, found });
+        let headings = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
+        if headings < Self::FEWEST_ROWS {
+            return Err(TrialError::TooShort { needed: Self::FEWEST_ROWS, found: headings });
         }
         Ok(Self {
             name: name.into(),
@@ -199,12 +201,12 @@ impl Trial {
         Self { particulars: Some(particulars), ..self }
     }
 
-    /// The same record with what is declared of ship and trial for the form of MSC/Circ.1053.
+    /// The same record with the declared conditions of the trial (form of MSC/Circ.1053).
     pub fn with_conditions(self, conditions: Conditions) -> Self {
         Self { conditions, ..self }
     }
 
-    /// The same record with the readings that were taken as missing or told as doubtful.
+    /// The same record with its rejected readings: those taken as missing or reported as doubtful.
     pub fn with_rejected(self, rejected: Vec<RejectedReading>) -> Self {
         Self { rejected, ..self }
     }
@@ -229,7 +231,7 @@ impl Trial {
         self.time().len()
     }
 
-    /// Never: a record has at least [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows.
+    /// Always `false`: a record has at least [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows.
     pub fn is_empty(&self) -> bool {
         self.time().is_empty()
     }
@@ -244,10 +246,10 @@ impl Trial {
         self.time()[self.len() - 1] - self.time()[0]
     }
 
-    /// Median time between rows, s; of very many rows, of a hundred thousand of them.
+    /// Median time between rows, s; in a long record the median of a hundred thousand evenly chosen intervals.
     pub fn sampling_period(&self) -> f64 {
-        const ENOUGH: usize = 100_000;
-        let pairs = self.time().windows(2).step_by(self.len() / ENOUGH + 1);
+        const MAX_INTERVALS: usize = 100_000;
+        let pairs = self.time().windows(2).step_by(self.len() / MAX_INTERVALS + 1);
         upper_median(pairs.map(|pair| pair[1] - pair[0])).expect("a record has rows")
     }
 
@@ -286,7 +288,7 @@ impl Trial {
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         match channel {
             Channel::Rudder => Some(self.rudder()),
-            other => self.channels.get(&other).map(Vec::as_slice),
+            channel => self.channels.get(&channel).map(Vec::as_slice),
         }
     }
 
@@ -295,7 +297,7 @@ impl Trial {
         self.channels.iter().map(|(&channel, values)| (channel, values.as_slice()))
     }
 
-    /// Columns with a name that is not known, as they were read.
+    /// Columns with an unknown name, as they were read.
     pub fn unknown(&self) -> &[(String, Vec<f64>)] {
         &self.unknown
     }
@@ -305,7 +307,7 @@ impl Trial {
         self.noise
     }
 
-    /// Readings that were taken as missing or told as doubtful before the record was made.
+    /// Readings that cleaning took as missing or reported as doubtful.
     pub fn rejected(&self) -> &[RejectedReading] {
         &self.rejected
     }
@@ -315,27 +317,27 @@ impl Trial {
         self.particulars
     }
 
-    /// What is known of the hull, where length and speed are.
+    /// Declared particulars of the hull; `None` where length and speed are not declared.
     pub fn hull(&self) -> Option<HullParticulars> {
         self.particulars.map(|Particulars { length, speed }| HullParticulars { length, speed, ..self.conditions.hull })
     }
 
-    /// What is declared of ship and trial for the form of MSC/Circ.1053.
+    /// Declared conditions of the trial (form of MSC/Circ.1053).
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }
 
-    /// Whether a calm is declared.
+    /// `true` where the sidecar declares a calm.
     pub fn is_calm(&self) -> bool {
         self.conditions.weather == Some(DeclaredWeather::Calm)
     }
 
-    /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for.
+    /// Deviations from the trial conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared.
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
-        let mut found = self.conditions.shortcomings();
+        let mut shortcomings = self.conditions.shortcomings();
         let seconds = self.sampling_period();
-        found.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
-        found
+        shortcomings.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
+        shortcomings
     }
 
     /// Rows in which the heading was recorded.
@@ -344,7 +346,7 @@ impl Trial {
     }
 }
 
-/// Trapezoid integral of a rate from 0, NaN where that is missing: there the neighbours are joined by a straight line.
+/// Trapezoid integral of a rate, from 0. NaN where the rate is missing; the integral runs on between its neighbours.
 pub(crate) fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
     let mut total = 0.0;
     let mut last: Option<(f64, f64)> = None;
@@ -367,17 +369,17 @@ pub(crate) fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// What has no dimension stays, there and back is where one was, and nothing is scaled from an unknown scale.
+    /// Dimensionless quantities are invariant, scaling back is the identity, and an unknown scale gives no record.
     #[test]
     fn another_scale_keeps_what_has_no_dimension() {
         let time: Vec<f64> = (0..60).map(|row| 3.0 + 0.5 * f64::from(row)).collect();
-        let of = |value: fn(f64) -> f64| time.iter().map(|t| value(*t)).collect::<Vec<f64>>();
+        let values_of = |value: fn(f64) -> f64| time.iter().map(|t| value(*t)).collect::<Vec<f64>>();
         let channels = [
-            (Channel::Rudder, of(|t| 0.1 * (0.3 * t).sin())),
-            (Channel::Heading, of(|t| 0.2 * (0.3 * t).cos())),
-            (Channel::YawRate, of(|t| -0.06 * (0.3 * t).sin())),
-            (Channel::Speed, of(|_| 1.2)),
-            (Channel::North, of(|t| 1.2 * t)),
+            (Channel::Rudder, values_of(|t| 0.1 * (0.3 * t).sin())),
+            (Channel::Heading, values_of(|t| 0.2 * (0.3 * t).cos())),
+            (Channel::YawRate, values_of(|t| -0.06 * (0.3 * t).sin())),
+            (Channel::Speed, values_of(|_| 1.2)),
+            (Channel::North, values_of(|t| 1.2 * t)),
         ];
         let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
         let columns = Columns { time: time.clone(), channels: channels.into(), unknown: Vec::new() };
@@ -387,8 +389,8 @@ mod tests {
         let trial = trial.with_particulars(model).with_noise(Noise { yaw_rate: Some(0.01), ..Noise::default() });
         let large = trial.scaled_to(ship).expect("a known scale");
         let prime = |trial: &Trial, channel: Channel| {
-            let own = trial.particulars().expect("declared").prime(channel.dimension());
-            trial.channel(channel).expect("a channel")[20] * own
+            let factor = trial.particulars().expect("declared").prime(channel.dimension());
+            trial.channel(channel).expect("a channel")[20] * factor
         };
         for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::Speed, Channel::North] {
             assert!((prime(&trial, channel) - prime(&large, channel)).abs() < 1e-12, "{channel:?}");

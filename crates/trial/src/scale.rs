@@ -1,5 +1,7 @@
-//! Records of similar ships of different length: which have a scale in common, how all are brought to that of
-//! the first, and whether a number that was found at each scale is the same in prime units. It fits nothing.
+//! Scales of records of similar ships of different length: groups of equal scale, conversion to the scale of the first
+//! record, and a comparison of dimensionless estimates between scales.
+//!
+//! Source: Froude (1868) for V ~ √L; the prime system for any speed.
 
 use document::Quantity;
 use document::scales::Scaling;
@@ -8,20 +10,20 @@ use thiserror::Error;
 
 use crate::record::Trial;
 
-/// Lengths that differ by no more than this share are those of one ship. Speeds of one ship are no scales: whether K
-/// and T follow the speed is for the records to say.
-const SAME: f64 = 0.05;
+/// Tolerance of equal lengths, as a share. Different speeds of the same ship are not different scales: the records show
+/// whether K and T follow the speed.
+const LENGTH_TOLERANCE: f64 = 0.05;
 
-/// Why records cannot be brought to one scale.
+/// Error of records that cannot be brought to a common scale.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ScaleError {
     /// A record of unknown length and speed among records of several scales.
     #[error(
-        "the records are of {scales} scales, and length and speed of {record} are not declared; declare them in its sidecar"
+        "the records have {scales} scales, but length and speed of {record} are not declared; declare them in its sidecar"
     )]
     Unknown { record: String, scales: usize },
-    /// Length or speed are no positive numbers.
+    /// Length or speed is not positive.
     #[error("{record}: length {length} m and speed {speed} m/s have to be positive for a change of scale")]
     NotPositive { record: String, length: f64, speed: f64 },
 }
@@ -31,23 +33,23 @@ pub enum ScaleError {
 pub struct Scales {
     /// Length and speed of the first record of every length.
     pub particulars: Vec<Particulars>,
-    /// The scale of every record.
+    /// Index of the scale of every record.
     pub of: Vec<usize>,
 }
 
 impl Scales {
-    /// The scales of records; `None` where all have one, or where it is not declared for enough of them to differ.
+    /// The scales of records; `None` where the declared scales do not differ.
     ///
-    /// Fails where records differ in scale and one has none.
+    /// Fails where records differ in scale and a record declares none.
     pub fn among<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
-        let near = |one: f64, other: f64| (one - other).abs() <= SAME * other.abs();
         let mut particulars: Vec<Particulars> = Vec::new();
         let mut of = Vec::new();
-        for own in trials.clone().map(Trial::particulars) {
-            of.push(own.map(|own| {
-                let is_of = |known: &Particulars| near(own.length, known.length);
-                particulars.iter().position(is_of).unwrap_or_else(|| {
-                    particulars.push(own);
+        for declared in trials.clone().map(Trial::particulars) {
+            of.push(declared.map(|ship| {
+                let is_scale =
+                    |first: &Particulars| (ship.length - first.length).abs() <= LENGTH_TOLERANCE * first.length.abs();
+                particulars.iter().position(is_scale).unwrap_or_else(|| {
+                    particulars.push(ship);
                     particulars.len() - 1
                 })
             }));
@@ -56,68 +58,68 @@ impl Scales {
         if scales < 2 {
             return Ok(None);
         }
-        for (trial, own) in trials.clone().zip(&of) {
+        for (trial, scale) in trials.clone().zip(&of) {
             let record = || trial.name().to_owned();
             match trial.particulars() {
                 Some(Particulars { length, speed }) if !(length > 0.0 && speed > 0.0) => {
                     return Err(ScaleError::NotPositive { record: record(), length, speed });
                 }
-                _ if own.is_none() => return Err(ScaleError::Unknown { record: record(), scales }),
+                _ if scale.is_none() => return Err(ScaleError::Unknown { record: record(), scales }),
                 _ => {}
             }
         }
         Ok(Some(Self { particulars, of: of.into_iter().flatten().collect() }))
     }
 
-    /// Records that are all brought to the scale of the first, each from its own length and speed.
+    /// Records converted to the scale of the first, each from its declared length and speed.
     pub fn bring_together(&self, trials: Vec<Trial>) -> Vec<Trial> {
-        let one = |trial: Trial| trial.scaled_to(self.particulars[0]).unwrap_or(trial);
-        trials.into_iter().map(one).collect()
+        let scaled = |trial: Trial| trial.scaled_to(self.particulars[0]).unwrap_or(trial);
+        trials.into_iter().map(scaled).collect()
     }
 
-    /// Numbers of the first `count` records, one list for every scale that is among them.
+    /// Indices of the first `count` records, grouped by scale.
     pub fn groups(&self, count: usize) -> Vec<(Particulars, Vec<usize>)> {
-        let own = |scale: usize| (0..count.min(self.of.len())).filter(|&record| self.of[record] == scale).collect();
-        let all = self.particulars.iter().enumerate().map(|(scale, particulars)| (*particulars, own(scale)));
+        let records = |scale: usize| (0..count.min(self.of.len())).filter(|&record| self.of[record] == scale).collect();
+        let all = self.particulars.iter().enumerate().map(|(scale, particulars)| (*particulars, records(scale)));
         all.filter(|(_, records): &(_, Vec<usize>)| !records.is_empty()).collect()
     }
 }
 
-/// Standard deviations from which on a difference is no chance: one in 370 of a normal law.
-const FAR: f64 = 3.0;
+/// Minimum significant difference, standard deviations: one in 370 of a normal distribution.
+const SIGNIFICANT_SDS: f64 = 3.0;
 
-/// A difference of this share of the value has to be visible before "scales" is said.
-const TELLING: f64 = 0.25;
+/// Difference, as a share of the value, that has to be significant before a number is said to scale.
+const RESOLVED_SHARE: f64 = 0.25;
 
-/// A number is not known better than this share of it.
+/// Minimum relative standard deviation: the rounding of the arithmetic.
 const ROUNDING: f64 = 1e-12;
 
-/// Holds numbers without dimension, found independently at different scales, against each other: the largest
-/// difference of two, x₂ − x₁ in units of √(s₁² + s₂²), and what it says. The difference is `None` where fewer
-/// than two of the numbers have a standard deviation.
-pub fn scaling(found: &[Quantity]) -> (Option<f64>, Scaling) {
-    let known: Vec<(f64, f64)> = found
+/// Comparison of independent dimensionless estimates at different scales: the largest difference of two, x₂ − x₁ in
+/// units of √(s₁² + s₂²), and its verdict. The difference is `None` where fewer than two estimates have a standard
+/// deviation.
+pub fn scaling(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
+    let with_sd: Vec<(f64, f64)> = estimates
         .iter()
-        .filter_map(|one| Some((one.value, one.sd?)))
+        .filter_map(|estimate| Some((estimate.value, estimate.sd?)))
         .filter(|(value, sd)| value.is_finite() && sd.is_finite())
         .collect();
     let mut largest: Option<f64> = None;
-    let mut is_telling = known.len() == found.len();
-    for (number, one) in known.iter().enumerate() {
-        for other in &known[number + 1..] {
-            let size = one.0.abs().max(other.0.abs());
-            // Records without noise know a number to its rounding and no better.
-            let sd = one.1.hypot(other.1).max(ROUNDING * size);
-            let difference = (other.0 - one.0) / sd;
-            is_telling &= FAR * sd <= TELLING * size;
+    let mut is_resolved = with_sd.len() == estimates.len();
+    for (number, first) in with_sd.iter().enumerate() {
+        for second in &with_sd[number + 1..] {
+            let size = first.0.abs().max(second.0.abs());
+            // Records without noise give an estimate to its rounding.
+            let sd = first.1.hypot(second.1).max(ROUNDING * size);
+            let difference = (second.0 - first.0) / sd;
+            is_resolved &= SIGNIFICANT_SDS * sd <= RESOLVED_SHARE * size;
             if difference.is_finite() && largest.is_none_or(|largest| difference.abs() > largest.abs()) {
                 largest = Some(difference);
             }
         }
     }
     let word = match largest {
-        Some(difference) if difference.abs() > FAR => Scaling::DoesNotScale,
-        Some(_) if is_telling => Scaling::Scales,
+        Some(difference) if difference.abs() > SIGNIFICANT_SDS => Scaling::DoesNotScale,
+        Some(_) if is_resolved => Scaling::Scales,
         _ => Scaling::CannotBeTold,
     };
     (largest, word)

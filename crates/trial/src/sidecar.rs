@@ -1,8 +1,8 @@
-//! The sidecar: a small TOML file that tells how a table that does not follow the naming contract is to be read. It
-//! describes; reading is done in [`crate::reader`].
+//! Sidecar: a small TOML file that describes a table whose columns are not named `quantity_unit`. The table is read in
+//! [`crate::reader`].
 //!
-//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
-//! [`keys`] lists what it may say; none of it is required.
+//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar has to be named.
+//! [`keys`] lists its keys; none is required.
 
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -21,37 +21,36 @@ use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
 pub use crate::sidecar_keys::{Key, keys, schema};
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// A sidecar; the longest in use has a hundred lines.
+/// Kind of file of a sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
 
-/// Which column of a table is meant.
+/// Reference to a column of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Which {
-    /// By place, from 0.
-    Place(usize),
-    /// By its name in the header.
+    /// Index, from 0.
+    Index(usize),
+    /// Name in the header.
     Name(String),
-    /// None of the table: it is worked out of others.
+    /// A new column, computed from others.
     Formula(ColumnFormula),
 }
 
-/// One `[[column]]`, checked.
+/// A checked `[[column]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
     pub(crate) which: Which,
     pub(crate) meaning: Option<ColumnMeaning>,
-    /// What one of its numbers stands for; negative where the sign is changed.
+    /// Value of a unit of its numbers; negative where the sign is changed.
     pub(crate) scale: f64,
-    /// The number at zero.
+    /// Number at a value of zero.
     pub(crate) zero: f64,
     pub(crate) ignore: bool,
 }
 
-/// A sidecar that was read and checked as far as it can be without its table; the empty one is that of a table which
-/// needs none.
+/// A sidecar, checked as far as possible without its table; the default is the empty sidecar.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sidecar {
     pub(crate) file: PathBuf,
@@ -66,18 +65,18 @@ pub struct Sidecar {
 }
 
 impl Sidecar {
-    /// Where the sidecar of a table is looked for: `NAME.trial.toml` beside `NAME.*`.
+    /// Path of the sidecar of a table: `NAME.trial.toml` beside `NAME.*`.
     pub fn beside(table: &Path) -> PathBuf {
         table.with_extension("trial.toml")
     }
 
-    /// The sidecar of a table, where there is one beside it.
+    /// Path of the sidecar of a table, if the file exists.
     pub fn found_beside(table: &Path) -> Option<PathBuf> {
         Some(Self::beside(table)).filter(|beside| beside.is_file())
     }
 
-    /// The sidecar that describes a table: the one that is given, or of a folder of them the one under its name; else
-    /// the one beside it.
+    /// Path of the sidecar that describes a table: the given file, or the file under its name in the given folder; else
+    /// the file beside the table.
     pub fn describing(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
         let given = given.and_then(|given| match given.is_dir() {
             true => Self::found_beside(&given.join(table.file_name()?)),
@@ -100,8 +99,8 @@ impl Sidecar {
 
     /// Checks the text of a sidecar; `file` is its name in messages.
     ///
-    /// Fails on text that is not TOML, keys and quantities that are not known, and numbers outside their range; the
-    /// error points to the line.
+    /// Fails on text that is not TOML, unknown keys and quantities, and numbers outside their range; the error points to
+    /// the line.
     pub fn parse(text: &str, file: &Path) -> Result<Self, SidecarError> {
         resolve(text, file).map_err(|(span, problem)| SidecarError {
             file: file.to_path_buf(),
@@ -114,17 +113,17 @@ impl Sidecar {
         SidecarError { file: self.file.clone(), line: Some(line), problem }
     }
 
-    /// Whether a line with names comes before the rows.
+    /// `true` for a table with a header.
     pub(crate) fn has_header(&self) -> bool {
         self.table.header.unwrap_or(true)
     }
 
-    /// The times that are used, s.
+    /// Part of the record that is used, s.
     pub(crate) fn part(&self) -> RangeInclusive<f64> {
         self.part.from_s.unwrap_or(f64::NEG_INFINITY)..=self.part.until_s.unwrap_or(f64::INFINITY)
     }
 
-    /// Whether readings are cleaned, and a record that contradicts itself is refused.
+    /// `true` where readings are cleaned and an implausible record is refused.
     pub(crate) fn is_checked(&self) -> bool {
         self.check.plausibility.unwrap_or(true)
     }
@@ -135,13 +134,13 @@ fn line_of(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
 
-/// Where a key of a table stands in the text, and its table where the key is not there.
-fn place(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
-    place_of_key(document, table, key).or_else(|| Some(entry(document, table)?.span()))
+/// Position of a key in the text, or of its table where the key is absent.
+fn span(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
+    key_span(document, table, key).or_else(|| Some(entry(document, table)?.span()))
 }
 
-/// The same of the key alone; one above the tables has none, "".
-fn place_of_key(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
+/// Position of a key in the text; `table` is empty for a key above the tables.
+fn key_span(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
     let keys = if table.is_empty() { document } else { entry(document, table)?.get_ref().as_table()? };
     Some(entry(keys, key)?.span())
 }
@@ -150,7 +149,7 @@ fn entry<'a, 'b>(table: &'a DeTable<'b>, wanted: &str) -> Option<&'a Spanned<DeV
     table.iter().find(|(key, _)| key.get_ref() == wanted).map(|(_, value)| value)
 }
 
-/// What a number or text may be that is checked before it is used: whether this one is so, and the words for it.
+/// Rule of a value: `true` for a valid value, and the description of valid values; `None` for a key without a rule.
 fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'static str)> {
     let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).filter(|x| x.is_finite());
     let above_zero = number.is_some_and(|number| number > 0.0);
@@ -186,13 +185,13 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
     })
 }
 
-/// Checks every value that is there by itself.
+/// Checks every value without regard to others.
 fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
     let values: toml::Table = text.parse().map_err(syntax)?;
     for Key { key: name, value: kind, .. } in keys() {
         let (table, key) = name.split_once(' ').unwrap_or(("", &name));
         let table = table.trim_matches(['[', ']']);
-        let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|own| own.get(key)) };
+        let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|keys| keys.get(key)) };
         let Some(value) = value else { continue };
         if let Some((false, expected)) = rule(table, key, &kind, value) {
             return Err(unfit(text, document, table, key, expected));
@@ -202,9 +201,9 @@ fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
 }
 
 fn unfit(text: &str, document: &DeTable, table: &str, key: &str, expected: &'static str) -> Fault {
-    let place = place(document, table, key);
-    let found = place.clone().and_then(|place| text.get(place)).map(shortened).unwrap_or_default();
-    (place, SidecarProblem::Value { key: key.to_owned(), found, expected })
+    let span = span(document, table, key);
+    let value = span.clone().and_then(|span| text.get(span)).map(shortened).unwrap_or_default();
+    (span, SidecarProblem::Value { key: key.to_owned(), value, expected })
 }
 
 fn syntax(error: toml::de::Error) -> Fault {
@@ -229,32 +228,32 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     // NaN is below nothing.
     if from_s.partial_cmp(&until_s) != Some(std::cmp::Ordering::Less) {
         let key = if sidecar.part.until_s.is_some() { "until-s" } else { "from-s" };
-        return Err((place(&document, "part", key), SidecarProblem::Part { from_s, until_s }));
+        return Err((span(&document, "part", key), SidecarProblem::Part { from_s, until_s }));
     }
     Ok(sidecar)
 }
 
-/// What [form] and [ship] declare, each of which may hold a particular that both have.
+/// Conditions declared by [form] and [ship] together; a particular of both tables may be in either.
 fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Conditions) -> Result<Conditions, Fault> {
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
     if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
-        return Err((place(document, "ship", ""), SidecarProblem::Ship));
+        return Err((span(document, "ship", ""), SidecarProblem::Ship));
     }
     let has_form = hull.has_form();
     hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
     let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
     let mut conditions = Conditions { particulars, ..form };
     if let Some(key) = conditions.join(hull) {
-        return Err(unfit(text, document, "form", key, "what [ship] says, or nothing"));
+        return Err(unfit(text, document, "form", key, "the value of [ship], or no value"));
     }
     if let Some((key, expected)) = conditions.contradiction() {
-        let table = if place_of_key(document, "form", key).is_some() { "form" } else { "ship" };
+        let table = if key_span(document, "form", key).is_some() { "form" } else { "ship" };
         return Err(unfit(text, document, table, key, expected));
     }
     if has_form && let Err(error) = conditions.hull.check() {
-        let own = place_of_key(document, "ship", error.key).or_else(|| place_of_key(document, "form", error.key));
-        return Err((own.or_else(|| place(document, "ship", "")), SidecarProblem::Particulars(Box::new(error))));
+        let key = key_span(document, "ship", error.key).or_else(|| key_span(document, "form", error.key));
+        return Err((key.or_else(|| span(document, "ship", "")), SidecarProblem::Particulars(Box::new(error))));
     }
     Ok(conditions)
 }
@@ -267,10 +266,10 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
             let problem = error.to_string();
             (Some(formula.span()), SidecarProblem::Formula { problem })
         })?),
-        (.., Some(_)) | (Some(_), Some(_), None) => return fault(SidecarProblem::Which { found: "both" }),
-        (None, None, None) => return fault(SidecarProblem::Which { found: "neither" }),
-        (Some(0), None, None) => return fault(SidecarProblem::Which { found: "index 0" }),
-        (Some(index), None, None) => Which::Place(index - 1),
+        (.., Some(_)) | (Some(_), Some(_), None) => return fault(SidecarProblem::Which { given: "both" }),
+        (None, None, None) => return fault(SidecarProblem::Which { given: "neither" }),
+        (Some(0), None, None) => return fault(SidecarProblem::Which { given: "index 0" }),
+        (Some(index), None, None) => Which::Index(index - 1),
         (None, Some(_), None) if !header => return fault(SidecarProblem::NameWithoutHeader),
         (None, Some(name), None) => Which::Name(name.trim().to_owned()),
     };
@@ -283,27 +282,25 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
         return fault(if is_formula { formula_without_meaning() } else { SidecarProblem::Idle });
     }
     let number = |key: &str, value: Option<f64>, absent: f64| match value.unwrap_or(absent) {
-        own if own.is_finite() && (own != 0.0 || key == "zero") => Ok(own),
-        own => {
-            let (key, found) = (key.to_owned(), own.to_string());
-            Err((
-                Some(column.span()),
-                SidecarProblem::Value { key, found, expected: "a finite number, a scale other than 0" },
-            ))
+        number if number.is_finite() && (number != 0.0 || key == "zero") => Ok(number),
+        number => {
+            let (key, value) = (key.to_owned(), number.to_string());
+            let expected = "a finite number, and a scale other than 0";
+            Err((Some(column.span()), SidecarProblem::Value { key, value, expected }))
         }
     };
     let sign = if *flip { -1.0 } else { 1.0 };
     let (scale, zero) = (sign * number("scale", *scale, 1.0)?, number("zero", *zero, 0.0)?);
-    let known = |is: &Spanned<String>| {
-        let found = || SidecarProblem::UnknownQuantity { found: shortened(is.get_ref()) };
-        contract(is.get_ref()).ok_or_else(|| (Some(is.span()), found()))
+    let meaning_of = |is: &Spanned<String>| {
+        let unknown = || SidecarProblem::UnknownQuantity { name: shortened(is.get_ref()) };
+        contract(is.get_ref()).ok_or_else(|| (Some(is.span()), unknown()))
     };
-    let meaning = is.as_ref().map(known).transpose()?;
+    let meaning = is.as_ref().map(meaning_of).transpose()?;
     Ok(DescribedColumn { line: line_of(text, column.span().start), which, meaning, scale, zero, ignore: *ignore })
 }
 
 fn formula_without_meaning() -> SidecarProblem {
-    SidecarProblem::Formula { problem: "a column that is worked out needs `is`, to say what it holds".into() }
+    SidecarProblem::Formula { problem: "a column with a formula needs `is` for its quantity".into() }
 }
 
 #[cfg(test)]
@@ -344,7 +341,7 @@ mod tests {
         assert_eq!((sidecar.part(), table.time_step_s), (20.0..=110.0, Some(0.1)));
         assert_eq!(sidecar.columns.len(), 2);
         assert_eq!(sidecar.columns[0].line, 11);
-        assert_eq!(sidecar.columns[0].which, Which::Place(3));
+        assert_eq!(sidecar.columns[0].which, Which::Index(3));
         assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
         let particulars = sidecar.conditions.particulars.expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
@@ -393,7 +390,7 @@ mod tests {
             ("[table]\nheader = \n", 2, ""),
             ("[table]\ntime-step-s = -0.1\n", 2, "`time-step-s` is -0.1, expected a finite number above zero"),
             ("[part]\nfrom-s = 3.0\nuntil-s = 2.0\n", 3, "from 3 s until 2 s"),
-            ("[part]\nfrom-s = nan\n", 2, "holds nothing"),
+            ("[part]\nfrom-s = nan\n", 2, "is empty"),
             ("[part]\nevery = 0\n", 2, "`every` is 0"),
             ("\n[[column]]\nindex = 1\nis = \"heding_deg\"\n", 4, "`is = \"heding_deg\"` is no known column name"),
             ("\n[[column]]\nis = \"heading_deg\"\n", 2, "this one has neither"),
@@ -412,7 +409,7 @@ mod tests {
             (
                 "[ship]\nlength-m = 320\nspeed-kn = 15\nbeam-m = 58\n[form]\nbeam-m = 32\n",
                 6,
-                "`beam-m` is 32, expected what [ship] says",
+                "`beam-m` is 32, expected the value of [ship]",
             ),
             ("[noise]\nheading-deg = 0\n", 2, "`heading-deg` is 0"),
             ("[form]\nbeam = 58\n", 2, "unknown field `beam`"),

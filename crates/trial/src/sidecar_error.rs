@@ -1,4 +1,4 @@
-//! What is wrong with a sidecar, and where.
+//! Errors of a sidecar, with their line.
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -8,38 +8,38 @@ use thiserror::Error;
 
 use crate::file::FileError;
 
-/// What is wrong with a sidecar, and where.
+/// Error of a sidecar, with its file and line.
 #[derive(Debug, Error)]
 #[error("{}:{} {problem}", file.display(), line.map_or_else(String::new, |line| format!(" line {line}:")))]
 pub struct SidecarError {
     /// The sidecar.
     pub file: PathBuf,
-    /// Line, from 1, where one is known.
+    /// Line, from 1; `None` for a problem of the whole file.
     pub line: Option<usize>,
-    /// What is wrong there.
+    /// The problem.
     pub problem: SidecarProblem,
 }
 
-/// What is wrong with a sidecar.
+/// Problem of a sidecar.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum SidecarProblem {
     /// The file cannot be read.
     #[error("the sidecar cannot be used: {0}")]
     File(FileError),
-    /// Not TOML, or a key or value that is not known.
+    /// Not TOML, or an unknown key or value.
     #[error("{message}")]
     Syntax { message: String },
-    /// `is` names no quantity.
+    /// `is` is not a quantity.
     #[error(
-        "`is = \"{found}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, rudder_deg, \
-         yaw_rate_deg_s, speed_m_s or speed_kn"
+        "`is = \"{name}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, \
+         rudder_deg, yaw_rate_deg_s, speed_m_s or speed_kn"
     )]
-    UnknownQuantity { found: String },
-    /// A column that is not pointed at, or twice.
-    #[error("a [[column]] needs either `index` (from 1) or `name`, and this one has {found}")]
-    Which { found: &'static str },
-    /// A column that says nothing.
+    UnknownQuantity { name: String },
+    /// A column without index and name, or with both.
+    #[error("a [[column]] needs either `index` (from 1) or `name`, but this one has {given}")]
+    Which { given: &'static str },
+    /// A column without a description.
     #[error("this [[column]] says nothing; add `is`, `flip = true`, `scale`, `zero` or `ignore = true`")]
     Idle,
     /// `ignore` beside other keys.
@@ -49,11 +49,11 @@ pub enum SidecarProblem {
     #[error("`formula`: {problem}")]
     Formula { problem: String },
     /// A name, but the table has no header.
-    #[error("`name` needs a header and [table] says `header = false`; use `index`")]
+    #[error("`name` needs a header, but [table] says `header = false`; use `index`")]
     NameWithoutHeader,
     /// The name is not in the header.
-    #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::words::listed(found))]
-    NameNotFound { name: String, table: PathBuf, found: Vec<String> },
+    #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::wording::listed(header))]
+    NameNotFound { name: String, table: PathBuf, header: Vec<String> },
     /// Columns described in a log of sentences.
     #[error("the file holds sentences or messages (NMEA), which have no columns; remove every [[column]]")]
     NoTable,
@@ -63,22 +63,22 @@ pub enum SidecarProblem {
     /// Two entries for one column.
     #[error("the column `{name}` is described twice; keep one [[column]] for it")]
     DescribedTwice { name: String },
-    /// The column keeps its own name, which says nothing.
-    #[error("the name `{name}` of this column is not a known one; add `is` to say what it holds")]
+    /// The column keeps its name, which has no meaning.
+    #[error("the column name `{name}` is unknown; add `is` to say what the column holds")]
     NameSaysNothing { name: String },
     /// A part that ends before it begins, or whose bounds are not numbers.
-    #[error("the part from {from_s} s until {until_s} s holds nothing; expected numbers with `from-s` below `until-s`")]
+    #[error("the part from {from_s} s until {until_s} s is empty; expected numbers with `from-s` below `until-s`")]
     Part { from_s: f64, until_s: f64 },
     /// Length or speed alone, or two speeds.
     #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
     Ship,
-    /// Particulars that no ship has.
+    /// Implausible particulars.
     #[error("{0}")]
     Particulars(Box<ParticularsError>),
-    /// A value that no ship, trial or table has.
-    #[error("`{key}` is {found}, expected {expected}")]
-    Value { key: String, found: String, expected: &'static str },
+    /// A value outside its range.
+    #[error("`{key}` is {value}, expected {expected}")]
+    Value { key: String, value: String, expected: &'static str },
 }
 
-/// What is wrong, and the bytes of the text where it is.
+/// A problem with its position in the text.
 pub(crate) type Fault = (Option<Range<usize>>, SidecarProblem);

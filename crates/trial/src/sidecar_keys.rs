@@ -1,5 +1,5 @@
-//! The keys of a sidecar, each declared by the field that it is read into; the last words of the field's comment, in
-//! brackets, say what the value may be. The JSON schema and the list of keys are made of them.
+//! Keys of a sidecar, each declared by its field; the brackets at the end of the field's comment hold the kind of its
+//! value. The JSON schema and the list of keys are made from these comments.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ use crate::cells::Separator;
 use crate::conditions::{Conditions, DeclaredWeather};
 use crate::encoding::Encoding;
 
-// The tables of the file. Comments on fields are what `study list sidecar` and the JSON schema say of a key.
+// The tables of the file. Comments on fields are the descriptions in `study list sidecar` and in the JSON schema.
 
 #[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -123,7 +123,7 @@ const SPEED_KN: &str = "speed-kn";
 static SHIP_KEYS: LazyLock<Vec<&str>> =
     LazyLock::new(|| PARTICULARS.iter().map(|particular| particular.key).chain([SPEED_KN]).collect());
 
-/// A key that is one of them, refused where it stands otherwise.
+/// A key of [ship]; any other key is refused.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ShipKey(String);
 
@@ -156,15 +156,15 @@ impl JsonSchema for ShipKeys {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let own = |Particular { key, meaning, unit, .. }: &Particular| match *key {
+        let description = |Particular { key, meaning, unit, .. }: &Particular| match *key {
             "length-m" => (*key, format!("{meaning}; needs a speed beside it. ({unit})")),
             _ => (*key, format!("{meaning}. ({unit})")),
         };
         let knots = (SPEED_KN, String::from("The approach speed in knots. (kn)"));
-        let number = |(key, said): (&str, String)| {
-            (key.to_owned(), json!({ "description": said, "type": ["number", "null"], "format": "double" }))
+        let number = |(key, text): (&str, String)| {
+            (key.to_owned(), json!({ "description": text, "type": ["number", "null"], "format": "double" }))
         };
-        let properties: Map<String, Value> = PARTICULARS.iter().map(own).chain([knots]).map(number).collect();
+        let properties: Map<String, Value> = PARTICULARS.iter().map(description).chain([knots]).map(number).collect();
         json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
     }
 }
@@ -187,10 +187,9 @@ pub(crate) struct CheckKeys {
     pub plausibility: Option<bool>,
 }
 
-/// The JSON schema of the file, by which an editor completes and checks its keys, in the draft that editors of TOML
-/// understand.
+/// JSON schema (draft 7) of a sidecar, with which an editor completes and checks its keys.
 pub fn schema() -> Schema {
-    // Tables stand where they are used, so that a key is found by its table.
+    // Inlined tables let `keys` walk from a table to its keys.
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
     let mut schema = settings.into_generator().into_root_schema_for::<SidecarKeys>();
     schema.insert("title".into(), "Sidecar of a record".into());
@@ -202,26 +201,26 @@ pub fn schema() -> Schema {
 pub struct Key {
     /// Table and key; the key alone where it stands above the tables.
     pub key: String,
-    /// What it may be.
+    /// Kind of its value.
     pub value: String,
-    /// What it says, and what holds where it is absent.
+    /// Meaning of the key, and its default.
     pub meaning: String,
 }
 
 /// All keys, in the order in which they are written.
 pub fn keys() -> Vec<Key> {
     let schema = schema();
-    let properties = |of: &serde_json::Value| of["properties"].as_object().cloned().unwrap_or_default();
+    let properties = |schema: &serde_json::Value| schema["properties"].as_object().cloned().unwrap_or_default();
     let mut keys = Vec::new();
-    for (name, own) in properties(schema.as_value()) {
-        let (table, own) = match (own.get("items"), own.get("properties")) {
+    for (name, entry) in properties(schema.as_value()) {
+        let (table, entries) = match (entry.get("items"), entry.get("properties")) {
             (Some(items), _) => (format!("[[{name}]] "), properties(items)),
-            (None, Some(_)) => (format!("[{name}] "), properties(&own)),
-            (None, None) => (String::new(), Map::from_iter([(name, own)])),
+            (None, Some(_)) => (format!("[{name}] "), properties(&entry)),
+            (None, None) => (String::new(), Map::from_iter([(name, entry)])),
         };
-        for (key, own) in own {
-            let said = own["description"].as_str().unwrap_or_default();
-            let (meaning, value) = said.rsplit_once(" (").unwrap_or((said, ")"));
+        for (key, entry) in entries {
+            let description = entry["description"].as_str().unwrap_or_default();
+            let (meaning, value) = description.rsplit_once(" (").unwrap_or((description, ")"));
             let value = value.trim_end_matches(')').to_owned();
             keys.push(Key { key: format!("{table}{key}"), value, meaning: meaning.to_owned() });
         }

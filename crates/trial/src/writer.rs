@@ -1,6 +1,5 @@
-//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. Of what a
-//! table cannot hold, a sidecar has length and speed of the ship, the declared weather and the declared noise; the rest
-//! is not written.
+//! Writer of a record as CSV with `quantity_unit` column names, so that reading it gives the same record. A sidecar
+//! holds length and speed of the ship, the declared weather and the declared noise; other declarations are not written.
 
 use std::io::Write;
 
@@ -30,9 +29,9 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     )?;
     let mut cell = Vec::new();
     for (row, &time) in trial.time().iter().enumerate() {
-        let known = channels.iter().map(|(_, factor, values)| values[row] / factor);
+        let readings = channels.iter().map(|(_, factor, values)| values[row] / factor);
         let unknown = trial.unknown().iter().map(|(_, values)| values[row]);
-        for value in std::iter::once(time).chain(known).chain(unknown) {
+        for value in std::iter::once(time).chain(readings).chain(unknown) {
             cell.clear();
             if !value.is_nan() {
                 write!(cell, "{value}")?;
@@ -44,8 +43,8 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     table.flush()
 }
 
-/// The sidecar of a record, as TOML: the calm that it declares, length and speed of its ship, and the declared noise of
-/// its instruments. `None` where it has none of these.
+/// Sidecar of a record, as TOML: the declared calm, length and speed of the ship, and the declared noise of its
+/// instruments. `None` without any of these.
 pub fn sidecar(trial: &Trial) -> Option<String> {
     let ship = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
     let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
@@ -58,7 +57,7 @@ pub fn sidecar(trial: &Trial) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-/// A number without the rounding of a change of units.
+/// A number rounded to 12 decimals, without the rounding errors of a change of units.
 fn short(value: f64) -> f64 {
     (1e12 * value).round() / 1e12
 }
@@ -117,17 +116,16 @@ mod tests {
             let back = back.trial;
             assert_eq!(back.len(), trial.len());
             assert_eq!(back.heading_from_yaw_rate(), without_heading);
-            for (found, expected) in back.time().iter().zip(trial.time()) {
-                assert_eq!(found, expected);
+            for (read, expected) in back.time().iter().zip(trial.time()) {
+                assert_eq!(read, expected);
             }
             for channel in Channel::ALL {
-                let (found, expected) =
-                    (back.channel(channel).expect("written"), trial.channel(channel).expect("made"));
-                for (found, expected) in found.iter().zip(expected).filter(|(_, expected)| !expected.is_nan()) {
-                    assert_abs_diff_eq!(found, expected, epsilon = 1e-12);
+                let (read, expected) = (back.channel(channel).expect("written"), trial.channel(channel).expect("made"));
+                for (read, expected) in read.iter().zip(expected).filter(|(_, expected)| !expected.is_nan()) {
+                    assert_abs_diff_eq!(read, expected, epsilon = 1e-12);
                 }
                 let missing = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count();
-                assert_eq!(missing(found), missing(expected), "{channel:?}");
+                assert_eq!(missing(read), missing(expected), "{channel:?}");
             }
             assert_eq!(back.unknown(), trial.unknown());
         }

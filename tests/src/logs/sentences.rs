@@ -49,13 +49,13 @@ pub(super) fn all() -> Vec<File> {
             "receiver.nmea",
             "sentences of gyro and rudder every two seconds, timed by those of a receiver (RMC)",
             clocked(2 * TENTHS, |tenth| format!("{}\r\n{}", hdt(tenth), rsa(tenth))),
-            Read(&["the time is that of $GPRMC"]),
+            Read(&["the clock is $GPRMC"]),
         ),
         File::new(
             "two-rudders.nmea",
             "the same with two rudders",
             clocked(2 * TENTHS, |tenth| format!("{}\r\n{}", hdt(tenth), two(tenth))),
-            Read(&["the time is that of $GPRMC", "the mean of two rudders"]),
+            Read(&["the clock is $GPRMC", "the mean of two rudders"]),
         ),
         File::new("stamped.nmea", "a stamp before every sentence, ten headings a second", stamped, Read(&[]))
             .not_kept(),

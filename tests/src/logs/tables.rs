@@ -85,7 +85,7 @@ fn of_contract() -> Vec<File> {
                 "Trial report;;\nShip: MV Example\nDate: 20.11.2026\nManoeuvre: zig-zag 10/10, starboard\n\n{}",
                 clean()
             ),
-            Read(&["4 lines before the header passed over"]),
+            Read(&["4 lines before the header skipped"]),
         ),
     ]
 }
@@ -103,7 +103,7 @@ fn of_programs() -> Vec<File> {
                 let [heading, rudder] = angles(tenth).map(|angle| with_comma(&angle));
                 format!("20.11.2026 {};{heading};{rudder}", time_of_day(tenth, false))
             }),
-            Read(&["columns understood by their names: `Steuerkurs`, `Ruderlage`, `Datum Zeit`", "decimal comma"]),
+            Read(&["columns recognised by their names: `Steuerkurs`, `Ruderlage`, `Datum Zeit`", "decimal comma"]),
         ),
         File::new(
             "iso.csv",
@@ -121,7 +121,7 @@ fn of_programs() -> Vec<File> {
             table("Time,Heading (deg),Rudder (deg)", every(TENTHS), |tenth| {
                 row(format!("11/20/2026 {}", time_of_half_day(tenth, false)), tenth)
             }),
-            Read(&["columns understood by their names"]),
+            Read(&["columns recognised by their names"]),
         ),
         File::new(
             "date-and-time.csv",
@@ -129,7 +129,7 @@ fn of_programs() -> Vec<File> {
             table("Date,Time,Heading [deg],Rudder [deg]", every(TENTHS), |tenth| {
                 row(format!("2026-11-20,{}", time_of_day(tenth, false)), tenth)
             }),
-            Read(&["columns understood by their names"]),
+            Read(&["columns recognised by their names"]),
         ),
         File::new(
             "epoch.csv",
@@ -145,7 +145,7 @@ fn of_programs() -> Vec<File> {
             table("Timestamp,heading_deg,rudder_deg", every(1), |tenth| {
                 row(format!("2026-11-20 {}", time_of_day(tenth, false)), tenth)
             }),
-            Read(&["rows share their stamps, 10 as a rule"]),
+            Read(&["rows share their time stamps, usually 10 per stamp"]),
         )
         .not_kept(),
         File::new(
@@ -177,7 +177,7 @@ fn of_two_rates() -> Vec<File> {
                     _ => format!("{},{heading},", seconds(tenth)),
                 }
             }),
-            Read(&["runs straight between its readings"]),
+            Read(&["is interpolated between its readings"]),
         ),
         File::new(
             "two-files-heading.csv",
@@ -185,7 +185,7 @@ fn of_two_rates() -> Vec<File> {
             table("Timestamp,Heading [deg]", every(TENTHS), |tenth| {
                 format!("2026-11-20T{},{}", time_of_day(tenth, false), angles(tenth)[0])
             }),
-            Read(&["runs straight between its readings"]),
+            Read(&["is interpolated between its readings"]),
         )
         .with("two-files-rudder.csv"),
         File::new(

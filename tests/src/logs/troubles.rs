@@ -50,7 +50,7 @@ fn of_instruments() -> Vec<File> {
             "spike.csv",
             "one rudder angle of -327 degrees",
             with_lines(|row, [t, psi, delta]| format!("{t},{psi},{}", if row == 150 { "-327" } else { delta })),
-            Read(&["1 row with a rudder angle no rudder has (-327°)"]),
+            Read(&["1 row with an impossible rudder angle (-327°)"]),
         ),
         File::new(
             "frozen.csv",
@@ -70,7 +70,7 @@ fn of_instruments() -> Vec<File> {
                 let [_, rudder] = angles(tenth / TENTHS * TENTHS);
                 format!("{},{heading},{rudder}", seconds(tenth))
             }),
-            Read(&["the rudder is new in every 10th row only"]),
+            Read(&["the rudder has a new value in every 10th row only"]),
         )
         .not_kept(),
         File::new(
@@ -107,7 +107,7 @@ fn of_clocks() -> Vec<File> {
                 let [heading, rudder] = angles(tenth);
                 format!("{},{heading},{rudder}", midnight(tenth))
             }),
-            Read(&["columns understood by their names"]),
+            Read(&["columns recognised by their names"]),
         ),
         File::new(
             "doubled.csv",
@@ -126,7 +126,7 @@ fn of_clocks() -> Vec<File> {
                 250 => format!("2,{psi},{delta}"),
                 _ => joined([t, psi, delta]),
             }),
-            Read(&["2 rows left out because the time does not fit"]),
+            Read(&["2 rows left out, because the time does not fit"]),
         ),
         File::new(
             "restarted.csv",

@@ -67,7 +67,7 @@ fn what_the_reader_noticed_is_in_the_document() {
     for (log, said, code, severity) in [
         ("frozen.csv", "the heading is frozen from", "missing-values", "mended"),
         ("checksums.nmea", "checksum", "left-out", "mended"),
-        ("spike.csv", "1 row with a rudder angle no rudder has", "rejected-readings", "mended"),
+        ("spike.csv", "1 row with an impossible rudder angle", "rejected-readings", "mended"),
         ("gaps.csv", "gaps longer than ten sampling periods", "gap", "doubt"),
     ] {
         let path = of_repository("tests/logs").join(log).display().to_string();
@@ -109,7 +109,7 @@ fn warnings_are_few_and_the_dearest_first() {
     let more = lines[3].strip_prefix("warning: ").and_then(|line| line.strip_suffix(" more in report.md"));
     assert!(more.and_then(|more| more.parse::<usize>().ok()).is_some_and(|more| more + 3 == noticed), "{lines:?}");
     let part = |title: &str| report.split("\n## ").find(|part| part.starts_with(title)).unwrap_or_default();
-    for said in ["the heading jumps", "-999", "lines before the header", "no rudder has", "understood by their names"] {
+    for said in ["the heading jumps", "-999", "lines before the header", "impossible rudder angle", "recognised by their names"] {
         assert!(part("Warnings").contains(said), "{said}\n{report}");
     }
     assert!(!run.err.contains("least-squares: ") && part("Notes").contains("least-squares: "), "{report}");

@@ -29,7 +29,7 @@ fn a_record_that_contradicts_itself_is_refused_with_the_cure() {
     let radians = |_: usize, angle: f64| angle.to_radians().to_string();
     refused(
         with_column(&good, "heading_deg", |_, _| "45".into()),
-        &["heading stays", "expected the heading to answer"],
+        &["heading stays", "check that the heading sensor was recorded"],
     );
     refused(with_column(&good, "heading_deg", radians), &["radians", "heading_rad"]);
     refused(with_column(&good, "rudder_deg", radians), &["radians", "rudder_rad"]);

@@ -1,5 +1,5 @@
-//! A heading that sweeps through the compass at north: it was interpolated or filtered as a number that goes from 360
-//! to 0, through all headings that the ship never had.
+//! Headings that sweep through the compass at north: they were interpolated or filtered across the step from 360 to 0,
+//! through headings that the ship never had.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -9,34 +9,34 @@ use document::{Code, Warning};
 use super::reject;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::words::counted;
+use crate::wording::counted;
 
-/// Rate of a sweep over that of nine rows in ten.
-const FAST: f64 = 5.0;
+/// Minimum rate of a sweep over the 90th percentile of the rates.
+const MIN_RATE_RATIO: f64 = 5.0;
 
-/// Farthest from north that a sweep begins, rad.
-const AT_NORTH: f64 = 0.6;
+/// Maximum distance from north at the beginning of a sweep, rad.
+const MAX_FROM_NORTH: f64 = 0.6;
 
-/// Least way of a sweep from where it began, rad: 30°.
-const FAR: f64 = 0.52;
+/// Minimum excursion of a sweep from its beginning, rad: 30°.
+const MIN_EXCURSION: f64 = 0.52;
 
-/// How near a heading has to be at the end to where the sweep began, beside what the ship turns, rad: 3°.
-const BACK: f64 = 0.05;
+/// Maximum distance between beginning and end of a sweep beyond the turn of the ship, rad: 3°.
+const RETURN_TOLERANCE: f64 = 0.05;
 
-/// Rate at which it gets there, over the usual one.
-const THERE: f64 = 3.0;
+/// Minimum mean rate up to the excursion over the usual rate.
+const MIN_EXCURSION_RATE_RATIO: f64 = 3.0;
 
-/// The same as a share of the way of the sweep.
-const NEAR: f64 = 0.3;
+/// Maximum distance between beginning and end of a sweep as a share of its excursion.
+const RETURN_SHARE: f64 = 0.3;
 
-/// Longest sweep, s and rows: filters of a compass take seconds.
-const LONGEST: (f64, usize) = (60.0, 600);
+/// Maximum length of a sweep, s and rows: filters of a compass take seconds.
+const MAX_SWEEP: (f64, usize) = (60.0, 600);
 
-/// Lengths of a sweep after its end in which a filter still comes to rest.
-const TAIL: usize = 2;
+/// Settling time of a filter after a sweep, in lengths of the sweep.
+const SETTLING_LENGTHS: usize = 2;
 
-/// Largest share of the headings that sweeps may take.
-const MOST: f64 = 0.6;
+/// Maximum share of headings in sweeps.
+const MAX_SWEPT_SHARE: f64 = 0.6;
 
 /// Leaves out headings of sweeps through the compass.
 pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
@@ -48,19 +48,20 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
         ((heading[to] - heading[from]) / (time[to] - time[from])).abs()
     };
     let mut rates: Vec<f64> = (0..read.len().saturating_sub(1)).map(rate).collect();
-    let most = rates.len() * 9 / 10;
-    let usual = *(rates.len() >= 40).then(|| rates.select_nth_unstable_by(most, f64::total_cmp).1)?;
+    let rank = rates.len() * 9 / 10;
+    let usual = *(rates.len() >= 40).then(|| rates.select_nth_unstable_by(rank, f64::total_cmp).1)?;
     let mut sweeps: Vec<Range<usize>> = Vec::new();
     let mut at = 0;
     while at + 1 < read.len() {
-        let swept = (rate(at) > FAST * usual).then(|| sweep(time, heading, &read, at, usual)).flatten();
+        let swept = (rate(at) > MIN_RATE_RATIO * usual).then(|| sweep(time, heading, &read, at, usual)).flatten();
         at = swept.as_ref().map_or(at + 1, |swept| swept.end);
         sweeps.extend(swept);
     }
-    let places = sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + TAIL * swept.len()).min(read.len()));
+    let places =
+        sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + SETTLING_LENGTHS * swept.len()).min(read.len()));
     let mut rows: Vec<usize> = places.map(|place| read[place]).collect();
     rows.dedup();
-    if rows.is_empty() || rows.len() as f64 > MOST * read.len() as f64 {
+    if rows.is_empty() || rows.len() as f64 > MAX_SWEPT_SHARE * read.len() as f64 {
         return None;
     }
     let begins: Vec<usize> = sweeps.iter().map(|swept| read[swept.start + 1]).collect();
@@ -72,29 +73,31 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     }
     rows.iter().for_each(|&row| heading[row] = f64::NAN);
     Some(Code::RejectedReadings.warning(format!(
-        "the heading sweeps through the compass at north {times}: it was resampled or filtered as a number that goes through 0 and 360; \
-         {} left out there; resample or filter a heading without its wrap",
+        "the heading sweeps through the compass at north {times}: it was resampled or filtered across the step from \
+         360 to 0; {} left out there; unwrap a heading before it is resampled or filtered",
         counted(rows.len(), "heading"),
     )))
 }
 
-/// The places from the last heading before a sweep, which begins at `at`, to the first one behind it.
+/// Range of headings from the last before a sweep, `at`, to the first behind it; `None` where no sweep begins.
 fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -> Option<Range<usize>> {
     let begin = heading[read[at]];
     let from_north = |psi: f64| (psi + PI).rem_euclid(TAU) - PI;
     let mut farthest: f64 = 0.0;
-    for end in at + 1..read.len().min(at + LONGEST.1) {
+    for end in at + 1..read.len().min(at + MAX_SWEEP.1) {
         let elapsed = time[read[end]] - time[read[at]];
         let apart = ((heading[read[end]] - begin + PI).rem_euclid(TAU) - PI).abs();
         farthest = farthest.max(apart);
-        if elapsed > LONGEST.0 || (farthest <= FAR && elapsed * THERE * usual > FAR) {
+        if elapsed > MAX_SWEEP.0
+            || (farthest <= MIN_EXCURSION && elapsed * MIN_EXCURSION_RATE_RATIO * usual > MIN_EXCURSION)
+        {
             return None;
         }
-        if farthest > FAR && apart < (BACK + 2.0 * usual * elapsed).min(NEAR * farthest) {
+        if farthest > MIN_EXCURSION && apart < (RETURN_TOLERANCE + 2.0 * usual * elapsed).min(RETURN_SHARE * farthest) {
             let behind = heading[read[end]];
-            // One reading alone is a spike, unless the heading passes north with it.
+            // A single reading is a spike, unless the heading passes north with it.
             let passes = from_north(begin) * from_north(behind) < 0.0 || (behind - begin).abs() > PI;
-            return (from_north(begin).abs() < AT_NORTH && (end > at + 2 || passes)).then_some(at..end);
+            return (from_north(begin).abs() < MAX_FROM_NORTH && (end > at + 2 || passes)).then_some(at..end);
         }
     }
     None

@@ -1,5 +1,5 @@
-//! Single readings that are wrong: spikes and jumps of a heading, a yaw rate at the end of its scale. A spike is left
-//! out; a jump is told and left, for nobody can say which side of it is right.
+//! Single wrong readings: unanswered polls, spikes and jumps of a heading, a yaw rate at the end of its scale. A spike
+//! is left out; a jump is reported and left, because either side of it may be right.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -10,49 +10,49 @@ use estimation::statistics::upper_median;
 use super::reject;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::words::counted;
+use crate::wording::counted;
 
-/// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
-const LEAST: f64 = 0.035;
+/// Minimum height of a spike or a jump, rad: 2°, more than digits and waves cause between two readings.
+const MIN_HEIGHT: f64 = 0.035;
 
-/// Height of a spike, or of a jump, in usual deviations from a straight line between neighbours.
-const CLEAR: f64 = 12.0;
+/// Minimum height of a spike or a jump in standard deviations from the straight line between neighbours.
+const MIN_HEIGHT_SDS: f64 = 12.0;
 
-/// A spike is as many times higher than its neighbours are apart.
-const ALONE: f64 = 4.0;
+/// Minimum height of a spike over the distance between its neighbours.
+const MIN_SPIKE_RATIO: f64 = 4.0;
 
-/// Largest share of the readings that may be spikes: more are the noise of the sensor.
-const FEW: f64 = 0.05;
+/// Maximum share of spikes among the readings: more are the noise of the sensor.
+const MAX_SPIKE_SHARE: f64 = 0.05;
 
-/// Fewest readings of one value that are lost polls, and the largest share of a channel they may be.
+/// Minimum number of lost polls of a value, and their maximum share of a channel.
 const LOST_POLLS: (usize, f64) = (3, 0.4);
 
-/// Share of the readings far from both neighbours that have this one value: those of a noisy sensor have many.
-const OF_ONE_VALUE: f64 = 0.8;
+/// Minimum share of the lost value among the readings far from both neighbours: a noisy sensor has many values.
+const MIN_LOST_SHARE: f64 = 0.8;
 
-/// Values that agree to this many parts of a radian are one.
-const DIGITS: f64 = 1e9;
+/// Resolution of a repeated value, parts of a radian.
+const VALUE_STEPS_PER_RAD: f64 = 1e9;
 
-/// A lost poll is as many times farther from its neighbours as they are apart.
-const FROM_BOTH: f64 = 2.0;
+/// Minimum distance of a lost poll from its neighbours over the distance between them.
+const MIN_LOST_RATIO: f64 = 2.0;
 
-/// Fewest rows at the end of the scale of a yaw rate.
-const CLIPPED: usize = 5;
+/// Minimum number of rows at the end of the scale of a yaw rate.
+const MIN_CLIPPED_ROWS: usize = 5;
 
-/// Rate of the heading over the largest reading of its rate that shows the end of a scale.
-const BEYOND: f64 = 1.15;
+/// Minimum rate of the heading over the largest reading of a clipped yaw rate.
+const MIN_CLIPPED_RATIO: f64 = 1.15;
 
-/// The readings of a channel: row by row, those that are there.
+/// Rows of a channel with a reading.
 fn readings(values: &[f64]) -> impl Iterator<Item = usize> {
     (0..values.len()).filter(|&row| values[row].is_finite())
 }
 
 /// Distance of every inner reading from the straight line between its neighbours, with its rows.
 pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
-    let (mut one, mut two) = (None, None);
+    let (mut before, mut last) = (None, None);
     readings(values).filter_map(move |row| {
-        let rows = one.zip(two).map(|(one, two): (usize, usize)| [one, two, row]);
-        (one, two) = (two, Some(row));
+        let rows = before.zip(last).map(|(before, last): (usize, usize)| [before, last, row]);
+        (before, last) = (last, Some(row));
         let [before, at, after] = rows?;
         let share = (time[at] - time[before]) / (time[after] - time[before]);
         let line = values[before] + share * (values[after] - values[before]);
@@ -60,27 +60,28 @@ pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterato
     })
 }
 
-/// The usual size of a deviation, from a hundred thousand of them at most; `None` for a channel that is hardly read.
-fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
-    const ENOUGH: usize = 100_000;
-    let every = values.len() / ENOUGH + 1;
+/// Robust standard deviation from the straight line between neighbours: 1.4826 times the median of at most a hundred
+/// thousand deviations. `None` for a channel with few readings.
+fn deviation_sd(time: &[f64], values: &[f64]) -> Option<f64> {
+    const MAX_DEVIATIONS: usize = 100_000;
+    let every = values.len() / MAX_DEVIATIONS + 1;
     let sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
-    Some(sizes).filter(|sizes| sizes.len() > 2 * CLIPPED).and_then(upper_median).map(|size| 1.4826 * size)
+    Some(sizes).filter(|sizes| sizes.len() > 2 * MIN_CLIPPED_ROWS).and_then(upper_median).map(|size| 1.4826 * size)
 }
 
-/// Takes single readings of one and the same value as missing where both neighbours are far from it and near each
-/// other: polls that were not answered, for which a logger writes zero, and a calibration behind it another number. A
-/// channel that passes through the value has neighbours on either side of it.
+/// Takes lost polls as missing: single readings of the same value, with both neighbours far from it and near each
+/// other. A logger writes zero for a poll without an answer, and a calibration turns it into another number. A channel
+/// that passes through the value has neighbours on either side of it.
 pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate] {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
         let rows: Vec<usize> = readings(values).collect();
         let is_alone = |at: usize, beside: [usize; 2]| {
-            let [one, other] = beside.map(|row| values[row] - values[at]);
-            let near = one.abs().min(other.abs());
-            one * other > 0.0 && near > LEAST && near > FROM_BOTH * (one - other).abs()
+            let [left, right] = beside.map(|row| values[row] - values[at]);
+            let distance = left.abs().min(right.abs());
+            left * right > 0.0 && distance > MIN_HEIGHT && distance > MIN_LOST_RATIO * (left - right).abs()
         };
         let inner = rows.windows(3).filter(|rows| is_alone(rows[1], [rows[0], rows[2]])).map(|rows| rows[1]);
         // The first and the last have their neighbours on one side.
@@ -89,64 +90,70 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         let alone: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
         // Whole turns of a heading are nothing.
         let value = |row: usize| match channel {
-            Channel::Heading => (values[row].rem_euclid(TAU) * DIGITS).round().rem_euclid((TAU * DIGITS).round()),
-            _ => (values[row] * DIGITS).round(),
+            Channel::Heading => (values[row].rem_euclid(TAU) * VALUE_STEPS_PER_RAD)
+                .round()
+                .rem_euclid((TAU * VALUE_STEPS_PER_RAD).round()),
+            _ => (values[row] * VALUE_STEPS_PER_RAD).round(),
         };
-        let mut of_value: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
-        alone.iter().for_each(|&row| of_value.entry(value(row) as i64).or_default().push(row));
-        let Some((written, lost)) = of_value.into_iter().max_by_key(|(_, rows)| rows.len()) else { continue };
-        let is_most = lost.len() as f64 >= OF_ONE_VALUE * alone.len() as f64;
+        let mut by_value: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+        alone.iter().for_each(|&row| by_value.entry(value(row) as i64).or_default().push(row));
+        let Some((written, lost)) = by_value.into_iter().max_by_key(|(_, rows)| rows.len()) else { continue };
+        let is_most = lost.len() as f64 >= MIN_LOST_SHARE * alone.len() as f64;
         if lost.len() < LOST_POLLS.0 || lost.len() as f64 > LOST_POLLS.1 * rows.len() as f64 || !is_most {
             continue;
         }
         let times = reject(channel, time, values, &lost, rejected);
         lost.iter().for_each(|&row| values[row] = f64::NAN);
-        // What is the same beside them may be lost, too, and nobody can tell.
-        told.push(Code::RejectedReadings.warning(format!(
-            "{} of exactly {} between others far from it taken as missing, as polls that were not answered, {times}",
+        // Equal readings beside them may be lost as well; that cannot be decided.
+        warnings.push(Code::RejectedReadings.warning(format!(
+            "{} of exactly {} far from both neighbours taken as missing (polls without an answer), {times}",
             counted(lost.len(), channel.spoken()),
-            if written == 0 { "zero".to_owned() } else { format!("{:.2}°", (written as f64 / DIGITS).to_degrees()) },
+            if written == 0 {
+                "zero".to_owned()
+            } else {
+                format!("{:.2}°", (written as f64 / VALUE_STEPS_PER_RAD).to_degrees())
+            },
         )));
     }
-    told
+    warnings
 }
 
-/// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
+/// Takes spikes of heading and rudder as missing and reports jumps of the heading.
 pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder] {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
-        let Some(usual) = usual(time, values) else { continue };
-        let least = LEAST.max(CLEAR * usual);
+        let Some(sd) = deviation_sd(time, values) else { continue };
+        let least = MIN_HEIGHT.max(MIN_HEIGHT_SDS * sd);
         let mut spikes = Vec::new();
         for ([before, row, after], deviation) in deviations(time, values) {
             let apart = (values[after] - values[before]).abs();
-            if deviation.abs() > least.max(ALONE * apart) {
+            if deviation.abs() > least.max(MIN_SPIKE_RATIO * apart) {
                 spikes.push((row, deviation));
             }
         }
-        if !spikes.is_empty() && spikes.len() as f64 <= FEW * values.len() as f64 {
+        if !spikes.is_empty() && spikes.len() as f64 <= MAX_SPIKE_SHARE * values.len() as f64 {
             let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
             let rows: Vec<usize> = spikes.iter().map(|&(row, _)| row).collect();
             let times = reject(channel, time, values, &rows, rejected);
             rows.into_iter().for_each(|row| values[row] = f64::NAN);
-            told.push(Code::RejectedReadings.warning(format!(
+            warnings.push(Code::RejectedReadings.warning(format!(
                 "{} far from both neighbours (by up to {:.1}°) taken as missing, {times}",
                 counted(spikes.len(), channel.spoken()),
                 largest.to_degrees(),
             )));
         }
         if channel == Channel::Heading {
-            told.extend(jumps(time, values, least, rejected));
+            warnings.extend(jumps(time, values, least, rejected));
         }
     }
-    told
+    warnings
 }
 
-/// Tells of steps between two headings that no ship makes: far more than the steps before and after.
+/// Reports jumps of the heading: steps far larger than the steps before and after.
 fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
-    let mut found = Vec::new();
+    let mut jumps = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
     for row in readings(heading) {
         if let [Some(first), Some(second), Some(third)] = last {
@@ -154,20 +161,21 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
             let step = (heading[third] - heading[second]).abs();
             let around = rate(first, second).max(rate(third, row));
             // Over a gap a ship may turn far.
-            if step > least && step > ALONE * around * (time[third] - time[second]) {
-                found.push((third, step));
+            if step > least && step > MIN_SPIKE_RATIO * around * (time[third] - time[second]) {
+                jumps.push((third, step));
             }
         }
         last = [last[1], last[2], Some(row)];
     }
-    if found.is_empty() || found.len() as f64 > FEW * heading.len() as f64 {
+    if jumps.is_empty() || jumps.len() as f64 > MAX_SPIKE_SHARE * heading.len() as f64 {
         return None;
     }
-    let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
-    let rows: Vec<usize> = found.iter().map(|&(row, _)| row).collect();
+    let largest = jumps.iter().map(|(_, step)| *step).fold(0.0, f64::max);
+    let rows: Vec<usize> = jumps.iter().map(|&(row, _)| row).collect();
     let times = reject(Channel::Heading, time, heading, &rows, rejected);
     Some(Code::HeadingJump.warning(format!(
-        "the heading jumps (by up to {:.1}°) as no ship turns, {times}; it is left as it is, for nobody can say which side is right",
+        "the heading jumps (by up to {:.1}°) faster than a ship turns, {times}; it is not changed, because either side \
+         of a jump may be right",
         largest.to_degrees(),
     )))
 }
@@ -178,28 +186,29 @@ pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
     let at_end: Vec<usize> = readings(rate).filter(|&row| rate[row].abs() == end).collect();
-    if end == 0.0 || at_end.len() < CLIPPED {
+    if end == 0.0 || at_end.len() < MIN_CLIPPED_ROWS {
         return None;
     }
     // The heading over every run of rows at the end of the scale.
     let (mut turned, mut expected, mut rows) = (0.0, 0.0, 0);
-    for run in at_end.chunk_by(|one, next| next - one == 1 && rate[*one] == rate[*next]) {
+    for run in at_end.chunk_by(|row, next| next - row == 1 && rate[*row] == rate[*next]) {
         let (first, last) = (run[0], run[run.len() - 1]);
         let change = (heading[last] - heading[first]).abs();
-        if run.len() >= CLIPPED && change.is_finite() {
+        if run.len() >= MIN_CLIPPED_ROWS && change.is_finite() {
             turned += change;
             expected += end * (time[last] - time[first]);
             rows += run.len();
         }
     }
-    if rows == 0 || turned < BEYOND * expected {
+    if rows == 0 || turned < MIN_CLIPPED_RATIO * expected {
         return None;
     }
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
     reject(Channel::YawRate, &columns.time, rate, &at_end, rejected);
     at_end.iter().for_each(|&row| rate[row] = f64::NAN);
     Some(Code::RejectedReadings.warning(format!(
-        "the yaw rate ends at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as missing",
+        "the yaw rate is clipped at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as \
+         missing",
         end.to_degrees(),
         at_end.len()
     )))
@@ -232,10 +241,10 @@ mod tests {
             let lost = |row: usize, values: &[f64]| if row.is_multiple_of(every) { 0.0 } else { values[row] };
             let mut polled = with(Channel::Rudder, lost);
             let told = clean(&mut polled).remove(0);
-            assert!(told.contains("of exactly zero between others far from it"), "{told}");
+            assert!(told.contains("of exactly zero far from both neighbours"), "{told}");
             let calibrated = |row: usize, values: &[f64]| lost(row, values) + 0.04;
             let told = clean(&mut with(Channel::Rudder, calibrated)).remove(0);
-            assert!(told.contains("of exactly 2.29° between"), "{told}");
+            assert!(told.contains("of exactly 2.29° far"), "{told}");
             let rudder = &polled.channels[&Channel::Rudder];
             assert!(rudder.iter().filter(|delta| delta.is_nan()).count() > rudder.len() / every / 2);
         }
@@ -247,7 +256,7 @@ mod tests {
         let lost = |row: usize, values: &[f64]| if row.is_multiple_of(7) { TAU } else { values[row] - 0.4 };
         let mut polled = with(Channel::Heading, lost);
         let told = clean(&mut polled).remove(0);
-        assert!(told.contains("of exactly zero between others far from it") && told.contains("at t = 0, "), "{told}");
+        assert!(told.contains("of exactly zero far from both neighbours") && told.contains("at t = 0, "), "{told}");
         assert!(polled.channels[&Channel::Heading].iter().step_by(7).all(|psi| psi.is_nan()));
     }
 

@@ -1,4 +1,4 @@
-//! How a channel was written: a rudder from 0 to 360, a heading only when it had changed by so much.
+//! Notations of a logger: a rudder from 0 to 360, a heading that is written only after a minimum change.
 
 use document::{Code, Warning};
 
@@ -6,17 +6,17 @@ use crate::channel::Channel;
 use crate::record::{Columns, Trial};
 use crate::zigzag::quantum;
 
-/// Angles of a rudder to port that is written from 0 to 360, rad: from 270° to 360°.
+/// Rudder angles to port in the notation from 0 to 360, rad: from 270° to 360°.
 const PORT: std::ops::RangeInclusive<f64> = 1.5 * std::f64::consts::PI..=std::f64::consts::TAU + 1e-9;
 
-/// Largest angle to starboard beside it, rad.
-const STARBOARD: f64 = 1.05;
+/// Maximum angle to starboard in that notation, rad.
+const MAX_STARBOARD: f64 = 1.05;
 
-/// Least change after which a heading is written, rad (0.4°), and in its digits.
-const DEAD_BAND: (f64, f64) = (0.007, 4.0);
+/// Minimum dead band of a heading, rad (0.4°), and in its digits.
+const MIN_DEAD_BAND: (f64, f64) = (0.007, 4.0);
 
-/// Share of the changes that come after a repeated heading, and fewest changes, where it is written on change.
-const AFTER_REST: (f64, usize) = (0.5, 12);
+/// Minimum share of changes after a repeated heading, and minimum number of changes, of a heading written on change.
+const MIN_AFTER_REST: (f64, usize) = (0.5, 12);
 
 /// Takes 360° from rudder angles to port where they are written as angles up to 360°.
 pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
@@ -25,7 +25,7 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
         let Some(values) = columns.channels.get_mut(&channel) else { continue };
         let read = || values.iter().filter(|value| value.is_finite());
         let port = read().filter(|value| PORT.contains(value)).count();
-        if port < 2 || !read().all(|value| PORT.contains(value) || (0.0..=STARBOARD).contains(value)) {
+        if port < 2 || !read().all(|value| PORT.contains(value) || (0.0..=MAX_STARBOARD).contains(value)) {
             continue;
         }
         values.iter_mut().filter(|value| PORT.contains(value)).for_each(|value| *value -= std::f64::consts::TAU);
@@ -48,19 +48,20 @@ pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
         read.windows(2).filter(is_new).map(|pair| (heading[pair[1]] - heading[pair[0]]).abs()).collect();
     let after_rest = read.windows(3).filter(|rows| heading[rows[0]] == heading[rows[1]] && is_new(&&rows[1..])).count();
     let few = changes.len() / 20;
-    if changes.len() < AFTER_REST.1.max(Trial::FEWEST_ROWS) || (after_rest as f64) < AFTER_REST.0 * changes.len() as f64
+    if changes.len() < MIN_AFTER_REST.1.max(Trial::FEWEST_ROWS)
+        || (after_rest as f64) < MIN_AFTER_REST.0 * changes.len() as f64
     {
         return None;
     }
     let least = *changes.select_nth_unstable_by(few, f64::total_cmp).1;
-    if least < DEAD_BAND.0.max(DEAD_BAND.1 * quantum(heading)) {
+    if least < MIN_DEAD_BAND.0.max(MIN_DEAD_BAND.1 * quantum(heading)) {
         return None;
     }
     let repeated: Vec<usize> = read.windows(2).filter(|pair| !is_new(pair)).map(|pair| pair[1]).collect();
     repeated.iter().for_each(|&row| heading[row] = f64::NAN);
     Some(Code::FaultyReadings.warning(format!(
-        "the heading holds a value until it has changed by {:.1}° (a dead band, or written on change): its repetitions are taken as \
-         missing; what else is in the log may be written so, and then the rudder is wrong by up to its own dead band",
+        "the heading holds a value until it has changed by {:.1}° (a dead band, or written on change): repeated values \
+         are taken as missing; other channels may have a dead band too, and the rudder may be wrong by as much",
         least.to_degrees(),
     )))
 }
@@ -85,11 +86,11 @@ mod tests {
         let held = |band: f64| {
             let mut last = f64::NAN;
             let values = columns().channels[&Channel::Heading].clone();
-            let of = values.into_iter().map(|psi| {
+            let held_values = values.into_iter().map(|psi| {
                 last = if (psi - last).abs() < band.to_radians() { last } else { psi };
                 last
             });
-            of.collect::<Vec<f64>>()
+            held_values.collect::<Vec<f64>>()
         };
         let of_band = held(1.0);
         let text = clean(&mut with(Channel::Heading, |row, _| of_band[row])).remove(0);

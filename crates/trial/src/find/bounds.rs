@@ -1,51 +1,51 @@
-//! Where the part of a manoeuvre begins and ends: from the first execute, or from the steady approach before it, until
-//! the last row before the rudder leaves its last hold or the propeller stops.
+//! Bounds of a manoeuvre in a log: from the first execute, or the steady approach before it, to the last row before the
+//! rudder leaves its last hold or the propeller stops.
 
 use super::course::middle;
-use super::found::{Approach, FoundManoeuvre, Quality, STEADY_SPEED};
+use super::detection::{Approach, FoundManoeuvre, Quality, STEADY_SPEED};
 use super::pattern::{Pattern, Prepared};
-use super::rest::{Hold, usual};
+use super::rudder::{Hold, usual};
 use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
 use crate::zigzag::holds::{self, LAID};
 
-/// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
-/// of the manoeuvre.
+/// Tolerances of the rudder in a steady approach, as shares of the rudder of the manoeuvre: about its median, and of
+/// its median about amidships.
 const STEADY_RUDDER: f64 = 0.15;
 const AMIDSHIPS: f64 = 0.35;
 
-/// Change of heading in a steady approach: as a share of the usual rate of the manoeuvre, and in all as a share of a
-/// swing, which noise and waves make of nothing.
+/// Maximum change of heading in a steady approach: a rate, as a share of the usual rate of the manoeuvre, plus a share
+/// of a swing for noise and waves.
 const STEADY_RATE: f64 = 0.2;
 const STEADY_HEADING: f64 = 0.05;
 
-/// Shortest steady piece that is taken along, as a share of the longest; a log that begins with it may be shorter.
-const SHORTEST_APPROACH: f64 = 0.25;
+/// Minimum length of a steady approach as a share of the longest; a log that begins with it may be shorter.
+const MIN_APPROACH_SHARE: f64 = 0.25;
 
-/// Revolutions, as a share of the usual ones, below which the engine is stopped.
-const STOPPED: f64 = 0.5;
+/// Revolutions of a stopped engine, as a share of the usual revolutions.
+const STOPPED_SHARE: f64 = 0.5;
 
-/// A step of so many usual ones between rows is a gap in the approach.
-const GAP: f64 = 30.0;
+/// Length of a gap in the approach, usual time steps.
+const GAP_STEPS: f64 = 30.0;
 
-/// Holds at the beginning that time the first execute: later ones make it no more certain.
-const ENOUGH_HOLDS: usize = 4;
+/// Maximum number of holds that time the first execute; more holds do not make it more certain.
+const MAX_TIMING_HOLDS: usize = 4;
 
-/// Rudder off the line of its movement, as a share of the band in which it rests, and fewest rows that show such a
-/// line.
-const ON_RAMP: f64 = 0.6;
-const FEWEST_ON_RAMP: usize = 3;
+/// Tolerance of the rudder about the line of its movement, as a share of the band of a hold, and minimum number of rows
+/// on such a line.
+const RAMP_TOLERANCE: f64 = 0.6;
+const MIN_RAMP_ROWS: usize = 3;
 
-/// Rows whose middle is the rudder angle just before a movement.
-const ENOUGH_ROWS: usize = 8;
+/// Rows before a movement whose median is the rudder angle before it.
+const MEDIAN_ROWS: usize = 8;
 
-/// The manoeuvres of patterns that are in order of time and apart.
-pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<FoundManoeuvre> {
+/// The manoeuvres of patterns that are in order of time and do not overlap.
+pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<FoundManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
-    for pattern in found {
+    for pattern in patterns {
         let last = before_stop(record, pattern);
         let (start, approach) = match pattern.manoeuvre {
             Manoeuvre::PullOut { .. } => (pattern.first(), None),
@@ -76,23 +76,23 @@ pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<FoundManoeuvr
     list
 }
 
-/// Largest difference between holds to one side, rad; 0 for a spiral, which means it.
+/// Largest difference between holds to one side of a zig-zag, rad; 0 for other manoeuvres.
 fn spread(pattern: &Pattern) -> f64 {
     if !matches!(pattern.manoeuvre, Manoeuvre::ZigZag { .. }) {
         return 0.0;
     }
-    let of_side = |offset: usize| {
+    let side_spread = |offset: usize| {
         let levels = pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.level);
         range(&levels.collect::<Vec<f64>>())
     };
-    of_side(0).max(of_side(1))
+    side_spread(0).max(side_spread(1))
 }
 
 /// Last row of a manoeuvre in which the propeller turns.
 fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
     let (first, last) = (pattern.first(), pattern.last());
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
-    let stopped = STOPPED * usual(propeller.iter().map(|n| n.abs()));
+    let stopped = STOPPED_SHARE * usual(propeller.iter().map(|n| n.abs()));
     let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
     // A single row without revolutions is a fault of the channel; the last row has no next.
     (0..propeller.len())
@@ -100,11 +100,11 @@ fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first of some holds, looked for from row `free` on and `scale` seconds
+/// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale` seconds
 /// before the hold or, where the rudder is slow, somewhat earlier.
 pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
-    let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
+    let holds = &holds[..holds.len().min(MAX_TIMING_HOLDS)];
     let hold = holds[0];
     // A slow rudder takes longer than a short first hold.
     let longest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
@@ -119,23 +119,24 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
         level: hold.level,
     };
     let mut local: Vec<holds::Hold> = holds.iter().map(local).collect();
-    // The last of a movement is slow and says nothing of its speed: there a hold begins before the rudder rests.
-    let angle = &record.rest.angle[window..=end];
+    // A movement ends slowly, which does not show its rate: the hold begins before the rudder rests.
+    let angle = &record.rudder.angle[window..=end];
     let laid = |&row: &usize| {
         let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
         before < after && before >= LAID * hold.level.abs()
     };
     local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
-    if let ([_], Some(row)) = (local.as_slice(), single_ramp(&time[window..=end], angle, &local[0], record.rest.noise))
+    if let ([_], Some(row)) =
+        (local.as_slice(), single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise))
     {
         return window + row;
     }
-    let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rest.noise));
+    let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise));
     let Some(movement) = rudder.first() else { return hold.first };
     let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
     let rate = movement.rate.map(f64::abs).or(rudder.rate);
     rate.map_or(start, |rate| {
-        start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rest.floor))
+        start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rudder.floor))
     })
 }
 
@@ -144,26 +145,26 @@ fn half_way(angle: &[f64], hold: &holds::Hold) -> Option<usize> {
     (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())
 }
 
-/// First row on the line through a movement into a hold at a rate, rad/s. Steering to the same side just before moves
-/// the foot of that line, but is not on it.
+/// First row on the line of a movement into a hold, at a rate in rad/s. Steering to the same side just before the
+/// movement shifts the foot of that line, but is not on it.
 fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f64) -> usize {
     let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
-    // The other half tells how well the rows of a movement keep to a line: rounding and uneven times take them off.
+    // The second half of the movement shows the scatter about the line: rounding and uneven times.
     let ramp: Vec<usize> =
         (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID * hold.level.abs()).collect();
-    if ramp.len() < FEWEST_ON_RAMP {
+    if ramp.len() < MIN_RAMP_ROWS {
         return 0;
     }
     let usual = ramp.iter().map(|&row| off(row)).fold(0.0, f64::max);
-    let most = (ON_RAMP * floor).max(1.2 * usual);
+    let tolerance = (RAMP_TOLERANCE * floor).max(1.2 * usual);
     // Noise takes a row or two further off.
-    let is_on = |&row: &usize| (row.saturating_sub(2)..=row).any(|row| off(row) <= most);
+    let is_on = |&row: &usize| (row.saturating_sub(2)..=row).any(|row| off(row) <= tolerance);
     (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
-/// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`
-/// where the record does not show it.
+/// First row of the movement into the only hold of a manoeuvre, whose rate no other movement shows; `None` where the
+/// record does not show the movement.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
     let half = half_way(angle, hold)?;
@@ -178,14 +179,14 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> O
         row -= 1;
     }
     let clear = row_before(time, row, 0.3 * look_back);
-    let before = middle(&angle[clear.saturating_sub(ENOUGH_ROWS)..=clear])?;
+    let before = middle(&angle[clear.saturating_sub(MEDIAN_ROWS)..=clear])?;
     let start = time[half] - (angle[half] - before) / rate;
     let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
     let first = time.partition_point(|&t| t < start).min(laid);
     Some((first..laid).find(|&row| (angle[row] - before).abs() > tolerance).unwrap_or(laid))
 }
 
-/// What of the approach belongs to a manoeuvre.
+/// Part of the approach that belongs to a manoeuvre.
 struct ApproachSegment {
     first: usize,
     approach: Approach,
@@ -210,11 +211,11 @@ impl ApproachSegment {
         };
         let longest = time[start] - time[rudder_from];
         let rate = pattern.swing / pattern.scale;
-        // The nearer to the execute the steadier: a course reached a while before it leaves the last piece.
+        // The approach is steadier nearer to the execute: where the course was reached late, its last part remains.
         for share in [1.0, 0.5, 0.25] {
             let first = time.partition_point(|&t| t < time[start] - share * longest).max(rudder_from);
             let duration = time[start] - time[first];
-            let long = duration >= SHORTEST_APPROACH * pattern.scale * (1.0 - 1e-9) || first == 0;
+            let long = duration >= MIN_APPROACH_SHARE * pattern.scale * (1.0 - 1e-9) || first == 0;
             let turned = record.course.change(time[first], time[start - 1]);
             let limit = STEADY_RATE * rate * duration + STEADY_HEADING * pattern.swing;
             if long && first < start && turned.is_none_or(|turned| turned.abs() <= limit) {
@@ -225,28 +226,28 @@ impl ApproachSegment {
     }
 }
 
-/// First row from which on the rudder stays about amidships until row `start`; `None` where it does not in the end.
+/// First row from which the rudder stays about amidships until row `start`; `None` where it is not amidships there.
 fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
-    let (time, angle) = (record.log.time, &record.rest.angle);
+    let (time, angle) = (record.log.time, &record.rudder.angle);
     let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
     let largest = lowest.abs().max(highest.abs());
     let amidships = match pattern.manoeuvre {
-        Manoeuvre::TurningCircle { .. } => record.rest.neutral,
+        Manoeuvre::TurningCircle { .. } => record.rudder.neutral,
         _ => 0.5 * (highest + lowest),
     };
     let level = middle(&angle[start - (start - earliest).div_ceil(4)..start])?;
     if (level - amidships).abs() > AMIDSHIPS * largest {
         return None;
     }
-    let tolerance = (STEADY_RUDDER * largest).max(3.0 * record.rest.noise);
+    let tolerance = (STEADY_RUDDER * largest).max(3.0 * record.rudder.noise);
     let is_steady = |row: &usize| {
-        let gap = time[row + 1] - time[*row] > GAP * record.rest.step;
+        let gap = time[row + 1] - time[*row] > GAP_STEPS * record.rudder.step;
         (angle[*row] - level).abs() <= tolerance && !gap
     };
     (earliest..start).rev().take_while(is_steady).last()
 }
 
-/// Change of a channel from the first third of some rows to the last, as a share; `None` where it is not known.
+/// Change of a channel from the first to the last third of some rows, as a share; `None` where it was not recorded.
 fn change(channel: Option<&[f64]>, first: usize, end: usize) -> Option<f64> {
     let values = channel?.get(first..end)?;
     let third = values.len().div_ceil(3);

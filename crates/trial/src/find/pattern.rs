@@ -1,10 +1,10 @@
-//! What a search looks at, a log with what is derived from it once, and the patterns that are looked for in it.
+//! Input of a search: the channels of a log, the quantities derived from them, and the patterns of holds.
 
 use super::course::Course;
-use super::rest::{Hold, Rest};
+use super::rudder::{Hold, RudderHolds};
 use crate::manoeuvre::Manoeuvre;
 
-/// The channels that a search looks at, row by row, in SI units and radians.
+/// Channels of a search, row by row, in SI units and radians.
 ///
 /// All have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ pub struct Signals<'a> {
 }
 
 impl Signals<'_> {
-    /// Whether the channels are as documented: a search in anything else finds nothing.
+    /// `true` where the channels are as documented; no manoeuvre is detected in others.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();
         self.rudder.len() == rows
@@ -33,23 +33,23 @@ impl Signals<'_> {
     }
 }
 
-/// A log with what is derived from it once.
+/// A log with its rudder holds and its course.
 #[derive(Clone, Copy)]
 pub(crate) struct Prepared<'a> {
     pub log: &'a Signals<'a>,
-    pub rest: &'a Rest,
+    pub rudder: &'a RudderHolds,
     pub course: &'a Course,
 }
 
-/// A manoeuvre before its part is bounded.
+/// A detected manoeuvre without the bounds of its part.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
     pub manoeuvre: Manoeuvre,
-    /// Where the rudder was held; never empty.
+    /// Holds of the rudder; never empty.
     pub holds: Vec<Hold>,
-    /// Longest approach that belongs to it, s; also its time scale.
+    /// Time scale, s; also the maximum length of the approach.
     pub scale: f64,
-    /// Change of heading that is large for it, rad.
+    /// Characteristic change of heading, rad.
     pub swing: f64,
 }
 

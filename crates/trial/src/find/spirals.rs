@@ -1,97 +1,102 @@
-//! Spirals after Dieudonné in a log: the rudder goes from side to side in steps and rests at each until the ship turns
-//! steadily. Reverse spirals, where the rate is ordered and the rudder looked for, are not recognised.
+//! Direct spirals (Dieudonné) in a log: the rudder goes from side to side in steps and rests at each until the ship
+//! turns steadily. Reverse spirals (Bech), where the rate is ordered and the rudder follows, are not recognised.
+//!
+//! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 use super::pattern::{Pattern, Prepared};
-use super::rest::{Hold, usual};
+use super::rudder::{Hold, usual};
 use crate::manoeuvre::Manoeuvre;
 
-/// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
-const FEWEST: usize = 5;
-const FEWEST_OF_PART: usize = 3;
+/// Minimum number of holds of a sweep from side to side, and of a partial sweep before or after it.
+const MIN_HOLDS: usize = 5;
+const MIN_PART_HOLDS: usize = 3;
 
-/// Smallest step of the rudder, rad.
-const SMALLEST_STEP: f64 = 0.75_f64.to_radians();
+/// Minimum step of the rudder, rad.
+const MIN_STEP: f64 = 0.75_f64.to_radians();
 
-/// Rudder angle that a way reaches to both sides, rad.
-const BOTH_SIDES: f64 = 2.0_f64.to_radians();
+/// Minimum rudder angle of a sweep to both sides, rad.
+const MIN_AMPLITUDE: f64 = 2.0_f64.to_radians();
 
-/// Longest movement from hold to hold as a share of the shorter one.
-const QUICK: f64 = 0.5;
+/// Maximum duration of a movement as a share of the shorter adjacent hold.
+const MAX_MOVEMENT_SHARE: f64 = 0.5;
 
-/// A rest shorter than this share of both neighbours is a pause of a movement.
-const PAUSE: f64 = 0.2;
+/// Maximum duration of a pause in a movement as a share of both neighbours.
+const PAUSE_SHARE: f64 = 0.2;
 
-/// Shortest hold as a share of the usual one.
-const SHORTEST: f64 = 0.4;
+/// Minimum duration of a hold as a share of the usual hold.
+const MIN_HOLD_SHARE: f64 = 0.4;
 
-/// Largest ratio of the rudder angles to both sides.
-const SIDES: f64 = 2.0;
+/// Maximum ratio of the rudder angles to both sides.
+const MAX_SIDE_RATIO: f64 = 2.0;
 
-/// How much the rate of a turn changes in its last thirds, and how much it may change against the rudder from one to
-/// the next, as shares of the range of rates.
-const STEADY: f64 = 0.04;
-const AGAINST: f64 = 0.15;
+/// Maximum change of the yaw rate within the last two thirds of a hold, and maximum change against the rudder from a
+/// hold to the next, as shares of the range of rates.
+const MAX_RATE_CHANGE: f64 = 0.04;
+const MAX_RATE_REVERSAL: f64 = 0.15;
 
 /// The spirals of a log.
 pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
-    let all = &record.rest.holds;
+    let all = &record.rudder.holds;
     let is_pause = |index: usize| {
-        let shorter = |other: Option<&Hold>| other.is_some_and(|x| all[index].duration() < PAUSE * x.duration());
+        let shorter =
+            |neighbour: Option<&Hold>| neighbour.is_some_and(|x| all[index].duration() < PAUSE_SHARE * x.duration());
         index > 0 && shorter(all.get(index - 1)) && shorter(all.get(index + 1))
     };
     let holds: Vec<Hold> = (0..all.len()).filter(|&index| !is_pause(index)).map(|index| all[index]).collect();
-    let ways: Vec<&[Hold]> = ways(&holds).into_iter().filter(|way| is_answered(record, way)).collect();
-    let mut found: Vec<Pattern> = Vec::new();
-    // Ways share the hold at which the rudder turns back.
-    for group in ways.chunk_by(|a, b| a[a.len() - 1].first == b[0].first) {
-        if !group.iter().any(|way| is_from_side_to_side(way)) {
+    let sweeps: Vec<&[Hold]> = sweeps(&holds).into_iter().filter(|sweep| is_answered(record, sweep)).collect();
+    let mut patterns: Vec<Pattern> = Vec::new();
+    // Sweeps share the hold at which the rudder turns back.
+    for group in sweeps.chunk_by(|a, b| a[a.len() - 1].first == b[0].first) {
+        if !group.iter().any(|sweep| is_from_side_to_side(sweep)) {
             continue;
         }
         let mut holds = group[0].to_vec();
-        group[1..].iter().for_each(|way| holds.extend(&way[1..]));
+        group[1..].iter().for_each(|sweep| holds.extend(&sweep[1..]));
         let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
         let scale = usual(holds.iter().map(Hold::duration));
         let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
-        found.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
+        patterns.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
     }
-    found
+    patterns
 }
 
-/// Runs of holds, each further to the same side than the one before.
-fn ways(holds: &[Hold]) -> Vec<&[Hold]> {
+/// Sweeps: runs of holds, each further to the same side than the hold before.
+fn sweeps(holds: &[Hold]) -> Vec<&[Hold]> {
     let step = |index: usize| {
         let (a, b) = (&holds[index], &holds[index + 1]);
         let step = b.level - a.level;
-        let quick = b.from - a.until <= QUICK * a.duration().min(b.duration());
-        if quick && step.abs() >= SMALLEST_STEP { step.signum() } else { 0.0 }
+        let quick = b.from - a.until <= MAX_MOVEMENT_SHARE * a.duration().min(b.duration());
+        if quick && step.abs() >= MIN_STEP { step.signum() } else { 0.0 }
     };
-    let mut ways = Vec::new();
+    let mut sweeps = Vec::new();
     let mut first = 0;
     while first + 1 < holds.len() {
-        let way = step(first);
+        let direction = step(first);
         let mut last = first + 1;
-        while way != 0.0 && last + 1 < holds.len() && step(last) == way {
+        while direction != 0.0 && last + 1 < holds.len() && step(last) == direction {
             last += 1;
         }
-        if way != 0.0 && last + 1 - first >= FEWEST_OF_PART {
-            ways.push(&holds[first..=last]);
+        if direction != 0.0 && last + 1 - first >= MIN_PART_HOLDS {
+            sweeps.push(&holds[first..=last]);
         }
         first = last;
     }
-    ways
+    sweeps
 }
 
-fn is_from_side_to_side(way: &[Hold]) -> bool {
-    let (first, last) = (way[0].level, way[way.len() - 1].level);
+fn is_from_side_to_side(sweep: &[Hold]) -> bool {
+    let (first, last) = (sweep[0].level, sweep[sweep.len() - 1].level);
     let (port, starboard) = (-first.min(last), first.max(last));
-    way.len() >= FEWEST && port.min(starboard) >= BOTH_SIDES && port.max(starboard) <= SIDES * port.min(starboard)
+    sweep.len() >= MIN_HOLDS
+        && port.min(starboard) >= MIN_AMPLITUDE
+        && port.max(starboard) <= MAX_SIDE_RATIO * port.min(starboard)
 }
 
-/// Whether the ship turns steadily in every hold, the more to the side the rudder went to.
-fn is_answered(record: &Prepared, way: &[Hold]) -> bool {
-    let usual = usual(way.iter().map(Hold::duration));
-    if way.iter().any(|hold| hold.duration() < SHORTEST * usual) {
+/// `true` where the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.
+fn is_answered(record: &Prepared, sweep: &[Hold]) -> bool {
+    let usual = usual(sweep.iter().map(Hold::duration));
+    if sweep.iter().any(|hold| hold.duration() < MIN_HOLD_SHARE * usual) {
         return false;
     }
     let thirds = |hold: &Hold| {
@@ -99,11 +104,11 @@ fn is_answered(record: &Prepared, way: &[Hold]) -> bool {
         let late = hold.until - third;
         record.course.rate(late - third, late).zip(record.course.rate(late, hold.until))
     };
-    let Some(rates) = way.iter().map(thirds).collect::<Option<Vec<(f64, f64)>>>() else { return false };
+    let Some(rates) = sweep.iter().map(thirds).collect::<Option<Vec<(f64, f64)>>>() else { return false };
     let (first, last) = (rates[0].1, rates[rates.len() - 1].1);
-    let range = (last - first) * (way[way.len() - 1].level - way[0].level).signum();
+    let range = (last - first) * (sweep[sweep.len() - 1].level - sweep[0].level).signum();
     let sense = (last - first).signum();
     range > 0.0
-        && rates.iter().all(|(earlier, later)| (later - earlier).abs() <= STEADY * range)
-        && rates.windows(2).all(|pair| sense * (pair[1].1 - pair[0].1) >= -AGAINST * range)
+        && rates.iter().all(|(earlier, later)| (later - earlier).abs() <= MAX_RATE_CHANGE * range)
+        && rates.windows(2).all(|pair| sense * (pair[1].1 - pair[0].1) >= -MAX_RATE_REVERSAL * range)
 }

@@ -1,46 +1,46 @@
-//! Straight pieces between the manoeuvres of a log: the heading stays near one course and the rudder near amidships, by
-//! hand, by autopilot or without either. A ship at rest keeps her heading, too, and is left out where her speed or her
-//! propeller tells.
+//! Straight pieces between the manoeuvres of a log: the heading stays near a course and the rudder near amidships, by
+//! hand, by autopilot or without steering. A ship at rest also keeps her heading; she is left out where speed or
+//! propeller shows it.
 
 use std::ops::Range;
 
-use super::found::{FoundManoeuvre, Quality};
+use super::detection::{FoundManoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
-use super::rest::usual;
+use super::rudder::usual;
 
-/// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
-const COURSE: f64 = 5.0_f64.to_radians();
+/// Maximum range of headings on a course, rad: an autopilot keeps ±1 degree, in waves ±2.
+const MAX_HEADING_RANGE: f64 = 5.0_f64.to_radians();
 
-/// Rudder off its neutral angle, rad.
-const RUDDER: f64 = 7.0_f64.to_radians();
+/// Maximum rudder off its neutral angle, rad.
+const MAX_RUDDER: f64 = 7.0_f64.to_radians();
 
-/// Shortest piece in usual holds of the manoeuvres of the log.
-const SHORTEST: f64 = 2.0;
+/// Minimum duration of a piece, time scales of the manoeuvres of the log.
+const MIN_SCALES: f64 = 2.0;
 
-/// Shortest piece of a log without manoeuvres, as a share of it.
-const SHORTEST_SHARE: f64 = 0.02;
+/// Minimum duration of a piece of a log without manoeuvres, as a share of the log.
+const MIN_DURATION_SHARE: f64 = 0.02;
 
-/// Fewest rows.
-const FEWEST_ROWS: usize = 20;
+/// Minimum number of rows of a piece.
+const MIN_ROWS: usize = 20;
 
-/// Speed and revolutions of a ship at rest, as shares of the usual ones.
-const AT_REST: f64 = 0.2;
+/// Speed and revolutions of a ship at rest, as shares of the usual values.
+const AT_REST_SHARE: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<FoundManoeuvre>) {
+pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<FoundManoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
-    let scale = usual(found.iter().map(|pattern| pattern.scale));
-    let shortest = if scale > 0.0 { SHORTEST * scale } else { SHORTEST_SHARE * (end - begin) };
-    // Speed and revolutions where they are known, and the least of each for a ship under way.
+    let scale = usual(patterns.iter().map(|pattern| pattern.scale));
+    let shortest = if scale > 0.0 { MIN_SCALES * scale } else { MIN_DURATION_SHARE * (end - begin) };
+    // Recorded speed and revolutions, each with its minimum for a ship under way.
     let channels = [record.log.speed, record.log.propeller].into_iter().flatten();
     let under_way: Vec<(&[f64], f64)> = channels
         .filter(|values| values.len() == time.len())
-        .map(|values| (values, AT_REST * usual(values.iter().map(|x| x.abs()))))
+        .map(|values| (values, AT_REST_SHARE * usual(values.iter().map(|x| x.abs()))))
         .collect();
     let is_straight = |row: usize| {
         let moves = |(values, least): &(&[f64], f64)| values[row].is_nan() || values[row].abs() >= *least;
-        under_way.iter().all(moves) && (record.rest.angle[row] - record.rest.neutral).abs() <= RUDDER
+        under_way.iter().all(moves) && (record.rudder.angle[row] - record.rudder.neutral).abs() <= MAX_RUDDER
     };
     let pieces_in = |first, end| pieces_in(record, is_straight, first..end, shortest);
     let mut pieces = Vec::new();
@@ -54,8 +54,7 @@ pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<FoundMano
     list.sort_by(|a, b| a.from.total_cmp(&b.from));
 }
 
-/// The straight pieces among some rows; `is_straight` says what of a row, but for its heading, tells that the ship goes
-/// straight.
+/// Straight pieces among some rows; `is_straight` tests speed, propeller and rudder of a row, not its heading.
 fn pieces_in(
     record: &Prepared,
     is_straight: impl Fn(usize) -> bool,
@@ -101,7 +100,7 @@ impl Piece {
     fn takes(&mut self, row: usize, psi: f64, time: f64) -> bool {
         let (lowest, highest) = (self.lowest.min(psi), self.highest.max(psi));
         // NaN and infinite headings fail the comparison.
-        let near = highest - lowest <= COURSE && psi.is_finite();
+        let near = highest - lowest <= MAX_HEADING_RANGE && psi.is_finite();
         if near {
             *self = Self { first: self.first, last: row, lowest, highest, read: time };
         }
@@ -110,7 +109,7 @@ impl Piece {
 
     fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<FoundManoeuvre> {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
-        (until - from >= shortest && self.last + 1 - self.first >= FEWEST_ROWS).then(|| FoundManoeuvre {
+        (until - from >= shortest && self.last + 1 - self.first >= MIN_ROWS).then(|| FoundManoeuvre {
             manoeuvre: None,
             from,
             until,

@@ -21,24 +21,24 @@ fn half_an_hour(step: f64) -> (Sea, (f64, f64)) {
     (sea, part)
 }
 
-fn assert_part(found: &FoundManoeuvre, (start, until): (f64, f64), step: f64) {
-    assert!((found.start - start).abs() <= 2.001 * step, "starts at {} for {start}", found.start);
-    assert!((found.until - until).abs() <= 2.001 * step, "ends at {} for {until}", found.until);
+fn assert_part(part: &FoundManoeuvre, (start, until): (f64, f64), step: f64) {
+    assert!((part.start - start).abs() <= 2.001 * step, "starts at {} for {start}", part.start);
+    assert!((part.until - until).abs() <= 2.001 * step, "ends at {} for {until}", part.until);
 }
 
 #[test]
 fn a_zig_zag_in_half_an_hour_is_found_to_the_row() {
     for step in [0.1, 0.5, 1.0] {
         let (sea, part) = half_an_hour(step);
-        let found = sea.found();
-        assert_eq!(found.len(), 1, "{:?}", sea.names());
-        assert_part(&found[0], part, step);
-        assert_eq!(found[0].executes, 12);
-        let Some(Manoeuvre::ZigZag { rudder, heading, .. }) = found[0].manoeuvre else { panic!("a zig-zag") };
+        let detected = sea.detected();
+        assert_eq!(detected.len(), 1, "{:?}", sea.names());
+        assert_part(&detected[0], part, step);
+        assert_eq!(detected[0].executes, 12);
+        let Some(Manoeuvre::ZigZag { rudder, heading, .. }) = detected[0].manoeuvre else { panic!("a zig-zag") };
         assert!((to_deg(rudder) - 10.0).abs() < 0.01, "{}", to_deg(rudder));
         assert!((to_deg(heading) - 10.0).abs() < 0.8, "{}", to_deg(heading));
-        assert_eq!(found[0].quality.approach, Some(Approach::Steady));
-        assert!(found[0].from < part.0 - 5.0 && found[0].from > part.0 - 60.0, "from {}", found[0].from);
+        assert_eq!(detected[0].quality.approach, Some(Approach::Steady));
+        assert!(detected[0].from < part.0 - 5.0 && detected[0].from > part.0 - 60.0, "from {}", detected[0].from);
         assert_eq!(sea.names(), ["straight", "zig-zag 10/10", "straight"]);
     }
 }
@@ -51,11 +51,11 @@ fn an_unsteady_approach_is_left_out() {
         // The ship gathers way until some time in the trial.
         sea.speed[row] = 8.0 * (sea.time[row] / 900.0).min(1.0);
     }
-    let found = sea.found();
-    assert_eq!(found.len(), 1);
-    assert!((found[0].from - part.0).abs() < 0.41, "{} for {}", found[0].from, part.0);
-    assert_eq!(found[0].quality.approach, Some(Approach::Unsteady));
-    assert!(found[0].quality.remarks().iter().any(|remark| remark.contains("grew")));
+    let detected = sea.detected();
+    assert_eq!(detected.len(), 1);
+    assert!((detected[0].from - part.0).abs() < 0.41, "{} for {}", detected[0].from, part.0);
+    assert_eq!(detected[0].quality.approach, Some(Approach::Unsteady));
+    assert!(detected[0].quality.remarks().iter().any(|remark| remark.contains("grew")));
 }
 
 #[test]
@@ -67,8 +67,8 @@ fn the_stop_of_the_propeller_ends_a_part() {
         .collect::<Vec<_>>()
         .iter()
         .for_each(|&row| sea.propeller[row] = 0.0);
-    let found = sea.found();
-    assert!((found[0].until - stop).abs() < 0.41, "{} for {stop}", found[0].until);
+    let detected = sea.detected();
+    assert!((detected[0].until - stop).abs() < 0.41, "{} for {stop}", detected[0].until);
 }
 
 /// Periods of 20 s at 50 Hz and of 15 minutes at 1 Hz, fast and slow gear.
@@ -83,11 +83,11 @@ fn models_and_tankers() {
             sea.hold(0.0, 200.0 * factor);
             let part = sea.zig_zag(delta_deg, psi_deg, 5);
             sea.hold(0.0, 200.0 * factor);
-            let found = sea.found();
-            assert_eq!(found.len(), 1, "{step} {factor} {delta_deg}/{psi_deg}: {:?}", sea.names());
-            assert_part(&found[0], part, step);
-            assert_eq!(found[0].executes, 5);
-            let Some(Manoeuvre::ZigZag { heading, .. }) = found[0].manoeuvre else { panic!("a zig-zag") };
+            let detected = sea.detected();
+            assert_eq!(detected.len(), 1, "{step} {factor} {delta_deg}/{psi_deg}: {:?}", sea.names());
+            assert_part(&detected[0], part, step);
+            assert_eq!(detected[0].executes, 5);
+            let Some(Manoeuvre::ZigZag { heading, .. }) = detected[0].manoeuvre else { panic!("a zig-zag") };
             let share = to_deg(heading) / psi_deg;
             assert!(share > 0.95 && share < 1.25, "{step} {factor} {delta_deg}/{psi_deg}: {share}");
         }
@@ -111,11 +111,11 @@ fn faults_of_a_rudder_do_not_hide_a_zig_zag() {
     for (name, fault, tolerance) in faults {
         let (mut sea, part) = half_an_hour(0.2);
         fault(&mut sea);
-        let found = sea.found();
-        assert_eq!(found.len(), 1, "{name}: {:?}", sea.names());
-        assert_eq!((found[0].name().as_str(), found[0].executes), ("zig-zag 10/10", 12), "{name}");
-        assert!((found[0].start - part.0).abs() < tolerance, "{name}: {} for {}", found[0].start, part.0);
-        assert!((found[0].until - part.1).abs() < tolerance, "{name}: {} for {}", found[0].until, part.1);
+        let detected = sea.detected();
+        assert_eq!(detected.len(), 1, "{name}: {:?}", sea.names());
+        assert_eq!((detected[0].name().as_str(), detected[0].executes), ("zig-zag 10/10", 12), "{name}");
+        assert!((detected[0].start - part.0).abs() < tolerance, "{name}: {} for {}", detected[0].start, part.0);
+        assert!((detected[0].until - part.1).abs() < tolerance, "{name}: {} for {}", detected[0].until, part.1);
     }
 }
 
@@ -127,10 +127,10 @@ fn a_neutral_rudder_of_two_degrees() {
     sea.hold(sea.neutral, 60.0);
     let part = sea.zig_zag(10.0, 10.0, 6);
     sea.keep(600.0);
-    let found = sea.found();
-    assert_eq!(found.len(), 1, "{:?}", sea.names());
-    assert_part(&found[0], part, 0.2);
-    assert_eq!(found[0].quality.approach, Some(Approach::Steady));
+    let detected = sea.detected();
+    assert_eq!(detected.len(), 1, "{:?}", sea.names());
+    assert_part(&detected[0], part, 0.2);
+    assert_eq!(detected[0].quality.approach, Some(Approach::Steady));
 }
 
 #[test]
@@ -144,12 +144,12 @@ fn zig_zags_of_two_angles_or_with_a_pause_are_two() {
         }
         let second = sea.zig_zag(second_deg, second_deg, 5);
         sea.keep(300.0);
-        let found = sea.found();
-        assert_eq!(found.len(), 2, "{second_deg} after {pause} s: {found:?}");
-        assert_part(&found[0], first, 0.5);
-        assert_part(&found[1], second, 0.5);
-        assert!(found[1].from > found[0].until);
-        let names: Vec<String> = found.iter().map(|found| found.name()).collect();
+        let detected = sea.detected();
+        assert_eq!(detected.len(), 2, "{second_deg} after {pause} s: {detected:?}");
+        assert_part(&detected[0], first, 0.5);
+        assert_part(&detected[1], second, 0.5);
+        assert!(detected[1].from > detected[0].until);
+        let names: Vec<String> = detected.iter().map(|manoeuvre| manoeuvre.name()).collect();
         assert_eq!(names, [String::from("zig-zag 10/10"), format!("zig-zag {second_deg:.0}/{second_deg:.0}")]);
     }
 }
@@ -194,8 +194,8 @@ fn all_kinds_are_told_apart() {
     let mut list = manoeuvres(&sea.log());
     assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].start));
     // A course that is reached slowly may be two.
-    list.dedup_by(|found, before| found.manoeuvre.is_none() && before.manoeuvre.is_none());
-    let names: Vec<String> = list.iter().map(|found| found.name()).collect();
+    list.dedup_by(|piece, before| piece.manoeuvre.is_none() && before.manoeuvre.is_none());
+    let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, expected);
     let rudder_deg = |place: usize| list[place].manoeuvre.as_ref().map(|own| to_deg(own.rudder()).round());
     assert_eq!((rudder_deg(8), list[8].executes, rudder_deg(4)), (Some(15.0), 13, Some(35.0)));
@@ -230,7 +230,7 @@ fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
 
 /// Parts, without what changes its sign.
 fn parts(list: &[FoundManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
-    list.iter().map(|found| (found.from, found.until, found.start, found.executes)).collect()
+    list.iter().map(|part| (part.from, part.until, part.start, part.executes)).collect()
 }
 
 #[test]
@@ -273,12 +273,12 @@ fn a_day_at_ten_hertz() {
     for noise_deg in [0.0, 0.3] {
         (0..sea.rudder.len()).for_each(|row| sea.rudder[row] += from_deg(noise_deg) * sea.chance.draw());
         let start = std::time::Instant::now();
-        let found = sea.found();
+        let detected = sea.detected();
         println!("{} rows in {:.3} s", sea.time.len(), start.elapsed().as_secs_f64());
-        let executes: Vec<usize> = found.iter().map(|found| found.executes).collect();
+        let executes: Vec<usize> = detected.iter().map(|manoeuvre| manoeuvre.executes).collect();
         // In noise one hold of very many may be taken for two.
         let expected = [6, 6, 1].repeat(11);
-        let others = executes.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
+        let others = executes.iter().zip(&expected).filter(|(executes, expected)| executes != expected).count();
         let allowed = usize::from(noise_deg > 0.0);
         assert!(executes.len() == expected.len() && others <= allowed, "{noise_deg} deg of noise: {executes:?}");
     }

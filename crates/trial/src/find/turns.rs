@@ -1,76 +1,78 @@
-//! Turning circles and pull-outs in a log: the rudder rests at one angle until the ship has turned, and then amidships.
+//! Turning circles and pull-outs in a log: the rudder rests at an angle until the ship has turned, and then amidships.
 //! A change of course is neither.
+//!
+//! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::pattern::{Pattern, Prepared};
-use super::rest::Hold;
+use super::rudder::Hold;
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::Side;
 
-/// Smallest rudder angle of a turn, rad.
-const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();
+/// Minimum rudder angle of a turn, rad.
+const MIN_RUDDER: f64 = 3.0_f64.to_radians();
 
-/// Change of heading from which on a turn is a turning circle, rad: there the tactical diameter is known.
-const CIRCLE: f64 = PI;
+/// Minimum change of heading of a turning circle, rad: the tactical diameter is reached.
+const MIN_CIRCLE: f64 = PI;
 
-/// Change of heading from which on what follows a turn is a pull-out, rad.
-const TURN: f64 = FRAC_PI_2;
+/// Minimum change of heading of a turn before a pull-out, rad.
+const MIN_TURN: f64 = FRAC_PI_2;
 
-/// Largest rudder amidships, as a share of that of the turn.
-const AMIDSHIPS: f64 = 0.3;
+/// Maximum rudder amidships, as a share of the rudder of the turn.
+const MAX_AMIDSHIPS_SHARE: f64 = 0.3;
 
-/// Change of heading at the rate of the turn whose time is the scale of a pull-out, rad.
-const PULL_OUT: f64 = 30.0_f64.to_radians();
+/// Change of heading at the rate of the turn that takes one time scale of a pull-out, rad.
+const PULL_OUT_TURN: f64 = 30.0_f64.to_radians();
 
-/// Fewest such times in which the rudder rests amidships.
-const FEWEST_TIMES: f64 = 2.0;
+/// Minimum duration of the rudder amidships, time scales.
+const MIN_SCALES: f64 = 2.0;
 
-/// Change of the rate from one such time to the next, as a share of the rate of the turn, below which it is steady.
-const STEADY: f64 = 0.04;
+/// Maximum change of a steady yaw rate from a time scale to the next, as a share of the rate of the turn.
+const MAX_RATE_CHANGE: f64 = 0.04;
 
 /// The turning circles and pull-outs among holds that are in order of time.
 pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
-    let mut found = Vec::new();
+    let mut patterns = Vec::new();
     for (index, hold) in holds.iter().enumerate() {
         let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
-        if turned.abs() >= CIRCLE {
+        if turned.abs() >= MIN_CIRCLE {
             let (side, heading_change) = (Side::of(hold.level), Some(turned.abs()));
             let manoeuvre = Manoeuvre::TurningCircle { rudder: hold.level.abs(), side, duration: None, heading_change };
-            found.push(Pattern { manoeuvre, holds: vec![*hold], scale: TURN / rate, swing: TURN });
+            patterns.push(Pattern { manoeuvre, holds: vec![*hold], scale: MIN_TURN / rate, swing: MIN_TURN });
         }
-        found.extend(pull_out(record, hold, &holds[index + 1..]));
+        patterns.extend(pull_out(record, hold, &holds[index + 1..]));
     }
-    found
+    patterns
 }
 
-/// Change of heading in a turn, rad; `None` for a hold that is none.
+/// Change of heading in a turn, rad; `None` for a hold without a turn.
 fn turned(record: &Prepared, hold: &Hold) -> Option<f64> {
-    let rudder = hold.level - record.rest.neutral;
-    let is_over = hold.level.abs() >= SMALLEST_RUDDER && rudder.abs() >= SMALLEST_RUDDER;
+    let rudder = hold.level - record.rudder.neutral;
+    let is_over = hold.level.abs() >= MIN_RUDDER && rudder.abs() >= MIN_RUDDER;
     let turned = record.course.change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
-    (turned * rudder.signum() >= TURN).then_some(turned)
+    (turned * rudder.signum() >= MIN_TURN).then_some(turned)
 }
 
-/// Whether the log has no gap in a turn in which the rudder may have been elsewhere.
+/// `true` where a hold has no gap in which the rudder may have moved.
 fn is_whole(record: &Prepared, hold: &Hold) -> bool {
     let rows = &record.log.time[hold.first..=hold.last];
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
 }
 
-/// The rudder amidships from the end of a turn until the rate is steady or the rudder moves.
+/// Pull-out after a turn: the rudder amidships until the yaw rate is steady or the rudder moves.
 fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
-    let time = PULL_OUT / rate;
+    let time = PULL_OUT_TURN / rate;
     let soon = |hold: &&Hold| hold.from - turn.until <= time.max(0.25 * turn.duration());
     // Between two turns the rudder was not amidships.
     let mut reach = next.iter().take_while(soon).take_while(|hold| turned(record, hold).is_none());
-    let amidships = reach.find(|hold| hold.duration() >= FEWEST_TIMES * time)?;
-    let neutral = record.rest.neutral;
+    let amidships = reach.find(|hold| hold.duration() >= MIN_SCALES * time)?;
+    let neutral = record.rudder.neutral;
     let off = (amidships.level - neutral).abs();
-    let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;
+    let is_amidships = off <= MAX_AMIDSHIPS_SHARE * (turn.level - neutral).abs() && off < MIN_RUDDER;
     if !is_amidships || !is_whole(record, amidships) {
         return None;
     }
@@ -79,7 +81,7 @@ fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     while (pieces + 1.0) * time <= amidships.duration() {
         let change = rate_in(pieces)? - rate_in(pieces - 1.0)?;
         pieces += 1.0;
-        if change.abs() <= STEADY * rate {
+        if change.abs() <= MAX_RATE_CHANGE * rate {
             break;
         }
     }
@@ -95,5 +97,5 @@ fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let hold = Hold { first, last, from, until, level: amidships.level };
     let (rudder, side) = (turn.level.abs(), Side::of(turn.level));
     let manoeuvre = Manoeuvre::PullOut { rudder, side, hold: turn.duration(), duration: until - from };
-    Some(Pattern { manoeuvre, holds: vec![hold], scale: time, swing: PULL_OUT })
+    Some(Pattern { manoeuvre, holds: vec![hold], scale: time, swing: PULL_OUT_TURN })
 }

@@ -1,43 +1,45 @@
-//! Is the yaw rate an instrument, or the derivative of the heading?
+//! Detection of a yaw rate that is the derivative of the recorded heading and not the reading of an instrument.
 
 use crate::record::Trial;
 
-/// Fewest pairs of changes that show it.
-const FEWEST: usize = 60;
+/// Minimum number of changes.
+const MIN_CHANGES: usize = 60;
 
-/// Correlation of changes of the yaw rate and of the derivative of the heading that two instruments do not have.
-const SAME: f64 = 0.95;
+/// Minimum correlation of the changes of the yaw rate and of the derivative of the heading; two instruments have less.
+const MIN_CORRELATION: f64 = 0.95;
 
-/// Correlation of neighbouring changes of a derivative below which it is noise and jumps of the heading. Turns of a
-/// ship go on, and there two instruments agree.
-const NOISY: f64 = -0.2;
+/// Maximum correlation of successive changes of a derivative that consists of noise and jumps of the heading. The turns
+/// of a ship are smooth, and two instruments agree on them.
+const MAX_AUTOCORRELATION: f64 = -0.2;
 
-/// Whether the yaw rate repeats the noise and the jumps of the heading, as the derivative of it does.
+/// `true` where the yaw rate repeats the noise and the jumps of the heading, as its derivative does.
 pub(crate) fn is_derivative(trial: &Trial) -> bool {
     if trial.heading_from_yaw_rate() {
         return false;
     }
     let (time, psi) = (trial.time(), trial.heading());
     let Some(rate) = trial.yaw_rate() else { return false };
-    // From the row before, to the next one, and over both.
-    [[1, 0], [0, 1], [1, 1]].into_iter().any(|[back, on]| {
-        let rows = back..time.len().saturating_sub(on);
-        let slope = |row: usize| (psi[row + on] - psi[row - back]) / (time[row + on] - time[row - back]);
-        let of = |value: &dyn Fn(usize) -> f64| rows.clone().map(value).collect::<Vec<f64>>();
-        repeats(&of(&slope), &of(&|row| rate[row]), back + on)
+    // Backward, forward and central differences.
+    [[1, 0], [0, 1], [1, 1]].into_iter().any(|[back, forward]| {
+        let rows = back..time.len().saturating_sub(forward);
+        let slope = |row: usize| (psi[row + forward] - psi[row - back]) / (time[row + forward] - time[row - back]);
+        let values = |value: &dyn Fn(usize) -> f64| rows.clone().map(value).collect::<Vec<f64>>();
+        repeats(&values(&slope), &values(&|row| rate[row]), back + forward)
     })
 }
 
-/// Whether the changes of a rate are those of a derivative over `rows` rows that is mostly noise.
+/// `true` where the changes of a rate equal those of a difference quotient over `rows` rows that is mostly noise.
 fn repeats(slopes: &[f64], rates: &[f64], rows: usize) -> bool {
     let changes = |values: &[f64]| values.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>();
     let [slopes, rates] = [slopes, rates].map(changes);
     let later = slopes.iter().skip(rows);
     let both: Vec<[f64; 3]> =
         slopes.iter().zip(&rates).zip(later).map(|((slope, rate), next)| [*slope, *rate, *next]).collect();
-    let read: Vec<[f64; 3]> = both.into_iter().filter(|triple| triple.iter().all(|value| value.is_finite())).collect();
-    let sum = |first: usize, second: usize| read.iter().map(|triple| triple[first] * triple[second]).sum::<f64>();
-    read.len() >= FEWEST && sum(0, 1) > SAME * (sum(0, 0) * sum(1, 1)).sqrt() && sum(0, 2) < NOISY * sum(0, 0)
+    let finite: Vec<[f64; 3]> = both.into_iter().filter(|triple| triple.iter().all(|x| x.is_finite())).collect();
+    let sum = |first: usize, second: usize| finite.iter().map(|triple| triple[first] * triple[second]).sum::<f64>();
+    finite.len() >= MIN_CHANGES
+        && sum(0, 1) > MIN_CORRELATION * (sum(0, 0) * sum(1, 1)).sqrt()
+        && sum(0, 2) < MAX_AUTOCORRELATION * sum(0, 0)
 }
 
 #[cfg(test)]

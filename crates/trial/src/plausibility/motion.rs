@@ -1,18 +1,18 @@
-//! How far and how often a channel moves: ratios of what is returned here hold for ships of every size.
+//! Movement of a channel: range, reversals and mean rate. Ratios of these figures hold for ships of every size.
 
-/// Smallest and largest finite value; ∞ and −∞ where there is none.
+/// Smallest and largest finite value; ∞ and −∞ without finite values.
 pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Largest minus smallest finite value; 0 where there is none.
+/// Largest minus smallest finite value; 0 without finite values.
 pub(crate) fn range(values: &[f64]) -> f64 {
     let (low, high) = extremes(values.iter().copied());
     if low <= high { high - low } else { 0.0 }
 }
 
-/// How often a rudder (rad) goes from one side of its range to the other, by more than half of it.
+/// Number of reversals of a rudder (rad): movements from side to side of its range, by more than half of it.
 pub fn reversals(rudder: &[f64]) -> usize {
     let (low, high) = extremes(rudder.iter().copied());
     let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
@@ -27,7 +27,7 @@ pub fn reversals(rudder: &[f64]) -> usize {
     count
 }
 
-/// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each; NaN without two
+/// Mean absolute rate of turn, rad/s, from changes of heading over a hundredth of the record each; NaN without two
 /// headings.
 pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
     let (turned, duration) = changes(time, heading)
@@ -35,8 +35,7 @@ pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
     turned / duration
 }
 
-/// Changes of a channel, and the time they took (s), over a hundredth of its readings each, in which noise counts
-/// little.
+/// Changes of a channel with their duration (s), over a hundredth of its readings each, so that noise matters little.
 pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     const PARTS: usize = 100;
     let read = values.iter().filter(|value| value.is_finite()).count();

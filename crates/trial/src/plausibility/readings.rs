@@ -1,5 +1,5 @@
-//! Does a channel hold what an instrument read? One that stands still beside noise, at the end of its scale or at any
-//! value, and one of coarse steps is told before anything is said of the ship.
+//! Faults of an instrument: a noisy channel that is clipped at the end of its scale or frozen, and a channel in coarse
+//! steps.
 
 use std::ops::Range;
 
@@ -8,35 +8,34 @@ use document::{Code, Warning};
 use super::extremes;
 use crate::channel::Channel;
 use crate::record::Trial;
-use crate::words::{counted, instant, shortened};
+use crate::wording::{counted, instant, shortened};
 use crate::zigzag::quantum;
 
-/// Fewest rows of one value that noise does not make.
-const FEWEST_ROWS: usize = 20;
+/// Minimum number of rows of a value that noise does not repeat.
+const MIN_STILL_ROWS: usize = 20;
 
-/// Chance at which noise repeats one value over so many rows somewhere in the record.
-const ACCIDENT: f64 = 1e-6;
+/// Maximum probability that noise repeats a value over as many rows somewhere in the record.
+const MAX_CHANCE: f64 = 1e-6;
 
-/// Share of the rows, and fewest of them, that turn back at once and by more than a digit where a channel is noisy. A
-/// helmsman turns back later, and a channel between two digits by one of them.
-const NOISY: (f64, usize) = (0.08, 10);
+/// Minimum share and number of rows of a noisy channel that turn back at once and by more than a digit. A helmsman turns
+/// back later, and a channel between two digits turns back by a digit.
+const MIN_NOISY: (f64, usize) = (0.08, 10);
 
-/// Least noise beside which a channel stands still, deg.
-const NOISE_DEG: f64 = 0.03;
+/// Minimum noise of a noisy channel, deg.
+const MIN_NOISE_DEG: f64 = 0.03;
 
-/// Steps below this are the usual digits of rudder and heading, deg.
-const COARSE_DEG: f64 = 1.5;
+/// Minimum step of a coarse scale, deg; usual digits of rudder and heading are finer.
+const MIN_COARSE_STEP_DEG: f64 = 1.5;
 
-/// Fewest steps of a channel, and share of its changes, that go to the next value of a coarse scale: an order goes
-/// further at once.
-const TO_THE_NEXT: (usize, f64) = (8, 0.6);
+/// Minimum number of changes to the next value of a coarse scale, and their minimum share: an order changes by more.
+const MIN_NEXT: (usize, f64) = (8, 0.6);
 
-/// Fewest values of a coarse scale: an order has three.
-const FEWEST_VALUES: usize = 5;
+/// Minimum number of values of a coarse scale: an order has three.
+const MIN_VALUES: usize = 5;
 
-/// Fewest pauses within a movement, and their share of its steps: a rudder of one rate, read evenly, goes on at every
-/// row.
-const PAUSES: (usize, f64) = (3, 0.06);
+/// Minimum number of pauses within movements, and their minimum share of the changes: a rudder of constant rate, read
+/// evenly, changes in every row.
+const MIN_PAUSES: (usize, f64) = (3, 0.06);
 
 /// Warnings of channels that are clipped, frozen or coarse; `columns` are their names in the file.
 pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning> {
@@ -52,7 +51,7 @@ pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning
     warnings.collect()
 }
 
-/// Runs of at least [`FEWEST_ROWS`] rows with one value.
+/// Runs of at least [`MIN_STILL_ROWS`] rows with the same value.
 fn runs(values: &[f64]) -> Vec<Range<usize>> {
     let mut first = 0;
     let runs = values.chunk_by(|before, next| before == next).map(|run| {
@@ -60,11 +59,11 @@ fn runs(values: &[f64]) -> Vec<Range<usize>> {
         first = rows.end;
         rows
     });
-    runs.filter(|run| run.len() >= FEWEST_ROWS).collect()
+    runs.filter(|run| run.len() >= MIN_STILL_ROWS).collect()
 }
 
-/// The last decimal of the larger half of the values, rad: numbers with so many significant digits have finer ones near
-/// zero. Zero for values without decimals of a degree.
+/// Last decimal of the larger half of the values, rad: numbers with a fixed count of significant digits have finer
+/// decimals near zero. Zero for values without decimals of a degree.
 fn digit(values: &[f64]) -> f64 {
     let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let large: Vec<f64> = values.iter().filter(|value| value.abs() >= half).map(|value| value.to_degrees()).collect();
@@ -72,10 +71,10 @@ fn digit(values: &[f64]) -> f64 {
     [1.0, 0.1, 0.01, 1e-3].into_iter().find(is_decimal).map_or(0.0, f64::to_radians)
 }
 
-/// What is said of a noisy channel that stands still.
+/// Message of a noisy channel that stands still: clipped or frozen.
 fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let mut still = runs(values);
-    let least = (1.5 * digit(values)).max(NOISE_DEG.to_radians());
+    let least = (1.5 * digit(values)).max(MIN_NOISE_DEG.to_radians());
     let is_still = |row: usize| still.iter().any(|run| run.contains(&row));
     let (mut rows, mut equal, mut turned) = (0, 0, 0);
     for row in (1..values.len().saturating_sub(1)).filter(|&row| !is_still(row)) {
@@ -84,12 +83,12 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
         equal += usize::from(before == 0.0);
         turned += usize::from(before * after < 0.0 && before.abs().max(after.abs()) > least);
     }
-    if turned < NOISY.1 || (turned as f64) < NOISY.0 * rows as f64 {
+    if turned < MIN_NOISY.1 || (turned as f64) < MIN_NOISY.0 * rows as f64 {
         return None;
     }
-    // Digits repeat a value by chance, the oftener the coarser they are.
+    // Coarse digits repeat a value by chance.
     let again = (equal as f64 / rows as f64).max(0.01);
-    let longest = (ACCIDENT / values.len() as f64).ln() / again.ln();
+    let longest = (MAX_CHANCE / values.len() as f64).ln() / again.ln();
     still.retain(|run| run.len() as f64 > longest);
     let first = still.first()?.clone();
     let (low, high) = extremes(values.iter().copied());
@@ -102,16 +101,16 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
         let after = ends.iter().find(|run| values[run.start] != values[from.start]);
         let after = after.map_or_else(String::new, |run| format!(" and {}°", shown(run)));
         return Some(format!(
-            "{spoken} stands at exactly {}°{after} in {rows} rows, first from t = {} s, beside readings that vary with noise: it is \
-             clipped at the end of its scale, and K is too large by what is cut off; mend the range of the sensor or the logger, or \
-             give the order in place of it (`is = \"rudder_order_deg\"` for its column, in a sidecar NAME.trial.toml)",
+            "{spoken} stands at exactly {}°{after} in {rows} rows, first from t = {} s, while its other readings are noisy: \
+             it is clipped at the end of its scale, which makes K too large; correct the range of the sensor or the logger, \
+             or use the rudder order instead (`is = \"rudder_order_deg\"` for its column, in a sidecar NAME.trial.toml)",
             shown(from),
             instant(time[from.start]),
         ));
     }
     Some(format!(
-        "{spoken} is frozen at {}° from t = {} s to {} s ({}), while it varies with noise before and after: K and T are of an angle \
-         that nobody read; use the part without it (--from, --until), or give the order in place of it",
+        "{spoken} is frozen at {}° from t = {} s to {} s ({}), while it is noisy before and after, which makes K and T \
+         wrong; use the part without it (--from, --until), or the rudder order instead",
         shown(&first),
         instant(time[first.start]),
         instant(time[first.end - 1]),
@@ -119,7 +118,7 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     ))
 }
 
-/// What is said of a channel in coarse steps.
+/// Message of a channel in coarse steps.
 fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     let step = quantum(values);
     let step_deg = step.to_degrees();
@@ -127,7 +126,7 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     let multiple = |value: f64| (value - first) / step;
     let on_scale = |value: f64| (multiple(value) - multiple(value).round()).abs() < 1e-3;
     let mut read: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    if step_deg < COARSE_DEG || !read.iter().all(|&value| on_scale(value)) {
+    if step_deg < MIN_COARSE_STEP_DEG || !read.iter().all(|&value| on_scale(value)) {
         return None;
     }
     let changes: Vec<f64> = read.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0).collect();
@@ -136,13 +135,14 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     let pauses = read.windows(4).filter(goes_on).count();
     read.sort_unstable_by(f64::total_cmp);
     read.dedup_by(|before, after| (*before - *after).abs() < 0.5 * step);
-    let is_scale = read.len() >= FEWEST_VALUES
-        && next >= TO_THE_NEXT.0
-        && pauses >= PAUSES.0
-        && pauses as f64 >= PAUSES.1 * changes.len() as f64;
-    (is_scale && next as f64 >= TO_THE_NEXT.1 * changes.len() as f64).then(|| {
+    let is_scale = read.len() >= MIN_VALUES
+        && next >= MIN_NEXT.0
+        && pauses >= MIN_PAUSES.0
+        && pauses as f64 >= MIN_PAUSES.1 * changes.len() as f64;
+    (is_scale && next as f64 >= MIN_NEXT.1 * changes.len() as f64).then(|| {
         format!(
-            "{spoken} comes in steps of {}°: it is rounded, and each reading may be wrong by half of that; log it with a decimal",
+            "{spoken} comes in steps of {}°: it is rounded, and each reading may be wrong by half a step; log it with a \
+             decimal",
             instant(step_deg)
         )
     })

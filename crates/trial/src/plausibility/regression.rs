@@ -1,19 +1,21 @@
-//! The two small regressions behind the checks of signs and units. Both work on integrals of what was recorded, so that
-//! noise is smoothed and no derivative is taken.
+//! Regressions for the checks of signs and units. They use integrals of the recorded signals, so that noise is smoothed
+//! and no derivative is needed.
+//!
+//! Source: Frisch & Waugh (1933), Partial time regressions as compared with individual trends, Econometrica 1(4).
 
 use nalgebra::DMatrix;
 
 use crate::record::{Trial, integrate};
 
-/// Most rows that enter a regression; longer records are thinned after they were integrated.
-const ROWS: usize = 2000;
+/// Maximum number of rows of a regression; longer records are thinned after integration.
+const MAX_ROWS: usize = 2000;
 
-/// One signal explained by another after the same nuisance signals were taken out of both.
+/// Partial regression of a signal on another, with nuisance signals taken out of both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PartialSlope {
-    /// Change of the one per change of the other.
+    /// Slope: units of the response per unit of the regressor.
     pub value: f64,
-    /// Share of the remaining sum of squares it explains, 0 to 1.
+    /// Explained share of the remaining sum of squares, 0 to 1.
     pub share: f64,
 }
 
@@ -64,7 +66,7 @@ pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
 
 /// Slope of the heading on the integral of the yaw rate: 1 where both agree in unit and sign.
 ///
-/// ψ = c₀ + c₁ t + s ∫r, so that a bias of the rate does no harm. `None` as above, or without a yaw rate of its own.
+/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as above, or without a recorded yaw rate.
 pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
     if trial.heading_from_yaw_rate() {
         return None;
@@ -75,14 +77,14 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
     partial_slope(thinned(both).map(|i| [1.0, time[i] - time[0], integral[i], psi[i]]).collect())
 }
 
-/// Every n-th of some rows, so that at most [`ROWS`] are kept.
+/// Every n-th of some rows; at most [`MAX_ROWS`] are kept.
 pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = usize> {
-    let every = rows.clone().count() / ROWS + 1;
+    let every = rows.clone().count() / MAX_ROWS + 1;
     rows.step_by(every)
 }
 
-/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933): the last corner
-/// of R in the QR decomposition of the columns.
+/// Partial slope of the last column on the last but one, with all other columns taken out of both (Frisch & Waugh 1933):
+/// the last corner of R in the QR decomposition of the columns.
 pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();

@@ -52,9 +52,9 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
 
 fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausible> {
     let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
-    let found = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
+    let checked = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and that is said of each.
-    found
+    checked
         .map(|warnings| warnings.into_iter().filter(|warning| !warning.text.contains("looks like the order")).collect())
 }
 
@@ -79,7 +79,7 @@ fn a_column_that_is_named_so_already_is_thought_of() {
     for (channel, factor) in [(Channel::Rudder, 20.0), (Channel::Rudder, 0.01), (Channel::Heading, 60.0)] {
         let message =
             verdict(scaled(zig_zag(10.0, 10.0, 0.1, 16.3), channel, factor)).expect_err("refused").to_string();
-        assert!(message.contains("if it is named so already, its numbers are of another scale"), "{message}");
+        assert!(message.contains("if it already has that name, its numbers have another scale"), "{message}");
     }
 }
 
@@ -91,11 +91,11 @@ fn zig_zags_of_ships_of_every_size_pass_and_every_wrong_unit_and_sign_is_named()
             let context = format!("{delta_deg}/{psi_deg}, K {gain} T {lag}");
             assert_eq!(verdict(made()), Ok(vec![]), "{context}");
             for (channel, factor, names) in WRONG {
-                let found = verdict(scaled(made(), channel, factor)).expect_err(&context);
-                let found = format!("{found:?}");
+                let error = verdict(scaled(made(), channel, factor)).expect_err(&context);
+                let error = format!("{error:?}");
                 assert!(
-                    names.iter().any(|name| found.contains(name)),
-                    "{context}, {channel:?} times {factor}: {found}"
+                    names.iter().any(|name| error.contains(name)),
+                    "{context}, {channel:?} times {factor}: {error}"
                 );
             }
         }

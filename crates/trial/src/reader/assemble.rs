@@ -1,7 +1,7 @@
-//! Channels at their own instants become the columns of one record. A row is an instant at which heading, rudder or yaw
-//! rate was read; what was not read then is missing there. The rudder, which acts at every instant, runs straight
-//! between its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is
-//! made up over a gap.
+//! Assembly of channels with different sampling instants into the columns of a record. A row is an instant with a
+//! reading of heading, rudder or yaw rate; other observed channels are missing there. The rudder is interpolated
+//! linearly between its readings, as the steering gear moves; so are model inputs such as speed and wind. Gaps are not
+//! interpolated.
 
 use document::{Code, Warning};
 
@@ -10,59 +10,59 @@ use super::source::Series;
 use crate::channel::Channel;
 use crate::cleaning::draw_line;
 use crate::record::Columns;
-use crate::words::counted;
+use crate::wording::counted;
 use estimation::statistics::upper_median;
 
-/// Longest way between two readings over which a channel runs straight, in its usual intervals.
-const LONGEST_WAY: f64 = 3.0;
+/// Maximum interval between two readings for interpolation, usual intervals.
+const MAX_INTERVAL: f64 = 3.0;
 
-/// Share of the rows that may be left out for a rudder without a doubt.
-const MANY: f64 = 0.2;
+/// Maximum share of rows left out without a warning of a gap.
+const MAX_LEFT_OUT_SHARE: f64 = 0.2;
 
-/// Instants nearer than this are one, s.
-const SAME: f64 = 1e-6;
+/// Tolerance of equal instants, s.
+const TIME_TOLERANCE: f64 = 1e-6;
 
-/// Channels that are observed: their readings make the rows.
+/// Observed channels: their readings are the rows.
 const OBSERVED: [Channel; 4] = [Channel::Heading, Channel::Rudder, Channel::RudderOrder, Channel::YawRate];
 
-/// The columns of channels that have instants of their own.
-pub(super) fn columns(series: Vec<Series>) -> Columns {
-    let of_rows = |series: &&Series| OBSERVED.contains(&series.channel);
-    let mut time: Vec<f64> = series.iter().filter(of_rows).flat_map(|series| series.time.iter().copied()).collect();
+/// Columns of channels with different sampling instants.
+pub(super) fn columns(series: &[Series]) -> Columns {
+    let is_observed = |series: &&Series| OBSERVED.contains(&series.channel);
+    let mut time: Vec<f64> = series.iter().filter(is_observed).flat_map(|series| series.time.iter().copied()).collect();
     time.sort_unstable_by(f64::total_cmp);
-    time.dedup_by(|later, earlier| *later - *earlier < SAME);
-    let channels = series.into_iter().map(|series| (series.channel, at_rows(&series, &time))).collect();
+    time.dedup_by(|later, earlier| *later - *earlier < TIME_TOLERANCE);
+    let channels = series.iter().map(|series| (series.channel, at_rows(series, &time))).collect();
     Columns { time, channels, unknown: Vec::new() }
 }
 
-/// The values of a channel at the rows: where it was read, and for an input of a model between its readings.
+/// Values of a channel at the rows: its readings, interpolated between them for a model input.
 fn at_rows(series: &Series, time: &[f64]) -> Vec<f64> {
     let mut values = vec![f64::NAN; time.len()];
     if OBSERVED.contains(&series.channel) {
         let mut row = 0;
         for (&instant, &value) in series.time.iter().zip(&series.values) {
-            while row + 1 < time.len() && time[row] < instant - SAME {
+            while row + 1 < time.len() && time[row] < instant - TIME_TOLERANCE {
                 row += 1;
             }
-            if (time[row] - instant).abs() <= SAME {
+            if (time[row] - instant).abs() <= TIME_TOLERANCE {
                 values[row] = value;
             }
         }
         return values;
     }
-    let longest = LONGEST_WAY * usual_interval(&series.time).unwrap_or(f64::INFINITY);
+    let longest = MAX_INTERVAL * usual_interval(&series.time).unwrap_or(f64::INFINITY);
     let mut next = 0;
     for (value, &instant) in values.iter_mut().zip(time) {
         while next < series.time.len() && series.time[next] < instant {
             next += 1;
         }
-        if next < series.time.len() && series.time[next] - instant <= SAME {
+        if next < series.time.len() && series.time[next] - instant <= TIME_TOLERANCE {
             *value = series.values[next];
         } else if next > 0 && next < series.time.len() && series.time[next] - series.time[next - 1] <= longest {
             let share = (instant - series.time[next - 1]) / (series.time[next] - series.time[next - 1]);
             let (from, to) = (series.values[next - 1], series.values[next]);
-            let way = if is_direction(series.channel) { shortest(to - from) } else { to - from };
-            *value = from + share * way;
+            let change = if is_direction(series.channel) { wrapped(to - from) } else { to - from };
+            *value = from + share * change;
         }
     }
     values
@@ -72,8 +72,8 @@ fn is_direction(channel: Channel) -> bool {
     matches!(channel, Channel::WindRelativeFrom | Channel::WindTrueFrom)
 }
 
-/// The same turn by the shortest way, rad.
-fn shortest(turn: f64) -> f64 {
+/// A turn wrapped to −π to π, rad.
+fn wrapped(turn: f64) -> f64 {
     turn - (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
@@ -82,7 +82,7 @@ fn usual_interval(time: &[f64]) -> Option<f64> {
     upper_median(time.windows(2).map(|pair| pair[1] - pair[0]))
 }
 
-/// The readings of the channels of a table; nothing of what it does not know.
+/// Readings of the channels of a table, without its unknown columns.
 pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
     let Columns { time, channels, .. } = columns;
     let readings = |(channel, values): (Channel, Vec<f64>)| {
@@ -97,7 +97,7 @@ pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
     channels.into_iter().map(readings).collect()
 }
 
-/// What a record has that was not recorded: the rudder where only its order is known, the speed of surge and sway.
+/// Adds derived channels: the rudder order for a missing rudder angle, the speed from surge and sway.
 pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
     let channels = &mut columns.channels;
     if !channels.contains_key(&Channel::Speed)
@@ -112,12 +112,12 @@ pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
     let order = channels.get(&Channel::RudderOrder)?.clone();
     channels.insert(Channel::Rudder, order);
     Some(Code::RudderOrder.warning(
-        "there is no rudder angle; the order stands for it, so the lag of the steering gear is in the response",
+        "there is no rudder angle; the rudder order is used instead, so the lag of the steering gear is part of the response",
     ))
 }
 
-/// Gives every row a rudder: between two readings that are no gap apart it runs straight, other rows are left out.
-pub(super) fn straight_rudder(columns: &mut Columns) -> Option<Warning> {
+/// Gives every row a rudder angle: interpolated between two readings without a gap; other rows are left out.
+pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
     let read: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].is_finite()).collect();
@@ -125,7 +125,7 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<Warning> {
         return None;
     }
     let instants: Vec<f64> = read.iter().map(|&row| time[row]).collect();
-    let longest = LONGEST_WAY * usual_interval(&instants)? + SAME;
+    let longest = MAX_INTERVAL * usual_interval(&instants)? + TIME_TOLERANCE;
     let mut filled = 0;
     for pair in read.windows(2) {
         let (from, to) = (pair[0], pair[1]);
@@ -137,18 +137,18 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<Warning> {
     let keep: Vec<bool> = rudder.iter().map(|delta| delta.is_finite()).collect();
     let left_out = keep.iter().filter(|keep| !**keep).count();
     columns.retain(&keep);
-    let told = [
-        (filled, "without rudder angle, which runs straight between its readings there"),
-        (left_out, "without rudder angle left out, where none was read before or after for long"),
+    let notes = [
+        (filled, "without rudder angle, which is interpolated between its readings"),
+        (left_out, "without rudder angle left out, in a gap of its readings"),
     ];
-    let told = told.into_iter().filter(|(count, _)| *count > 0);
-    let told = told.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
-    // Where many are left out, nobody knows what the rudder did.
-    let code = if left_out as f64 > MANY * keep.len() as f64 { Code::Gap } else { Code::LeftOut };
-    Some(code.warning(told.join("; ")))
+    let notes = notes.into_iter().filter(|(count, _)| *count > 0);
+    let notes = notes.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
+    // Where many rows are left out, the movement of the rudder is unknown.
+    let code = if left_out as f64 > MAX_LEFT_OUT_SHARE * keep.len() as f64 { Code::Gap } else { Code::LeftOut };
+    Some(code.warning(notes.join("; ")))
 }
 
-/// Refuses channels whose readings have no time in common, and names what is missing altogether.
+/// Refuses channels without rudder or heading, and channels whose readings do not overlap in time.
 pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let Columns { time, channels, .. } = columns;
     let find = |wanted: [Channel; 2]| wanted.into_iter().find_map(|channel| channels.get(&channel));
@@ -156,8 +156,8 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let heading = find([Channel::Heading, Channel::YawRate]);
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
-        let found = channels.keys().map(|&channel| channel.spoken().to_owned()).collect();
-        return Err(Problem::NoChannel { wanted, found });
+        let channels = channels.keys().map(|&channel| channel.spoken().to_owned()).collect();
+        return Err(Problem::NoChannel { wanted, channels });
     };
     let span = |values: &[f64]| {
         let first = values.iter().position(|value| value.is_finite())?;
@@ -172,16 +172,16 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     }
 }
 
-/// One of each channel; the first file that has it gives it. The names of those that are not used.
-pub(super) fn once(series: Vec<Series>) -> (Vec<Series>, Vec<Channel>) {
-    let (mut kept, mut doubled): (Vec<Series>, Vec<Channel>) = Default::default();
-    for own in series {
-        match kept.iter().any(|other| other.channel == own.channel) {
-            true => doubled.push(own.channel),
-            false => kept.push(own),
+/// First series of each channel, in the order of the files, and the channels of the series that are dropped.
+pub(super) fn without_duplicates(all: Vec<Series>) -> (Vec<Series>, Vec<Channel>) {
+    let (mut kept, mut dropped): (Vec<Series>, Vec<Channel>) = Default::default();
+    for series in all {
+        match kept.iter().any(|earlier| earlier.channel == series.channel) {
+            true => dropped.push(series.channel),
+            false => kept.push(series),
         }
     }
-    (kept, doubled)
+    (kept, dropped)
 }
 
 #[cfg(test)]
@@ -199,10 +199,10 @@ mod tests {
         let heading = series_of(Channel::Heading, 0.0, 0.5, 21, |t| t);
         let rudder = series_of(Channel::Rudder, 0.2, 1.0, 10, |t| 2.0 * t);
         let speed = series_of(Channel::Speed, -1.0, 2.0, 8, |t| 3.0 * t);
-        let mut columns = columns(vec![heading, rudder, speed]);
+        let mut columns = columns(&[heading, rudder, speed]);
         assert_eq!(columns.time[..4], [0.0, 0.2, 0.5, 1.0]);
-        let told = straight_rudder(&mut columns).expect("rows were filled").text;
-        assert!(told.contains("runs straight"), "{told}");
+        let text = interpolate_rudder(&mut columns).expect("rows were filled").text;
+        assert!(text.contains("is interpolated between its readings"), "{text}");
         // From the first reading of the rudder to its last.
         assert_eq!((columns.time[0], columns.time[columns.time.len() - 1]), (0.2, 9.2));
         for (row, &t) in columns.time.iter().enumerate() {
@@ -221,9 +221,9 @@ mod tests {
         let mut rudder = series_of(Channel::Rudder, 0.0, 1.0, 100, |t| t);
         rudder.time.drain(40..50);
         rudder.values.drain(40..50);
-        let mut columns = columns(vec![heading, rudder]);
-        let told = straight_rudder(&mut columns).expect("rows were left out").text;
-        assert!(told.starts_with("10 rows without rudder angle left out"), "{told}");
+        let mut columns = columns(&[heading, rudder]);
+        let text = interpolate_rudder(&mut columns).expect("rows were left out").text;
+        assert!(text.starts_with("10 rows without rudder angle left out"), "{text}");
         assert_eq!(columns.time.len(), 90);
     }
 }

@@ -1,4 +1,4 @@
-//! What an error of the reader is about, for programs.
+//! Machine-readable codes of the errors of the reader.
 
 use document::ErrorCode;
 
@@ -8,7 +8,7 @@ use crate::plausibility::Implausible;
 use crate::record::TrialError;
 
 impl ReadError {
-    /// What it is about.
+    /// Code of the error.
     pub fn code(&self) -> ErrorCode {
         match self {
             Self::Table { problem, .. } => problem.code(),
@@ -18,10 +18,10 @@ impl ReadError {
 }
 
 impl Problem {
-    /// What it is about.
+    /// Code of the problem.
     pub fn code(&self) -> ErrorCode {
         match self {
-            Self::File(error) => of_file(error),
+            Self::File(error) => file_code(error),
             Self::IsSidecar | Self::NeedsNoSidecar => ErrorCode::Sidecar,
             Self::Empty => ErrorCode::Empty,
             Self::Binary { .. } | Self::Utf16 | Self::NotUtf8 { .. } => ErrorCode::Encoding,
@@ -47,13 +47,13 @@ impl Problem {
             Self::TimeBackwards { .. } | Self::ClockBack { .. } => ErrorCode::TimeBackwards,
             Self::TimeRepeats { .. } => ErrorCode::TimeRepeats,
             Self::EmptyPart { .. } => ErrorCode::EmptyPart,
-            Self::Implausible(implausible) => of_implausible(implausible),
-            Self::Record(error) => of_columns(error),
+            Self::Implausible(implausible) => plausibility_code(implausible),
+            Self::Record(error) => columns_code(error),
         }
     }
 }
 
-fn of_file(error: &FileError) -> ErrorCode {
+fn file_code(error: &FileError) -> ErrorCode {
     match error {
         FileError::NotFound => ErrorCode::NotFound,
         FileError::Folder | FileError::NoFile => ErrorCode::NoFile,
@@ -63,7 +63,7 @@ fn of_file(error: &FileError) -> ErrorCode {
     }
 }
 
-fn of_implausible(implausible: &Implausible) -> ErrorCode {
+fn plausibility_code(implausible: &Implausible) -> ErrorCode {
     match implausible {
         Implausible::NothingMoves { .. } => ErrorCode::NothingMoves,
         Implausible::HeadingConstant { .. } => ErrorCode::HeadingConstant,
@@ -78,7 +78,7 @@ fn of_implausible(implausible: &Implausible) -> ErrorCode {
     }
 }
 
-fn of_columns(error: &TrialError) -> ErrorCode {
+fn columns_code(error: &TrialError) -> ErrorCode {
     match error {
         TrialError::Missing(_) | TrialError::Rudder { .. } => ErrorCode::MissingChannel,
         TrialError::Length { .. } => ErrorCode::RowLength,

@@ -1,5 +1,5 @@
-//! Numbers that are no angle in the unit of their name: counts of a converter, tenths and hundredths of a degree, a
-//! rudder whose side stands in another column, a count of milliseconds since 1970.
+//! Numbers in another unit than their name says: counts of a converter, tenths and hundredths of a degree, a rudder
+//! with its side in another column, milliseconds since 1970.
 
 use document::{Code, Warning};
 use ship::angle::DEGREE;
@@ -8,34 +8,34 @@ use super::error::Problem;
 use super::layout::{Content, RawColumn};
 use super::units::{EPOCH, ZIG_ZAG};
 use crate::channel::Channel;
-use crate::cleaning::{LARGEST_SHARE, NO_RUDDER};
+use crate::cleaning::{IMPOSSIBLE_RUDDER, MAX_IMPOSSIBLE_SHARE};
 use crate::plausibility::{extremes, range, reversals};
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// Largest angle of a rudder, deg: few go beyond 45°.
-const LARGEST_RUDDER_DEG: f64 = 46.0;
+/// Maximum angle of a rudder, deg: few go beyond 45°.
+const MAX_RUDDER_DEG: f64 = 46.0;
 
-/// Least step of a heading in tenths of a degree at north, as a number in the file.
-const WRAP_OF_TENTHS: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
+/// Step of a heading in tenths of a degree at north, as a number in the file.
+const TENTHS_WRAP: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
 
-/// Least range of a heading in tenths of a degree over that of its rudder in degrees.
-const LEAST_RATIO: f64 = 5.0;
+/// Minimum range of a heading in tenths of a degree over the range of its rudder in degrees.
+const MIN_TENTHS_RATIO: f64 = 5.0;
 
-/// What the numbers of a column are.
+/// Kind of the numbers of a column that are not degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Numbers {
-    /// So many to a degree.
+    /// Parts of a degree: the number of parts to a degree.
     Parts(f64),
-    /// Counts about this one.
+    /// Counts of a converter: the count at zero.
     Counts(f64),
     /// Neither.
     NoAngle,
 }
 
-/// Refuses rudder and heading whose numbers are no angles in the unit of their columns.
+/// Refuses rudder and heading whose numbers are not angles in the unit of their columns.
 pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
-    let of = |channel: Channel| {
-        // Radians, and what a sidecar scales, are their own affair.
+    let column_of = |channel: Channel| {
+        // Radians and columns with a scale in the sidecar are not checked.
         let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
         let is_channel = |content: Content| match content {
             Content::Channel(held, factor) => held == channel && is_in_degrees(factor),
@@ -52,23 +52,23 @@ pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
             Numbers::NoAngle => Problem::NoAngle { line, column, quantity, largest },
         })
     };
-    let rudder = of(Channel::Rudder).or_else(|| of(Channel::RudderOrder));
-    if let Some((rudder, numbers)) = rudder.and_then(|rudder| Some((rudder, of_rudder(rudder)?))) {
+    let rudder = column_of(Channel::Rudder).or_else(|| column_of(Channel::RudderOrder));
+    if let Some((rudder, numbers)) = rudder.and_then(|rudder| Some((rudder, rudder_numbers(rudder)?))) {
         return refusal(rudder, "rudder angle", numbers);
     }
-    match of(Channel::Heading).filter(|heading| is_in_tenths(heading, rudder)) {
+    match column_of(Channel::Heading).filter(|heading| is_in_tenths(heading, rudder)) {
         Some(heading) => refusal(heading, "heading", Numbers::Parts(10.0)),
         None => Ok(()),
     }
 }
 
-/// What the numbers of a rudder are where they are no degrees.
-fn of_rudder(rudder: &RawColumn) -> Option<Numbers> {
+/// Kind of the numbers of a rudder; `None` for degrees.
+fn rudder_numbers(rudder: &RawColumn) -> Option<Numbers> {
     let read: Vec<f64> = rudder.values.iter().copied().filter(|value| value.is_finite()).collect();
-    let wild = read.iter().filter(|value| value.abs() > NO_RUDDER).count();
-    let is_few = wild as f64 <= LARGEST_SHARE * read.len() as f64;
+    let wild = read.iter().filter(|value| value.abs() > IMPOSSIBLE_RUDDER).count();
+    let is_few = wild as f64 <= MAX_IMPOSSIBLE_SHARE * read.len() as f64;
     let (low, high) = extremes(read.iter().copied().map(f64::to_degrees));
-    // From 0 to 360, it is written in another way, and read.
+    // A rudder from 0 to 360 is converted later, in the cleaning.
     let is_circle = low >= -1e-9
         && high <= 360.0 + 1e-9
         && read.iter().all(|value| {
@@ -80,7 +80,7 @@ fn of_rudder(rudder: &RawColumn) -> Option<Numbers> {
     }
     let largest = high.max(-low);
     let has_zero = low <= 0.1 * largest && high >= -0.1 * largest;
-    let parts = [10.0, 100.0].into_iter().find(|parts| largest <= parts * LARGEST_RUDDER_DEG);
+    let parts = [10.0, 100.0].into_iter().find(|parts| largest <= parts * MAX_RUDDER_DEG);
     Some(match parts {
         Some(parts) if rudder.is_whole && has_zero => Numbers::Parts(parts),
         _ if rudder.is_whole && !has_zero => Numbers::Counts((0.5 * (low + high)).round()),
@@ -88,23 +88,23 @@ fn of_rudder(rudder: &RawColumn) -> Option<Numbers> {
     })
 }
 
-/// Whether a heading counts tenths of a degree: it wraps at 3600, or moves farther beside its rudder than that of any
-/// ship in a zig-zag.
+/// `true` for a heading in tenths of a degree: it wraps at 3600, or moves farther than any ship does in a zig-zag with
+/// its rudder.
 fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     if !heading.is_whole || heading.largest > 3600.0 {
         return false;
     }
     let ratio = rudder.filter(|rudder| reversals(&rudder.values) >= 2);
     let ratio = ratio.map(|rudder| range(&heading.values) / range(&rudder.values));
-    let wraps = WRAP_OF_TENTHS.contains(&heading.largest_step);
-    // One wild reading may step as far, and does not move the heading.
+    let wraps = TENTHS_WRAP.contains(&heading.largest_step);
+    // A single wild reading may step as far, but does not move the heading.
     match ratio {
-        Some(ratio) => (wraps && ratio > LEAST_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
+        Some(ratio) => (wraps && ratio > MIN_TENTHS_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
         None => wraps,
     }
 }
 
-/// Gives the rudder the side that stands in a column of its own.
+/// Gives the rudder its sign from a column of sides.
 pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
     let is_side = |column: &RawColumn| {
         let (low, high) = extremes(column.values.iter().copied());
@@ -114,7 +114,7 @@ pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
             && column.text == 0
             && low < high
     };
-    let sides: Vec<usize> = (0..columns.len()).filter(|&place| is_side(&columns[place])).collect();
+    let sides: Vec<usize> = (0..columns.len()).filter(|&index| is_side(&columns[index])).collect();
     let [side] = sides[..] else { return None };
     let is_rudder =
         |column: &RawColumn| matches!(column.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
@@ -125,12 +125,12 @@ pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
     let signs = std::mem::take(&mut columns[side].values);
     columns[rudder].values.iter_mut().zip(&signs).for_each(|(value, sign)| *value *= sign);
     columns[side].values = signs;
-    let [rudder, side] = [rudder, side].map(|place| shortened(&columns[place].name));
-    let text = format!("the rudder `{rudder}` has no sign; it is taken from the side in `{side}`, port negative");
+    let [rudder, side] = [rudder, side].map(|index| shortened(&columns[index].name));
+    let text = format!("the rudder `{rudder}` has no sign; the sign is taken from the side in `{side}`, port negative");
     Some(Code::TurnedSign.warning(text))
 }
 
-/// Refuses a time that counts milliseconds or microseconds since 1970 under a name that says seconds.
+/// Refuses a time in milliseconds or microseconds since 1970 under a name that says seconds.
 pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
     let unit =
         [(1e-3, "ms"), (1e-6, "us")].into_iter().find(|(factor, _)| (EPOCH[0]..EPOCH[1]).contains(&(first * factor)));

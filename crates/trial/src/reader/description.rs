@@ -1,5 +1,4 @@
-//! A first sidecar for a table: what was understood of every column, what was guessed and what was not, for a person to
-//! check.
+//! First draft of a sidecar for a table: every column with its meaning, guessed or certain, for a person to check.
 
 use std::path::Path;
 
@@ -13,15 +12,15 @@ use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
 use crate::names::{ColumnMeaning, contract, meaning, with_unit};
 use crate::sidecar::Sidecar;
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// Rows whose values are shown.
-const SHOWN: usize = 1000;
+/// Number of rows whose values are summarised.
+const SUMMARISED_ROWS: usize = 1000;
 
-/// The text of a sidecar for the table at `path`; one of numbers alone is described by the places of its columns.
+/// Draft of a sidecar for the table at `path`; the columns of a table without names are described by their index.
 ///
-/// Fails as reading does up to the header; for sentences, which need none; and for a table in whose first thousand rows
-/// no line can be read.
+/// Fails as reading does up to the header; for sentences, which need no sidecar; and for a line within the first
+/// thousand rows that cannot be read.
 pub fn describe(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let open = || match input::open(path).map_err(fault)? {
@@ -29,18 +28,18 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
         (Content::Sentences(_) | Content::Messages(..), _) => Err(fault(Problem::NeedsNoSidecar)),
     };
     let table = open()?;
-    let declared = table.is_made.then_some(Separator::Tab);
+    let declared = table.is_generated.then_some(Separator::Tab);
     let mut lines = Lines::new(table.bytes, Encoding::Utf8);
     let head = match head::find(&mut lines, declared, &Sidecar::default()) {
         Err(Problem::NoHeader { .. }) => {
             lines = Lines::new(open()?.bytes, Encoding::Utf8);
             None
         }
-        found => Some(found.map_err(fault)?),
+        head => Some(head.map_err(fault)?),
     };
     let read = head.iter().flat_map(|head| &head.rows);
     let mut texts: Vec<String> = read.map(|(_, text)| text.clone()).collect();
-    while texts.len() < SHOWN {
+    while texts.len() < SUMMARISED_ROWS {
         match lines.next_line().map_err(fault)? {
             Some(text) if is_comment(text) || text.trim().is_empty() => {}
             Some(text) => texts.push(text.to_owned()),
@@ -48,58 +47,60 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
         }
     }
     let first = texts.first().map_or("", String::as_str);
-    let separator = head.as_ref().map_or_else(|| head::numbers_of(first).unwrap_or(Separator::Blank), |h| h.separator);
+    let numbers = || head::separator_of_numbers(first).unwrap_or(Separator::Blank);
+    let separator = head.as_ref().map_or_else(numbers, |head| head.separator);
     let mut text = begin(path, separator, head.is_some());
     let Some(head) = head else {
-        for place in 0..head::split(first, separator).len() {
-            let (range, rudder) = (range(&texts, place, separator), Channel::Rudder.column_name());
-            text.push_str(&format!("\n# {range}\n# Not understood; where it is needed, say what it holds:\n"));
-            text.push_str(&format!("# [[column]]\n# index = {}\n# is = \"{rudder}\"\n", place + 1));
+        for index in 0..head::split(first, separator).len() {
+            let (summary, rudder) = (summary(&texts, index, separator), Channel::Rudder.column_name());
+            text.push_str(&format!("\n# {summary}\n# Not recognised; if the column is needed, say what it holds:\n"));
+            text.push_str(&format!("# [[column]]\n# index = {}\n# is = \"{rudder}\"\n", index + 1));
         }
         return Ok(text + END);
     };
-    for (place, name) in head.names.iter().enumerate() {
-        let said = meaning(name).map(|said| head.unit(place).and_then(|unit| with_unit(said, unit)).unwrap_or(said));
+    for (index, name) in head.names.iter().enumerate() {
+        let named = meaning(name);
+        let meaning = named.map(|named| head.unit(index).and_then(|unit| with_unit(named, unit)).unwrap_or(named));
         let quoted = toml::Value::from(name.as_str());
-        let (remark, is) = understood(name, &quoted.to_string(), said);
-        text.push_str(&format!("\n# {}\n# {remark}\n", range(&texts, place, separator)));
+        let (remark, is) = description(name, &quoted.to_string(), meaning);
+        text.push_str(&format!("\n# {}\n# {remark}\n", summary(&texts, index, separator)));
         if let Some(is) = is {
             text.push_str(&format!("[[column]]\nname = {quoted}\nis = \"{is}\"\n"));
-        } else if said.is_none() {
+        } else if meaning.is_none() {
             text.push_str(&format!("# [[column]]\n# name = {quoted}\n# is = \"rudder_deg\"\n"));
         }
     }
     Ok(text + END)
 }
 
-/// What is to be said of a column by its name, and what it is, where that has to be described.
-fn understood(name: &str, quoted: &str, said: Option<ColumnMeaning>) -> (String, Option<String>) {
-    let own_words = || "Understood by its name and unit; check it.".to_owned();
-    match said {
+/// Remark on a column, and the value of its key `is` where the sidecar has to describe it.
+fn description(name: &str, quoted: &str, meaning: Option<ColumnMeaning>) -> (String, Option<String>) {
+    let recognised = || "Recognised by its name and unit; check it.".to_owned();
+    match meaning {
         _ if contract(name).is_some() => {
-            (format!("The name of {quoted} says what it holds; nothing has to be described."), None)
+            (format!("The name {quoted} states quantity and unit; no description is needed."), None)
         }
-        Some(ColumnMeaning::Channel(channel, Some(unit))) => (own_words(), Some(channel.name_in(unit))),
+        Some(ColumnMeaning::Channel(channel, Some(unit))) => (recognised(), Some(channel.name_in(unit))),
         Some(ColumnMeaning::OverGround(unit)) => {
-            let remark = "GUESS: a speed over ground; check the unit, or ignore it where there is a current.";
+            let remark = "GUESS: a speed over ground; check the unit, or ignore the column if there is a current.";
             (remark.to_owned(), Some(Channel::Speed.name_in(unit.unwrap_or(Unit::Knot))))
         }
         Some(ColumnMeaning::Channel(channel, None)) => {
             let names = channel.accepted_names();
-            (format!("GUESS: the unit is not written; {names} are possible."), Some(channel.column_name()))
+            (format!("GUESS: the name has no unit; {names} are possible."), Some(channel.column_name()))
         }
-        Some(ColumnMeaning::Time(Some(unit))) => (own_words(), Some(format!("t_{}", unit.id()))),
+        Some(ColumnMeaning::Time(Some(unit))) => (recognised(), Some(format!("t_{}", unit.id()))),
         Some(ColumnMeaning::Time(None)) => {
             let remark = "GUESS: time; stamps of date and time need no unit, numbers are taken as seconds.";
             (remark.to_owned(), Some("t_s".to_owned()))
         }
         Some(ColumnMeaning::Date | ColumnMeaning::Latitude | ColumnMeaning::Longitude) => {
-            (format!("{quoted} is understood by its name; nothing has to be described."), None)
+            (format!("{quoted} is recognised by its name; no description is needed."), None)
         }
         Some(ColumnMeaning::Course) => {
-            (format!("{quoted} is the course over ground, which is no heading; it is not used."), None)
+            (format!("{quoted} is the course over ground, not the heading; it is not used."), None)
         }
-        None => (format!("{quoted} is not understood; where it is needed, say what it holds:"), None),
+        None => (format!("{quoted} is not recognised; if the column is needed, say what it holds:"), None),
     }
 }
 
@@ -113,23 +114,23 @@ fn begin(path: &Path, separator: Separator, header: bool) -> String {
     let file = path.file_name().map_or_else(String::new, |name| shortened(&name.to_string_lossy()));
     let header = if header { "" } else { "header = false\n" };
     format!(
-        "# What the columns of {file} hold. Check every line; a line that begins with # says nothing to the program.\n\
-         # `study list sidecar` lists what can be said, `study list columns` what a column can hold.\n\n\
+        "# Columns of {file}. Check every line; lines that begin with # are ignored.\n\
+         # `study list sidecar` lists the keys of this file, `study list columns` the quantities of a column.\n\n\
          # A trial with neither wind nor waves, as in a towing tank:\n# weather = \"none\"\n\n\
          [table]\nseparator = \"{separator}\"\n{header}"
     )
 }
 
 const END: &str = "\n# Length and approach speed of the ship, for the IMO criteria:\n# [ship]\n# length-m = 100.0\n# speed-kn = 15.0\n\
-                   \n# The part that is used, where it is not the zig-zag that is found:\n# [part]\n# from-s = 0.0\n# until-s = 600.0\n";
+                   \n# Part of the log, if the detected zig-zag is not the right one:\n# [part]\n# from-s = 0.0\n# until-s = 600.0\n";
 
-/// What a column holds in the first rows, for the eyes of a person.
-fn range(rows: &[String], place: usize, separator: Separator) -> String {
+/// Sentence on the content of a column in the first rows.
+fn summary(rows: &[String], index: usize, separator: Separator) -> String {
     let mut ranges = Vec::new();
     let (mut low, mut high, mut numbers, mut word) = (f64::INFINITY, f64::NEG_INFINITY, 0, None);
     for row in rows {
         separator.split(row, &mut ranges);
-        let text = ranges.get(place).map_or("", |range| &row[range.clone()]);
+        let text = ranges.get(index).map_or("", |range| &row[range.clone()]);
         match cell(text, separator) {
             Cell::Text => word = word.or_else(|| Some(shortened(text))),
             read => {
@@ -139,11 +140,11 @@ fn range(rows: &[String], place: usize, separator: Separator) -> String {
             }
         }
     }
-    let place = place + 1;
+    let column = index + 1;
     match (numbers, word) {
-        (0, None) => format!("Column {place} is empty in the first {} rows.", rows.len()),
-        (0, Some(word)) => format!("Column {place} holds text such as `{word}`."),
-        (_, _) => format!("Column {place} goes from {low} to {high} in the first {} rows.", rows.len()),
+        (0, None) => format!("Column {column} is empty in the first {} rows.", rows.len()),
+        (0, Some(word)) => format!("Column {column} holds text such as `{word}`."),
+        (_, _) => format!("Column {column} goes from {low} to {high} in the first {} rows.", rows.len()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a file: one message each, with the place, the value found, what was expected and what to do.
+//! Errors of a file: each message has the place, the value found, the expected value and a remedy.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,9 @@ use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
-use crate::words::{end, instant, listed};
+use crate::wording::{end, instant, listed};
 
-/// Why a file did not become a record.
+/// Error of reading a record.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ReadError {
@@ -29,11 +29,11 @@ impl ReadError {
         ReadError::Table { file: file.to_path_buf(), problem }
     }
 
-    /// The message without anything that stands in the file: for a file that was not named by who reads the message.
+    /// The message without content of the file, for a reader who did not name the file.
     pub fn without_content(&self) -> String {
         match self {
             Self::Table { problem: Problem::File(_), .. } => self.to_string(),
-            Self::Table { file, .. } => format!("{}: this file is no record that can be used", file.display()),
+            Self::Table { file, .. } => format!("{}: this file is not a usable record", file.display()),
             Self::Sidecar(SidecarError { file, .. }) => {
                 format!("{}: this sidecar cannot be used", file.display())
             }
@@ -41,26 +41,26 @@ impl ReadError {
     }
 }
 
-/// What a sidecar says of an angle in degrees.
+/// The key `is` of a sidecar for an angle in degrees.
 fn is_angle(quantity: &str) -> String {
     format!(" is = \"{}_deg\"", quantity.split(' ').next().unwrap_or_default())
 }
 
-/// What is wrong with a table. Lines count from 1 as editors do.
+/// Problem of a table. Lines count from 1 as in editors.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Problem {
-    /// There is no such file, or none that can be used.
+    /// The file cannot be opened or read.
     #[error(transparent)]
     File(#[from] FileError),
     /// A sidecar was named in place of its table.
-    #[error("this file describes a table and is none; name the table that lies beside it")]
+    #[error("this file is a sidecar, not a table; name the table beside it")]
     IsSidecar,
-    /// Nothing in it.
+    /// The file is empty.
     #[error("the file is empty; expected a header line such as `t_s,heading_deg,rudder_deg` and rows of numbers")]
     Empty,
-    /// Bytes that no text has.
-    #[error("line {line} holds a zero byte, so this is not a text table; export it as CSV")]
+    /// Bytes that are not text.
+    #[error("line {line} holds a zero byte, so this is not a text table; export the table as CSV")]
     Binary { line: usize },
     /// UTF-16, as some spreadsheets write "Unicode text".
     #[error("line 1 starts with the mark of UTF-16 text; save the file as CSV in UTF-8")]
@@ -71,108 +71,106 @@ pub enum Problem {
          \"windows-1252\"` under [table] in a sidecar NAME.trial.toml"
     )]
     NotUtf8 { line: usize, byte: u8 },
-    /// A line that no table has.
-    #[error(
-        "line {line} is longer than {longest} bytes, so this is not a table with one row per line; export it as CSV"
-    )]
-    LongLine { line: usize, longest: usize },
+    /// A line that is too long for a table.
+    #[error("line {line} is longer than {limit} bytes, so this is not a table with one row per line; export it as CSV")]
+    LongLine { line: usize, limit: usize },
     /// Numbers where names were expected.
     #[error(
-        "line {line} holds numbers ({found}) where a header was expected; add a header such as \
+        "line {line} holds numbers ({text}) where a header was expected; add a header such as \
          `t_s,heading_deg,rudder_deg`, or describe the columns in a sidecar NAME.trial.toml (`header = false` under \
          [table], one [[column]] with `index` and `is` each)"
     )]
-    NoHeader { line: usize, found: String },
+    NoHeader { line: usize, text: String },
     /// A needed column is not there.
     #[error(
-        "line {line}: no column holds the {wanted}; expected {accepted}, found {}; rename the column, or say which it is in \
-         a sidecar NAME.trial.toml ([[column]] with `name` and `is`)",
-        listed(found)
+        "line {line}: no column holds the {wanted}; expected {accepted}, found {}; rename the column, or describe it in a \
+         sidecar NAME.trial.toml ([[column]] with `name` and `is`)",
+        listed(columns)
     )]
-    NoColumn { line: usize, wanted: &'static str, accepted: String, found: Vec<String> },
+    NoColumn { line: usize, wanted: &'static str, accepted: String, columns: Vec<String> },
     /// A course over ground and no heading.
     #[error(
-        "line {line}: no column holds the heading; `{column}` is the course over ground, which is no heading (they differ by the \
-         drift angle, up to 20 degrees in a turn); use a record with the compass, or write `is = \"heading_deg\"` for the column in \
-         a sidecar NAME.trial.toml if it is a heading"
+        "line {line}: no column holds the heading; `{column}` is the course over ground, which is no heading (they differ \
+         by the drift angle, up to 20 degrees in a turn); use a record with the compass, or write `is = \"heading_deg\"` \
+         for the column in a sidecar NAME.trial.toml if it is a heading"
     )]
     CourseOnly { line: usize, column: String },
     /// Files or sentences without a needed channel.
-    #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found))]
-    NoChannel { wanted: &'static str, found: Vec<String> },
+    #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(channels))]
+    NoChannel { wanted: &'static str, channels: Vec<String> },
     /// Rudder and heading of different times.
     #[error(
-        "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; check \
-         that both belong to one trial and count time from the same moment", instant(rudder_s[0]), instant(rudder_s[1]),
-        instant(heading_s[0]), instant(heading_s[1])
+        "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; \
+         check that both belong to the same trial and count time from the same instant", instant(rudder_s[0]),
+        instant(rudder_s[1]), instant(heading_s[0]), instant(heading_s[1])
     )]
     NoOverlap { rudder_s: [f64; 2], heading_s: [f64; 2] },
     /// Two files that count time in different ways.
     #[error(
-        "{} counts time {}, and this file {}: nobody can tell how they belong together; give both stamps of date and time, \
-         or both seconds from the same moment", other.display(), if *stamped { "by its stamps" } else { "in seconds" },
-        if *stamped { "in seconds" } else { "by its stamps" }
+        "{} has {}, this file has {}: they cannot be joined; give both files stamps of date and time, or both seconds from \
+         the same instant", first.display(), if *stamped { "time stamps" } else { "times in seconds" },
+        if *stamped { "times in seconds" } else { "time stamps" }
     )]
-    TwoClocks { other: PathBuf, stamped: bool },
-    /// A file that speaks for itself.
-    #[error("this file holds sentences or messages (NMEA), which say themselves what they hold; it needs no sidecar")]
+    TwoClocks { first: PathBuf, stamped: bool },
+    /// A file without columns to describe.
+    #[error("this file holds sentences or messages (NMEA), which state their quantities; it needs no sidecar")]
     NeedsNoSidecar,
-    /// A format that is recognised and not read.
+    /// A format that is recognised but not read.
     #[error("this is {format}; {cure}")]
     Format { format: &'static str, cure: &'static str },
-    /// A format that is read, and a file that is not as it should be.
-    #[error("this is {format} and cannot be read: {found}; it is damaged or cut short: copy or export it again")]
-    Damaged { format: &'static str, found: String },
-    /// A format that holds tables, and a file without one.
-    #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(found))]
-    NoTable { format: &'static str, wanted: &'static str, found: Vec<String> },
+    /// A damaged file of a known format.
+    #[error("this is {format} and cannot be read: {damage}; it is damaged or cut short: copy or export it again")]
+    Damaged { format: &'static str, damage: String },
+    /// A file of a table format without a table.
+    #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(content))]
+    NoTable { format: &'static str, wanted: &'static str, content: Vec<String> },
     /// A channel in a cell array of MATLAB.
     #[error(
-        "column {column} is a cell array, which is no vector of numbers; make it one in MATLAB, `{column} = cell2mat({column})` (of \
-         texts `str2double({column})`), and save the file again"
+        "column {column} is a cell array, not a vector of numbers; convert it in MATLAB, `{column} = cell2mat({column})` \
+         (for texts `str2double({column})`), and save the file again"
     )]
     CellArray { column: String },
     /// A needed column without a unit.
     #[error(
-        "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it {}, or write in \
-         a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
+        "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it \
+         {}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
         channel.accepted_names(), channel.column_name()
     )]
     OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
     /// Tenths or hundredths of a degree.
     #[error(
-        "line {line}: the {quantity} `{column}` has whole numbers up to {largest}, which are no degrees: they look like {} of a degree; \
-         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
+        "line {line}: the {quantity} `{column}` has whole numbers up to {largest}, which are not degrees: they look like \
+         {} of a degree; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
         if *parts == 10.0 { "tenths" } else { "hundredths" },
         is_angle(quantity)
     )]
     Parts { line: usize, column: String, quantity: &'static str, largest: f64, parts: f64, scale: f64 },
     /// Counts of a converter.
     #[error(
-        "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look like counts of \
-         a converter about {zero}; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" zero = {zero} scale = 0.1{}, with \
-         the count at rudder amidships and the degrees of one count, from the two stops",
+        "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look \
+         like counts of a converter about {zero}; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" \
+         zero = {zero} scale = 0.1{}, with the count at rudder amidships and the degrees per count, from the two stops",
         is_angle(quantity)
     )]
     Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
     /// Neither degrees nor parts of them.
     #[error(
-        "line {line}: the {quantity} `{column}` reaches {}, which no rudder does in degrees; if its numbers are on another scale, \
-         write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees of one of them",
+        "line {line}: the {quantity} `{column}` reaches {}, which is impossible in degrees; if its numbers have another \
+         scale, write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees per unit",
         ShortNumber::rounded(*largest, 6),
         is_angle(quantity)
     )]
     NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
     /// Milliseconds under a name that says seconds.
     #[error(
-        "line {line}: the time `{column}` begins at {first}, which as seconds is after the year 2100, and as {unit} a date of these \
-         days; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""
+        "line {line}: the time `{column}` begins at {first}, which is after the year 2100 in seconds, and a present date in \
+         {unit}; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""
     )]
     EpochUnit { line: usize, column: String, first: f64, unit: &'static str },
     /// A time without a unit that cannot be seconds.
     #[error(
-        "line {line}: the time `{column}` has no unit, and no ship answers its rudder like that in seconds; name it t_s, t_ms or t_min, \
-         or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
+        "line {line}: the time `{column}` has no unit, and in seconds the ship would turn impossibly fast or slowly; name \
+         it t_s, t_ms or t_min, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
     )]
     OpenTime { line: usize, column: String },
     /// A cell that should be a stamp.
@@ -181,19 +179,19 @@ pub enum Problem {
          `20.11.2026 14:03:05`; correct the cell"
     )]
     NotAStamp { line: usize, column: String, value: String },
-    /// A date that can be read two ways.
+    /// A date with two possible readings.
     #[error(
-        "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write dates as \
-         2026-11-20"
+        "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write \
+         dates as 2026-11-20"
     )]
     EitherMonth { line: usize, value: String },
     /// Two columns for one quantity.
     #[error(
-        "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one, or write `ignore = true` for \
-         it in a sidecar NAME.trial.toml"
+        "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one of them, or write `ignore = \
+         true` for it in a sidecar NAME.trial.toml"
     )]
     Duplicate { line: usize, quantity: &'static str, first: String, second: String },
-    /// A header without rows, or nothing but comments.
+    /// A header without rows, or comments only.
     #[error("there is no row of numbers after line {line}; expected a header and at least {needed} rows below it")]
     NoRows { line: usize, needed: usize },
     /// A cell that should be a number.
@@ -204,48 +202,48 @@ pub enum Problem {
     NotANumber { line: usize, column: String, value: String },
     /// A row that does not fit the header.
     #[error(
-        "line {line} has {found} cells, expected {expected} as in the first line of the table; correct the row, or the \
+        "line {line} has {cells} cells, expected {expected} as in the first line of the table; correct the row, or the \
          separator in a sidecar NAME.trial.toml"
     )]
-    Cells { line: usize, found: usize, expected: usize },
+    Cells { line: usize, cells: usize, expected: usize },
     /// Time goes back.
     #[error(
-        "line {line}: time runs backwards, {found} s after {before} s; sort or cut the file, or rebuild time from its step with \
-         `time-step-s` under [table] in a sidecar NAME.trial.toml"
+        "line {line}: time runs backwards, {time} s after {before} s; sort or cut the file, or rebuild time from its step \
+         with `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
-    TimeBackwards { line: usize, before: f64, found: f64 },
+    TimeBackwards { line: usize, before: f64, time: f64 },
     /// Time stands still while other values change.
     #[error(
-        "line {line}: time {time} s is there twice with different values; if it was printed with too few digits, rebuild it \
+        "line {line}: time {time} s occurs twice with different values; if it was printed with too few digits, rebuild it \
          with `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
     TimeRepeats { line: usize, time: f64 },
     /// A needed column without a value.
     #[error(
-        "the column `{column}` has no value in any row used; expected the {quantity}, check that the sensor was recorded"
+        "the column `{column}` has no value in any row used; expected the {quantity}: check that the sensor was recorded"
     )]
     AllMissing { column: String, quantity: &'static str },
-    /// The part of the record asked for holds nothing.
+    /// The requested part of the record is empty.
     #[error(
-        "no row lies{}{}, the rows lie between {} s and {} s; give another part (--from and --until, or `from-s` and \
+        "no row lies{}{}; the rows lie between {} s and {} s: give another part (--from and --until, or `from-s` and \
          `until-s` under [part] in the sidecar)",
         end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Too few usable rows.
     #[error(
-        "{found} of {rows} rows have time, heading (or yaw rate) and rudder, a record needs at least {needed}; fill in the \
+        "{usable} of {rows} rows have time, heading (or yaw rate) and rudder; a record needs at least {needed}: fill in the \
          missing values or use a longer part"
     )]
-    TooShort { needed: usize, found: usize, rows: usize },
-    /// More rows than a record may have.
+    TooShort { needed: usize, usable: usize, rows: usize },
+    /// More rows than the limit.
     #[error(
-        "more than {limit} rows{}, a record may have {limit} with {columns} columns; thin it with `every = {every}` under \
+        "more than {limit} rows{}, which is the limit with {columns} columns; thin the record with `every = {every}` under \
          [part] in a sidecar NAME.trial.toml, or use a part of it with `from-s` and `until-s`",
         estimate.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
     )]
     TooManyRows { limit: usize, columns: usize, estimate: Option<u64>, every: u64 },
-    /// A log of which little can be read.
+    /// A log with too many damaged lines.
     #[error(
         "{damaged} of {lines} lines are damaged ({wrong} with a wrong checksum, {broken} cut short or not text), expected at \
          most half; check the speed and the wiring of the serial line, or export the log again"
@@ -253,33 +251,32 @@ pub enum Problem {
     DamagedLog { lines: usize, damaged: usize, wrong: usize, broken: usize },
     /// Sentences without time.
     #[error(
-        "the log has no time: found no time stamp before its {sentences} sentences and {clocks} valid times in ZDA, RMC, GGA \
-         or GLL, expected the one or at least two of the other; record it with time stamps, or with the sentences of a GPS \
+        "the log has no time: there is no time stamp before its {sentences} sentences, and {clocks} valid times in ZDA, \
+         RMC, GGA or GLL (at least two are needed); record it with time stamps, or with the sentences of a GPS \
          (`time-step-s` is not possible for sentences)"
     )]
     NoClock { sentences: usize, clocks: usize },
     /// A log whose clock starts anew.
     #[error(
-        "line {line}: the clock of the log goes back from {before} to {found}, expected one recording; cut the log there and \
-         give the parts one by one"
+        "line {line}: the clock of the log goes back from {before} to {after}, expected a single recording; cut the log \
+         there and use the parts one by one"
     )]
-    ClockBack { line: usize, before: String, found: String },
+    ClockBack { line: usize, before: String, after: String },
     /// A log without a quantity of a record.
     #[error(
-        "none of the {sentences} sentences of the log gives a quantity that is used; expected a heading (HDT, THS, HDG) and \
-         a rudder angle (RSA), check which sentences were recorded"
+        "none of the {sentences} sentences of the log holds a quantity that is used; expected a heading (HDT, THS, HDG) and \
+         a rudder angle (RSA): check which sentences were recorded"
     )]
     NoReadings { sentences: usize },
-    /// More readings than a record may have.
+    /// More readings than the limit.
     #[error(
-        "line {line}: the log holds more than {limit} numbers, which is the most that is read; use the part of it with the \
-         manoeuvre"
+        "line {line}: the log holds more than {limit} numbers, which is the limit; use the part with the manoeuvre"
     )]
     TooManyReadings { line: usize, limit: usize },
-    /// The record contradicts itself.
+    /// The record is implausible.
     #[error(transparent)]
     Implausible(#[from] Implausible),
-    /// The columns do not make a record.
+    /// The columns are not a record.
     #[error(transparent)]
     Record(#[from] TrialError),
 }

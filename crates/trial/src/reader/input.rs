@@ -1,5 +1,4 @@
-//! What kind of file it is, told from its first bytes and lines, whatever its name: packed or plain, a table or
-//! sentences.
+//! Kind of a file by its first bytes and lines, whatever its name: compressed or plain, table, sentences or messages.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -14,19 +13,20 @@ use super::messages::{self, MessageFormat};
 use super::nmea;
 use crate::file::{self, FileError, Limited};
 
-/// Bytes and lines that are looked at to tell sentences from a table.
-const LOOKED_AT: (u64, usize) = (1 << 14, 60);
+/// Bytes and lines that tell sentences from a table.
+const HEAD_BYTES: u64 = 1 << 14;
+const HEAD_LINES: usize = 60;
 
-/// The text of a file, from its first byte on.
+/// Text of a file, from its first byte on.
 pub(super) struct Text<'a> {
     pub bytes: Box<dyn Read + 'a>,
-    /// The hash of the file where that is not the hash of its text.
+    /// Hash of the file, where it differs from the hash of the text.
     pub on_disk: Option<Hash>,
-    /// Whether it was written here from a file that is no text.
-    pub is_made: bool,
+    /// `true` for a text that was generated here from a binary table.
+    pub is_generated: bool,
 }
 
-/// The content of a file.
+/// Content of a file.
 pub(super) enum Content<'a> {
     /// A table.
     Table(Text<'a>),
@@ -37,38 +37,39 @@ pub(super) enum Content<'a> {
 }
 
 impl Problem {
-    /// What went wrong while a file was read; a problem found by a reader below comes back as it was.
-    pub(super) fn of_input(error: io::Error) -> Self {
+    /// Problem of an input error; a problem that a decoder wrapped in the error is unwrapped.
+    pub(super) fn from_input(error: io::Error) -> Self {
         error.downcast::<Self>().unwrap_or_else(|error| FileError::from(error).into())
     }
 }
 
-/// The name of a record: that of its file without its endings.
+/// Name of a record: the name of its file without its endings.
 pub(super) fn stem(path: &Path) -> String {
     let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     let inner = if packed { path.with_extension("") } else { path.to_path_buf() };
     inner.file_stem().map_or_else(|| "record".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Opens a file and tells what it holds; its size in bytes where that says how long its text is.
+/// Opens a file and recognises its content; with its size in bytes where that is the length of its text.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD)?;
     let size = file.size;
     let content = recognise(Box::new(file))?;
-    let plain = matches!(&content, Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _) if text.on_disk.is_none());
-    Ok((content, size.filter(|_| plain)))
+    let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
+    let is_plain = text.on_disk.is_none();
+    Ok((content, size.filter(|_| is_plain)))
 }
 
-/// The first bytes, as many as there are up to what is looked at, and all bytes.
+/// The first bytes of an input, and all its bytes.
 fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a>), Problem> {
     let mut first = Vec::new();
-    (&mut input).take(LOOKED_AT.0).read_to_end(&mut first).map_err(FileError::from)?;
+    (&mut input).take(HEAD_BYTES).read_to_end(&mut first).map_err(FileError::from)?;
     Ok((first.clone(), Box::new(Cursor::new(first).chain(input))))
 }
 
-/// Tells what a file holds.
+/// Recognises the content of a file.
 ///
-/// Fails for formats that are recognised and not read, and for packed data that are damaged.
+/// Fails for formats that are recognised but not read, and for damaged compressed data.
 pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Problem> {
     let (mut first, mut bytes) = peek(input)?;
     let mut on_disk = None;
@@ -89,7 +90,7 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
         let hash = on_disk.unwrap_or_else(|| Hash::of(&all));
-        return Ok(Content::Table(Text { bytes: kind.text(all)?, on_disk: Some(hash), is_made: true }));
+        return Ok(Content::Table(Text { bytes: kind.text(all)?, on_disk: Some(hash), is_generated: true }));
     }
     match first.as_slice() {
         [0xd0, 0xcf, 0x11, 0xe0, ..] => refused("an old spreadsheet (XLS)", AS_CSV),
@@ -98,13 +99,13 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         start if start.starts_with(b"MATLAB 7.3") => refused(MATLAB_7_3, AS_LEVEL_5),
         start => {
             let text = String::from_utf8_lossy(start);
-            let lines = text.lines().take(LOOKED_AT.1);
+            let lines = text.lines().take(HEAD_LINES);
             let has_sentence = lines.clone().any(nmea::is_sentence);
             let format = if has_sentence { None } else { messages::format(lines.clone()) };
             if format.is_none() && !has_sentence && messages::is_can_log(lines) {
                 return refused(CAN_FRAMES, DECODED);
             }
-            let text = Text { bytes, on_disk, is_made: false };
+            let text = Text { bytes, on_disk, is_generated: false };
             Ok(match format {
                 _ if has_sentence => Content::Sentences(text),
                 Some(format) => Content::Messages(text, format),

@@ -1,12 +1,12 @@
-//! Instants of rows whose stamps are coarser than their rows: ten rows with one second each.
+//! Instants of rows that share a coarse time stamp, such as ten rows per second with stamps of whole seconds.
 
 use estimation::statistics::upper_median;
 
-/// Spreads rows that share a stamp evenly over the time to the next one; the typical number of rows with one stamp
-/// where there is more than one.
+/// Spreads rows that share a stamp evenly over the time to the next stamp. Returns the typical number of rows per stamp;
+/// `None` where no rows share a stamp.
 ///
-/// `time` (s) does not fall. The width of a stamp is the usual step between two: where stamps are missing the gap stays
-/// one. The first and the last stamp may be incomplete: their rows take the end and the begin of their width.
+/// `time` (s) does not fall. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
+/// first and the last stamp may be incomplete: their rows take the end and the beginning of their width.
 pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
     let mut begins: Vec<usize> = (0..time.len()).filter(|&row| row == 0 || time[row] != time[row - 1]).collect();
     if begins.len() == time.len() || begins.len() < 3 {
@@ -23,8 +23,8 @@ pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
         let whole = if number == 0 || number == last { rows.max(usual) } else { rows };
         let before = if number == 0 { whole - rows } else { 0 };
         let stamp = time[pair[0]];
-        for (place, instant) in time[pair[0]..pair[1]].iter_mut().enumerate() {
-            *instant = stamp + width * (before + place) as f64 / whole as f64;
+        for (row, instant) in time[pair[0]..pair[1]].iter_mut().enumerate() {
+            *instant = stamp + width * (before + row) as f64 / whole as f64;
         }
     }
     (usual > 1 || begins.len() < time.len()).then_some(usual)

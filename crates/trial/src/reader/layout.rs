@@ -1,5 +1,5 @@
-//! What every column of a table holds, from its header, a row of units, its sidecar and its first row, decided once
-//! before the rows are read.
+//! Layout of a table: the content of every column, decided before the rows are read, from the header, a row of units,
+//! the sidecar and the first row.
 
 use std::path::Path;
 
@@ -13,9 +13,9 @@ use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
 use crate::names::{ColumnMeaning, contract, meaning, with_unit};
 use crate::sidecar::{Sidecar, SidecarProblem, Which};
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// What one column holds.
+/// Content of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Content {
     /// Time; the factor to seconds.
@@ -30,55 +30,56 @@ pub(super) enum Content {
     Latitude,
     /// Longitude, rad.
     Longitude,
-    /// Carried as it is.
+    /// An unknown quantity, carried unchanged.
     Unknown,
-    /// Left out.
+    /// A column that is left out.
     Ignored,
 }
 
 impl Content {
-    /// Whether the values of the column are kept.
+    /// `true` for a column whose values are kept.
     pub fn is_kept(self) -> bool {
         !matches!(self, Self::Time(_) | Self::Stamp | Self::Date | Self::Ignored)
     }
 }
 
-/// How well a name says what it holds; the lower the better.
+/// Certainty of the meaning of a column; the first is the best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
-    /// The sidecar says it.
+    /// Described by the sidecar.
     Described,
-    /// It is a name of the contract.
+    /// A `quantity_unit` name.
     Contract,
-    /// It is what people call it.
+    /// A customary name.
     Usual,
-    /// A speed over ground for the speed.
+    /// A speed over ground instead of the speed.
     Substitute,
 }
 
-/// One column of a table: what it holds, what was met in it, and its values in the rows kept.
+/// A column of a table: its content, statistics of its cells, and its values in the rows kept.
 #[derive(Debug)]
 pub(super) struct RawColumn {
     pub name: String,
     pub content: Content,
-    /// Whether its unit has to be found from its values; until then they are in the unit files are written in.
+    /// `true` for a column without a unit; until the unit is settled, values are in the unit of written files.
     pub open: bool,
     claim: Option<(ColumnMeaning, Rank)>,
     scale: f64,
-    /// The number at zero.
+    /// Number in the file at a value of zero.
     pub zero: f64,
-    /// The last number, as it stands in the file.
+    /// Last number, as in the file.
     pub last: Option<f64>,
-    /// The largest number, without its sign.
+    /// Largest absolute number.
     pub largest: f64,
-    /// The longest way between two numbers, and whether all are whole.
+    /// Largest step between two numbers.
     pub largest_step: f64,
+    /// `true` while all numbers are whole.
     pub is_whole: bool,
-    /// Cells with the word for a side.
+    /// Number of cells with a side (port, starboard).
     pub sides: usize,
-    /// How often there was a number that stands for no reading, and the last such number.
+    /// Number of sentinels, and the last of them.
     pub sentinels: (usize, f64),
-    /// Cells with text.
+    /// Number of cells with text.
     pub text: usize,
     pub values: Vec<f64>,
 }
@@ -103,8 +104,8 @@ impl RawColumn {
         }
     }
 
-    /// Takes note of a number as it stands in the file.
-    pub fn note(&mut self, number: f64) {
+    /// Updates the statistics with a number as in the file.
+    pub fn count(&mut self, number: f64) {
         self.largest_step = self.largest_step.max((number - self.last.unwrap_or(number)).abs());
         self.is_whole &= number.fract() == 0.0;
         self.last = Some(number);
@@ -112,7 +113,7 @@ impl RawColumn {
     }
 
     fn claims(&self, wanted: impl Fn(ColumnMeaning) -> bool) -> bool {
-        self.claim.is_some_and(|(said, _)| wanted(said))
+        self.claim.is_some_and(|(meaning, _)| wanted(meaning))
     }
 }
 
@@ -120,30 +121,30 @@ impl RawColumn {
 #[derive(Debug)]
 pub(super) struct Layout {
     pub columns: Vec<RawColumn>,
-    /// How many of them are cells of a row; those behind are worked out.
+    /// Number of columns that are cells of a row; the columns behind them have formulas.
     pub cells: usize,
-    /// What the columns behind are worked out of: the places of the others in the order of the names.
+    /// Formulas of the columns behind the cells, each with the indices of the columns that it names.
     pub formulas: Vec<(ColumnFormula, Vec<usize>)>,
-    /// The ordered rudder angle stands for the rudder angle, because there is no other.
+    /// `true` where the rudder order is used for a missing rudder angle.
     order_is_rudder: bool,
-    /// Where the names stand.
+    /// Line of the names.
     pub line: usize,
-    /// Columns that were understood by what people call them, for a warning.
-    pub understood: Vec<String>,
-    /// What was decided between columns.
+    /// Columns recognised by customary names, for a warning.
+    pub recognised: Vec<String>,
+    /// Decisions between columns.
     pub warnings: Vec<Warning>,
 }
 
 impl Layout {
-    /// Decides what the columns hold.
+    /// Layout of a table by its head and its sidecar.
     ///
-    /// A sidecar goes before the names, and a name of the contract before any other. Fails when the sidecar speaks of a
-    /// column that is not there, when two columns say equally well that they hold one quantity, and when time, or in
-    /// the table of a whole record rudder or both heading and yaw rate are absent.
+    /// A sidecar goes before the names, and a `quantity_unit` name before any other. Fails when the sidecar describes a
+    /// column that is absent, when two columns claim the same quantity with equal certainty, when time is absent, and
+    /// when the table of a `whole` record has no rudder or neither heading nor yaw rate.
     pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {
         let rebuilt = sidecar.table.time_step_s.is_some();
-        let column = |(place, name): (usize, &String)| {
-            RawColumn::new(name, claim(name, head.unit(place)).filter(|_| sidecar.has_header()))
+        let column = |(index, name): (usize, &String)| {
+            RawColumn::new(name, claim(name, head.unit(index)).filter(|_| sidecar.has_header()))
         };
         let mut layout = Self {
             columns: head.names.iter().enumerate().map(column).collect(),
@@ -151,27 +152,27 @@ impl Layout {
             formulas: Vec::new(),
             order_is_rudder: false,
             line: head.line,
-            understood: Vec::new(),
+            recognised: Vec::new(),
             warnings: Vec::new(),
         };
         layout.describe(table, sidecar)?;
         let fault = |problem| ReadError::table(table, problem);
         layout.settle_channels().map_err(fault)?;
         if rebuilt {
-            let is_time = |said| matches!(said, ColumnMeaning::Time(_) | ColumnMeaning::Date);
+            let is_time = |meaning| matches!(meaning, ColumnMeaning::Time(_) | ColumnMeaning::Date);
             let times = layout.columns.iter_mut().filter(|column| column.claims(is_time));
             times.for_each(|column| column.content = Content::Ignored);
         } else {
             layout.settle_time(head).map_err(fault)?;
         }
-        layout.order_is_rudder = layout.place(Channel::Rudder).is_none();
+        layout.order_is_rudder = layout.index(Channel::Rudder).is_none();
         if whole {
             layout.check().map_err(fault)?;
         }
         if layout.time().is_none() && !rebuilt {
             let accepted = "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".into();
-            let (line, found) = (head.line, layout.names());
-            return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, found }));
+            let (line, columns) = (head.line, layout.names());
+            return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, columns }));
         }
         Ok(layout)
     }
@@ -184,55 +185,55 @@ impl Layout {
         self.columns.iter().position(|column| wanted(column.content))
     }
 
-    /// The column that holds the rudder: the angle, or the order where there is no angle.
+    /// Column of the rudder: the angle, or the order where there is no angle.
     pub fn rudder(&self) -> Option<usize> {
-        self.place(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
+        self.index(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
     }
 
-    /// The column that holds a channel.
-    pub fn place(&self, wanted: Channel) -> Option<usize> {
+    /// Column of a channel.
+    pub fn index(&self, wanted: Channel) -> Option<usize> {
         self.find(|content| matches!(content, Content::Channel(channel, _) if channel == wanted))
     }
 
-    /// The column that holds time.
+    /// Column of time.
     pub fn time(&self) -> Option<usize> {
         self.find(|content| matches!(content, Content::Time(_) | Content::Stamp))
     }
 
-    /// The column that holds the dates of the stamps.
+    /// Column of the dates that belong to times of day.
     pub fn date(&self) -> Option<usize> {
         self.find(|content| content == Content::Date)
     }
 
-    /// Lets the sidecar speak: its words replace the meaning of the names.
+    /// Applies the descriptions of the sidecar, which replace the meaning of the names.
     fn describe(&mut self, table: &Path, sidecar: &Sidecar) -> Result<(), ReadError> {
         let mut seen = vec![false; self.columns.len()];
         // A formula names columns of the table: those before it.
         for described in &sidecar.columns {
             let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
             let table = table.to_path_buf();
-            let place = match &described.which {
-                Which::Place(place) if *place < seen.len() => *place,
-                Which::Place(place) => {
-                    return fault(SidecarProblem::IndexBeyond { index: place + 1, table, columns: seen.len() });
+            let index = match &described.which {
+                Which::Index(index) if *index < seen.len() => *index,
+                Which::Index(index) => {
+                    return fault(SidecarProblem::IndexBeyond { index: index + 1, table, columns: seen.len() });
                 }
                 Which::Name(name) => match self.columns.iter().position(|column| column.name == *name) {
-                    Some(place) => place,
+                    Some(index) => index,
                     None => {
-                        let (name, found) = (name.clone(), self.names());
-                        return fault(SidecarProblem::NameNotFound { name, table, found });
+                        let (name, header) = (name.clone(), self.names());
+                        return fault(SidecarProblem::NameNotFound { name, table, header });
                     }
                 },
                 Which::Formula(formula) => {
-                    let place = |name: &String| {
-                        let place = self.columns[..self.cells].iter().position(|column| column.name == *name);
-                        place.ok_or_else(|| name.clone())
+                    let index = |name: &String| {
+                        let index = self.columns[..self.cells].iter().position(|column| column.name == *name);
+                        index.ok_or_else(|| name.clone())
                     };
-                    match formula.names().iter().map(place).collect() {
+                    match formula.names().iter().map(index).collect() {
                         Ok(places) => self.formulas.push((formula.clone(), places)),
                         Err(name) => {
-                            let found = self.names();
-                            return fault(SidecarProblem::NameNotFound { name, table, found });
+                            let header = self.names();
+                            return fault(SidecarProblem::NameNotFound { name, table, header });
                         }
                     }
                     self.columns.push(RawColumn::new("formula", None));
@@ -240,9 +241,9 @@ impl Layout {
                     self.columns.len() - 1
                 }
             };
-            let column = &mut self.columns[place];
+            let column = &mut self.columns[index];
             let name = column.name.clone();
-            if std::mem::replace(&mut seen[place], true) {
+            if std::mem::replace(&mut seen[index], true) {
                 return fault(SidecarProblem::DescribedTwice { name });
             }
             (column.scale, column.zero) = (described.scale, described.zero);
@@ -256,35 +257,35 @@ impl Layout {
         Ok(())
     }
 
-    /// Gives every channel the column that says best that it holds it.
+    /// Assigns to every channel the column with the best claim.
     fn settle_channels(&mut self) -> Result<(), Problem> {
         for channel in Channel::ALL {
-            let claim = |(place, column): (usize, &RawColumn)| match column.claim? {
-                (ColumnMeaning::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
+            let claim = |(index, column): (usize, &RawColumn)| match column.claim? {
+                (ColumnMeaning::Channel(claimed, unit), rank) if claimed == channel => Some((rank, index, unit)),
                 (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
-                    Some((Rank::Substitute, place, unit))
+                    Some((Rank::Substitute, index, unit))
                 }
                 _ => None,
             };
             let mut claims: Vec<_> = self.columns.iter().enumerate().filter_map(claim).collect();
-            claims.sort_by_key(|(rank, place, _)| (*rank, *place));
-            let Some(&(rank, place, unit)) = claims.first() else { continue };
-            if let Some(&(_, other, _)) = claims.get(1).filter(|(other, ..)| *other == rank) {
+            claims.sort_by_key(|(rank, index, _)| (*rank, *index));
+            let Some(&(rank, index, unit)) = claims.first() else { continue };
+            if let Some(&(_, rival, _)) = claims.get(1).filter(|(rival, ..)| *rival == rank) {
                 let needed = matches!(channel, Channel::Heading | Channel::Rudder | Channel::YawRate);
                 if needed || rank <= Rank::Contract {
-                    return Err(self.duplicate(channel.quantity(), place, other));
+                    return Err(self.duplicate(channel.quantity(), index, rival));
                 }
-                let [first, second] = [place, other].map(|place| shortened(&self.columns[place].name));
+                let [first, second] = [index, rival].map(|index| shortened(&self.columns[index].name));
                 self.warnings.push(Code::Columns.warning(format!(
-                    "the columns `{first}` and `{second}` could both be the {}; neither is used, unless a sidecar says \
-                     which",
+                    "the columns `{first}` and `{second}` could both be the {}; neither is used: name the right one in a \
+                     sidecar",
                     channel.spoken()
                 )));
                 continue;
             }
             let factor = unit.unwrap_or(channel.written_unit()).to_si();
             let content = |scale: f64| Content::Channel(channel, scale * factor);
-            self.settle(place, rank, unit, content);
+            self.settle(index, rank, unit, content);
         }
         for column in &mut self.columns {
             match column.claim {
@@ -296,66 +297,67 @@ impl Layout {
         Ok(())
     }
 
-    fn settle(&mut self, place: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> Content) {
-        let column = &mut self.columns[place];
+    fn settle(&mut self, index: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> Content) {
+        let column = &mut self.columns[index];
         column.content = content(column.scale);
         column.open = unit.is_none() && column.content != Content::Stamp;
         if rank >= Rank::Usual {
-            self.understood.push(column.name.clone());
+            self.recognised.push(column.name.clone());
         }
     }
 
     fn duplicate(&self, quantity: &'static str, first: usize, second: usize) -> Problem {
-        let [first, second] = [first, second].map(|place| self.columns[place].name.clone());
+        let [first, second] = [first, second].map(|index| self.columns[index].name.clone());
         Problem::Duplicate { line: self.line, quantity, first, second }
     }
 
-    /// Finds the column of time, and the dates that belong to it.
+    /// Chooses the column of time, and the dates that belong to it.
     fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
         let cells = head.first();
-        let first = |place: usize| cells.get(place).copied().unwrap_or_default();
-        let is_number = |place: usize| cell(first(place), head.separator).number().is_some();
-        let stamp = |place: usize| Stamp::parse(first(place));
+        let first = |index: usize| cells.get(index).copied().unwrap_or_default();
+        let is_number = |index: usize| cell(first(index), head.separator).number().is_some();
+        let stamp = |index: usize| Stamp::parse(first(index));
         let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
-        // Described or of the contract, then a number with a unit, a stamp with its date, a time of day, a number.
-        let candidate = |(place, column): (usize, &RawColumn)| {
-            let (said, rank) = column.claim?;
-            let unit = match said {
+        // Order: described or `quantity_unit`, a number with a unit, a stamp with its date, a time of day, a number.
+        let candidate = |(index, column): (usize, &RawColumn)| {
+            let (meaning, rank) = column.claim?;
+            let unit = match meaning {
                 ColumnMeaning::Time(unit) => unit,
-                ColumnMeaning::Date if stamp(place).is_some_and(|stamp| stamp.has_time()) => None,
+                ColumnMeaning::Date if stamp(index).is_some_and(|stamp| stamp.has_time()) => None,
                 _ => return None,
             };
-            let worth = match stamp(place).filter(|_| !is_number(place)) {
+            let worth = match stamp(index).filter(|_| !is_number(index)) {
                 _ if unit.is_some() && rank <= Rank::Contract => 0,
                 None if unit.is_some() => 1,
                 Some(stamp) if is_whole(stamp) => 2,
                 Some(stamp) if stamp.has_time() => 3,
                 _ => 4,
             };
-            Some((rank, worth, place, unit))
+            Some((rank, worth, index, unit))
         };
         let mut candidates: Vec<_> = self.columns.iter().enumerate().filter_map(candidate).collect();
-        candidates.sort_by_key(|(rank, worth, place, _)| (*rank, *worth, *place));
+        candidates.sort_by_key(|(rank, worth, index, _)| (*rank, *worth, *index));
         if candidates.is_empty() {
-            // Some programs give their column of stamps no name.
-            let is_unnamed = |&place: &usize| self.columns[place].claim.is_none() && stamp(place).is_some_and(is_whole);
+            // Some programs write a column of stamps without a name.
+            let is_unnamed = |&index: &usize| self.columns[index].claim.is_none() && stamp(index).is_some_and(is_whole);
             let unnamed = (0..self.columns.len()).find(is_unnamed);
-            candidates.extend(unnamed.map(|place| (Rank::Usual, 2, place, None)));
+            candidates.extend(unnamed.map(|index| (Rank::Usual, 2, index, None)));
         }
-        let Some(&(rank, worth, place, unit)) = candidates.first() else { return Ok(()) };
-        if let Some(&(_, _, other, _)) = candidates.get(1).filter(|(r, w, ..)| (*r, *w) == (rank, worth)) {
-            return Err(self.duplicate("time", place, other));
+        let Some(&(rank, worth, index, unit)) = candidates.first() else { return Ok(()) };
+        if let Some(&(_, _, rival, _)) = candidates.get(1).filter(|(r, w, ..)| (*r, *w) == (rank, worth)) {
+            return Err(self.duplicate("time", index, rival));
         }
-        candidates[1..].iter().for_each(|&(_, _, other, _)| self.columns[other].content = Content::Ignored);
-        match stamp(place).filter(|_| !is_number(place)) {
-            Some(own) => {
-                self.settle(place, rank, unit, |_| Content::Stamp);
-                let dates = self.columns.iter().position(|column| column.claims(|said| said == ColumnMeaning::Date));
-                if let Some(date) = dates.filter(|&date| !own.has_date() && date != place && stamp(date).is_some()) {
+        candidates[1..].iter().for_each(|&(_, _, unused, _)| self.columns[unused].content = Content::Ignored);
+        match stamp(index).filter(|_| !is_number(index)) {
+            Some(first) => {
+                self.settle(index, rank, unit, |_| Content::Stamp);
+                let is_date = |column: &RawColumn| column.claims(|meaning| meaning == ColumnMeaning::Date);
+                let dates = self.columns.iter().position(is_date);
+                if let Some(date) = dates.filter(|&date| !first.has_date() && date != index && stamp(date).is_some()) {
                     self.columns[date].content = Content::Date;
                 }
             }
-            None => self.settle(place, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::to_si))),
+            None => self.settle(index, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::to_si))),
         }
         Ok(())
     }
@@ -365,13 +367,13 @@ impl Layout {
         let line = self.line;
         let missing = |channels: [Channel; 2], wanted| {
             let names = channels.map(|channel| channel.accepted_names());
-            Err(Problem::NoColumn { line, wanted, accepted: names.join(" or "), found: self.names() })
+            Err(Problem::NoColumn { line, wanted, accepted: names.join(" or "), columns: self.names() })
         };
         if self.rudder().is_none() {
             return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
         }
-        if self.place(Channel::Heading).is_none() && self.place(Channel::YawRate).is_none() {
-            let is_course = |column: &&RawColumn| column.claims(|said| said == ColumnMeaning::Course);
+        if self.index(Channel::Heading).is_none() && self.index(Channel::YawRate).is_none() {
+            let is_course = |column: &&RawColumn| column.claims(|meaning| meaning == ColumnMeaning::Course);
             return match self.columns.iter().find(is_course) {
                 Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),
                 None => missing([Channel::Heading, Channel::YawRate], "heading or the yaw rate"),
@@ -381,15 +383,15 @@ impl Layout {
     }
 }
 
-/// What a name says, with the unit below it where it has none of its own.
+/// Meaning of a name with its certainty; a name without a unit gets the unit below it.
 fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
-    let said = meaning(name)?;
+    let named = meaning(name)?;
     let rank = if contract(name).is_some() { Rank::Contract } else { Rank::Usual };
     let open =
-        matches!(said, ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::OverGround(None));
-    let said = match below.filter(|_| open) {
-        Some(unit) => with_unit(said, unit)?,
-        None => said,
+        matches!(named, ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::OverGround(None));
+    let complete = match below.filter(|_| open) {
+        Some(unit) => with_unit(named, unit)?,
+        None => named,
     };
-    Some((said, rank))
+    Some((complete, rank))
 }

@@ -1,25 +1,25 @@
-//! How much a record may hold, and what is said where it holds nothing.
+//! Limits of the size of a record.
 
 use crate::file::Kind;
 use crate::record::Trial;
 
 use super::error::Problem;
 
-/// Most rows a log may have: eleven days at 20 Hz.
+/// Maximum number of rows of a log: eleven days at 20 Hz.
 pub const MAX_ROWS: usize = 20_000_000;
 
-/// Most numbers a record may have; bounds the memory of tables with very many columns (8 bytes each).
+/// Maximum number of cells of a record (8 bytes each): bounds the memory of tables with very many columns.
 pub const MAX_CELLS: usize = 50_000_000;
 
-/// A record; 20 characters for each of the most numbers.
+/// Kind of file of a record; its maximum size is 20 characters for each of [`MAX_CELLS`].
 pub const RECORD: Kind = Kind { name: "a record", largest: 20 * MAX_CELLS as u64 };
 
-/// The problem of a table without rows after this line.
+/// Problem of a table without rows after a line.
 pub(super) fn no_rows(line: usize) -> Problem {
     Problem::NoRows { line, needed: Trial::FEWEST_ROWS }
 }
 
-/// Whether a line is passed over.
+/// `true` for a comment, which is skipped.
 pub(super) fn is_comment(line: &str) -> bool {
     line.trim_start().starts_with('#')
 }

@@ -1,5 +1,4 @@
-//! The lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, one line in memory at a
-//! time.
+//! Lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, with a single line in memory.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Read};
@@ -10,26 +9,26 @@ use sha2::{Digest, Sha256};
 use super::error::Problem;
 use crate::encoding::{Encoding, windows_1252};
 
-/// Longest line that is taken for one of a table, bytes.
+/// Maximum length of a line of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
 
-/// SHA-256 of what has been read of a file.
+/// SHA-256 of the bytes read so far.
 #[derive(Clone, Default)]
 pub struct Hash(Rc<RefCell<Sha256>>);
 
 impl Hash {
-    /// That of some bytes.
+    /// Hash of some bytes.
     pub fn of(bytes: &[u8]) -> Self {
         Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
     }
 
-    /// The hash, hexadecimal; that of the file when it has been read to the end.
+    /// The hash, hexadecimal; the hash of the file once it has been read to the end.
     pub fn finish(self) -> String {
         format!("{:x}", self.0.take().finalize())
     }
 }
 
-/// Hashes all that passes, in large pieces: of lines, the hash would wait for the copying of each.
+/// Reader that hashes its bytes in large pieces; hashing line by line would be slower.
 pub struct Hashed<R> {
     input: R,
     hash: Hash,
@@ -55,7 +54,7 @@ pub struct Lines<R> {
     input: BufReader<Hashed<R>>,
     hash: Hash,
     encoding: Encoding,
-    /// Byte at which lines end, known once the first is read.
+    /// Byte at which lines end, determined with the first line.
     end: u8,
     bytes: Vec<u8>,
     text: String,
@@ -81,17 +80,17 @@ impl<R: Read> Lines<R> {
         self.consumed
     }
 
-    /// Takes the bytes of a line without its end and without the mark of UTF-8, or those of its begin where it is too
-    /// long; how many were read, and whether the line ends with them. `None` at the end of the file.
+    /// Reads the bytes of a line, or the beginning of a line that is too long, without line end and byte order mark.
+    /// Returns the number of bytes read and `true` for a complete line; `None` at the end of the file.
     fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
         self.bytes.clear();
         if self.number == 0 {
             // Old programs of the Macintosh end their lines with a carriage return alone.
-            let begin = self.input.fill_buf().map_err(Problem::of_input)?;
+            let begin = self.input.fill_buf().map_err(Problem::from_input)?;
             self.end = if begin.contains(&b'\r') && !begin.contains(&b'\n') { b'\r' } else { b'\n' };
         }
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(self.end, &mut self.bytes).map_err(Problem::of_input)?;
+        let length = limited.read_until(self.end, &mut self.bytes).map_err(Problem::from_input)?;
         self.number += usize::from(length > 0);
         self.consumed += length as u64;
         let whole = length <= LONGEST_LINE || self.bytes.last() == Some(&self.end);
@@ -115,7 +114,7 @@ impl<R: Read> Lines<R> {
             return Err(Problem::Binary { line });
         }
         if length > LONGEST_LINE {
-            return Err(Problem::LongLine { line, longest: LONGEST_LINE });
+            return Err(Problem::LongLine { line, limit: LONGEST_LINE });
         }
         Ok(true)
     }
@@ -130,7 +129,7 @@ impl<R: Read> Lines<R> {
             if valid == self.bytes.len() {
                 return Ok(std::str::from_utf8(&self.bytes).ok());
             }
-            // The degree sign and letters with accents, as old Windows programs write them.
+            // Only degree sign and accented letters are decoded as Windows 1252, as old programs write them.
             if self.bytes.iter().any(|byte| matches!(byte, 0x80..=0x9f)) {
                 return Err(Problem::NotUtf8 { line: self.number, byte: self.bytes[valid] });
             }
@@ -140,19 +139,19 @@ impl<R: Read> Lines<R> {
         Ok(Some(&self.text))
     }
 
-    /// The next line without its end as it stands, text or not: for logs, where noise spoils a line and not the file.
+    /// Bytes of the next line without its end, text or not: for logs, where noise spoils a line and not the file.
     ///
-    /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and the rest of it read past; `None` at the end
+    /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and its remainder is skipped; `None` at the end
     /// of the file.
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
         let Some((_, whole)) = self.take_line()? else { return Ok(None) };
         if !whole {
-            self.consumed += self.input.skip_until(self.end).map_err(Problem::of_input)? as u64;
+            self.consumed += self.input.skip_until(self.end).map_err(Problem::from_input)? as u64;
         }
         Ok(Some(&self.bytes))
     }
 
-    /// SHA-256 of all bytes read, hexadecimal; that of the file after its last line.
+    /// SHA-256 of all bytes read, hexadecimal; the hash of the file after its last line.
     pub fn sha256(self) -> String {
         self.hash.finish()
     }

@@ -1,4 +1,4 @@
-//! A log: what one or several files hold, cleaned and on one clock, before a part of it becomes a record.
+//! Reading of logs: the content of one or several files, cleaned and on a common clock, and the record of a part of it.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use document::{Code, Warning};
 use ship::Particulars;
 
-use super::assemble::{check, columns, complete, once, series, straight_rudder};
+use super::assemble::{check, columns, complete, interpolate_rudder, series, without_duplicates};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
 use super::messages;
 use super::nmea;
 use super::rudder;
-use super::source::{ChannelReadings, Log, Series};
+use super::source::{Log, Readings, Series};
 use super::table;
 use crate::channel::Channel;
 use crate::cleaning;
@@ -25,37 +25,37 @@ use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
 
-/// A record that was read, and what the reader had to decide or found remarkable.
+/// A record with the warnings of the reader.
 #[derive(Debug, Clone)]
 pub struct ReadRecord {
     /// The record.
     pub trial: Trial,
-    /// Those of the record, whose file whoever reads it names.
+    /// Warnings of the record, without the name of its file.
     pub warnings: Vec<Warning>,
 }
 
 impl Log {
-    /// Reads the log at `path`, or on standard input for `-`, as the sidecar at `sidecar` describes it, and the
-    /// channels of `others` beside it, each as the sidecar beside it describes.
+    /// Reads the log at `path`, or on standard input for `-`, as the sidecar at `sidecar` describes it, and joins the
+    /// channels of `joined`, each as the sidecar beside it describes.
     ///
-    /// Fails as [`read_with`] does, but for what makes a record of it, and where two files have no time in common.
-    pub fn open(path: &Path, sidecar: Option<&Path>, others: &[PathBuf]) -> Result<Self, ReadError> {
+    /// Fails as [`read_with`] does, except for the checks of a record, and where two files have no time in common.
+    pub fn open(path: &Path, sidecar: Option<&Path>, joined: &[PathBuf]) -> Result<Self, ReadError> {
         if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
             return Err(ReadError::table(path, Problem::IsSidecar));
         }
-        let mut log = Self::of_file(path, sidecar, others.is_empty())?;
-        for other in others {
-            log.join(other)?;
+        let mut log = Self::of_file(path, sidecar, joined.is_empty())?;
+        for file in joined {
+            log.join(file)?;
         }
-        if !others.is_empty() {
+        if !joined.is_empty() {
             check(&log.columns).map_err(|problem| log.fault(problem))?;
             log.complete()?;
         }
         Ok(log)
     }
 
-    /// Reads the log that `input` gives; `path` names it, and `size` (bytes), where known, serves to estimate the rows
-    /// of a file that is too long.
+    /// Reads a log from `input`; `path` is its name, and `size` (bytes) serves to estimate the rows of a file that is
+    /// too long.
     ///
     /// Fails as [`open`](Self::open) does, except for faults of the file system.
     pub fn of_bytes(
@@ -68,7 +68,7 @@ impl Log {
         Self::of_content(path, content, size, sidecar.cloned(), true)
     }
 
-    /// `whole` says whether the file has to hold a whole record.
+    /// Reads a file; a `whole` record needs rudder and heading.
     fn of_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
         let sidecar = sidecar.map(Sidecar::load).transpose()?;
         let name = called(path);
@@ -100,9 +100,6 @@ impl Log {
         };
         let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
         let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
-        if log.readings.is_empty() {
-            log.readings = ChannelReadings::of_columns(&log.columns, &log.names);
-        }
         if whole {
             log.complete()?;
         }
@@ -114,62 +111,76 @@ impl Log {
     }
 
     /// Adds the channels of another file.
-    fn join(&mut self, other: &Path) -> Result<(), ReadError> {
-        let joined = Self::of_file(other, Sidecar::found_beside(other).as_deref(), false)?;
+    fn join(&mut self, file: &Path) -> Result<(), ReadError> {
+        let mut joined = Self::of_file(file, Sidecar::found_beside(file).as_deref(), false)?;
         let offset = match (&self.clock, &joined.clock) {
-            (Some(own), Some(its)) => offset(own, its),
+            (Some(first), Some(second)) => offset(first, second),
             (None, None) => 0.0,
-            (own, _) => {
-                let problem = Problem::TwoClocks { other: self.path.clone(), stamped: own.is_some() };
-                return Err(ReadError::table(other, problem));
+            (clock, _) => {
+                let problem = Problem::TwoClocks { first: self.path.clone(), stamped: clock.is_some() };
+                return Err(ReadError::table(file, problem));
             }
         };
-        let of_file = |warning: Warning| warning.code.warning(format!("{}: {}", other.display(), warning.text));
-        self.warnings.extend(joined.warnings.into_iter().map(of_file));
+        let with_file = |warning: Warning| warning.code.warning(format!("{}: {}", file.display(), warning.text));
+        let (mut readings, further) = (self.take_readings(), joined.take_readings());
+        let is_new =
+            |(series, _): &(Series, f64)| readings.iter().all(|(earlier, _)| earlier.channel != series.channel);
+        let further: Vec<(Series, f64)> = further.into_iter().filter(is_new).collect();
+        readings.extend(further.into_iter().map(|(series, shift)| (series, shift + offset)));
+        self.readings = Readings::Series(readings);
+        self.warnings.extend(joined.warnings.into_iter().map(with_file));
         let shifted = |reading: RejectedReading| RejectedReading { time: reading.time + offset, ..reading };
         self.rejected.extend(joined.rejected.into_iter().map(shifted));
         let mut all = series(std::mem::take(&mut self.columns), 0.0);
         all.extend(series(joined.columns, offset));
-        let (all, doubled) = once(all);
-        self.warnings.extend(doubled.into_iter().map(|channel| {
-            let text = format!("the {} is in an earlier file, too, and is taken from there", channel.spoken());
-            of_file(Code::Instrument.warning(text))
+        let (all, dropped) = without_duplicates(all);
+        self.warnings.extend(dropped.into_iter().map(|channel| {
+            let text = format!("the {} is also in an earlier file, from which it is taken", channel.spoken());
+            with_file(Code::Instrument.warning(text))
         }));
-        self.columns = columns(all);
+        self.columns = columns(&all);
         self.names.extend(joined.names);
-        let is_new =
-            |readings: &ChannelReadings| self.readings.iter().all(|earlier| earlier.channel != readings.channel);
-        let further: Vec<ChannelReadings> = joined.readings.into_iter().filter(is_new).collect();
-        self.readings.extend(further.into_iter().map(|readings| readings.later(offset)));
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
         self.rows += joined.rows;
         Ok(())
     }
 
-    /// Adds what was not recorded and can be told, and does with the rudder what the sidecar says.
+    /// Adds derived channels, fills the rudder, and applies the keys of [rudder] in the sidecar.
     ///
     /// Fails where the rudder is moved by more than the length of the log.
     fn complete(&mut self) -> Result<(), ReadError> {
+        if matches!(self.readings, Readings::InColumns) && !self.is_complete() {
+            self.readings = Readings::Columns(self.columns.clone());
+        }
         let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
         if let Some(late) = late_s {
             self.columns = rudder::earlier(std::mem::take(&mut self.columns), late);
             if check(&self.columns).is_err() {
-                let expected = "less than the log lasts: rudder and heading have no time in common so";
-                let problem = SidecarProblem::Value { key: "late-s".into(), found: late.to_string(), expected };
+                let expected = "less than the length of the log: rudder and heading would have no time in common";
+                let problem = SidecarProblem::Value { key: "late-s".into(), value: late.to_string(), expected };
                 return Err(SidecarError { file: self.sidecar.file.clone(), line: None, problem }.into());
             }
-            let of_rudder = self.rejected.iter_mut().filter(|reading| reading.channel == Channel::Rudder);
-            of_rudder.for_each(|reading| reading.time -= late);
-            let text = format!("the rudder is taken {late} s earlier than it was read, as the sidecar says");
+            let rejected = self.rejected.iter_mut().filter(|reading| reading.channel == Channel::Rudder);
+            rejected.for_each(|reading| reading.time -= late);
+            let text = format!("the rudder is taken {late} s earlier than it was read, as the sidecar declares");
             self.warnings.push(Code::MovedRudder.warning(text));
         }
         if let Some(rate) = order_rate_deg_s.filter(|rate| rudder::follow_order(&mut self.columns, *rate)) {
-            let text = format!("the rudder follows its order at {rate}°/s, as the sidecar says");
+            let text = format!("the rudder follows its order at {rate}°/s, as the sidecar declares");
             self.warnings.push(Code::MovedRudder.warning(text));
         }
         self.warnings.extend(complete(&mut self.columns));
-        self.warnings.extend(straight_rudder(&mut self.columns));
+        self.warnings.extend(interpolate_rudder(&mut self.columns));
         Ok(())
+    }
+
+    /// `true` for columns that completion leaves as they were read.
+    fn is_complete(&self) -> bool {
+        let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
+        let has = |channel: Channel| self.columns.channels.contains_key(&channel);
+        let has_speed = has(Channel::Speed) || !has(Channel::Surge) || !has(Channel::Sway);
+        let has_rudder = self.channel(Channel::Rudder).is_some_and(|rudder| rudder.iter().all(|x| x.is_finite()));
+        has_speed && has_rudder && late_s.is_none() && order_rate_deg_s.is_none()
     }
 
     /// Time of every row, s.
@@ -182,18 +193,18 @@ impl Log {
         self.columns.channels.get(&channel).map(Vec::as_slice)
     }
 
-    /// Whether a sidecar says which part is to be used.
+    /// `true` where the sidecar declares a part.
     pub fn has_declared_part(&self) -> bool {
         let part = self.sidecar.part();
         part.start().is_finite() || part.end().is_finite()
     }
 
-    /// The part from one time to another, s, both included. Fails where it holds no row.
+    /// The part between two times, s, both included. Fails where it holds no row.
     pub fn part(mut self, from: f64, until: f64) -> Result<Self, ReadError> {
         let time = &self.columns.time;
         let rows = time.partition_point(|&t| t < from)..time.partition_point(|&t| t <= until);
         if rows.is_empty() {
-            let ends = |place: Option<&f64>| place.copied().unwrap_or(f64::NAN);
+            let ends = |time: Option<&f64>| time.copied().unwrap_or(f64::NAN);
             let (first_s, last_s) = (ends(time.first()), ends(time.last()));
             return Err(self.fault(Problem::EmptyPart { from_s: from, until_s: until, first_s, last_s }));
         }
@@ -211,27 +222,27 @@ impl Log {
         Ok(self)
     }
 
-    /// The record that the log holds; `ship` goes before what a sidecar declares.
+    /// The record of the log; `ship` overrides the particulars of the sidecar.
     ///
-    /// Fails when it has too few rows, or contradicts itself ([`plausibility`]).
+    /// Fails when the log has too few rows, or is implausible ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
         let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, names, .. } = self;
         let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
         rejected.retain(|reading| first <= Some(reading.time) && Some(reading.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);
         let checked = sidecar.is_checked();
-        // Two parts of one file are two records.
-        let of_part = |[from, until]: [f64; 2]| joined_hash(&sha256, &format!("{from} {until}"));
-        let sha256 = part.map(of_part).unwrap_or(sha256);
+        // Two parts of the same file are two records.
+        let part_hash = |[from, until]: [f64; 2]| joined_hash(&sha256, &format!("{from} {until}"));
+        let sha256 = part.map(part_hash).unwrap_or(sha256);
         let origin = Origin::Measured { file: path.display().to_string(), sha256 };
         let mut trial = Trial::new(input::stem(&path), origin, columns).map_err(|error| {
             fault(match error {
-                TrialError::TooShort { needed, found } => Problem::TooShort { needed, found, rows },
-                other => Problem::Record(other),
+                TrialError::TooShort { needed, found } => Problem::TooShort { needed, usable: found, rows },
+                error => Problem::Record(error),
             })
         })?;
         if trial.heading_from_yaw_rate() {
-            let text = "there is no heading; it is the integral of the yaw rate, from zero";
+            let text = "there is no heading; the integral of the yaw rate, from zero, is used instead";
             warnings.push(Code::HeadingFromYawRate.warning(text));
         }
         if let Some(particulars) = ship.or(sidecar.conditions.particulars) {
@@ -243,12 +254,12 @@ impl Log {
         }
         if checked && plausibility::derivative::is_derivative(&trial) {
             trial = trial.without(&[Channel::YawRate]);
-            let text = "the yaw rate is the derivative of the heading, with its noise and jumps: it is no second instrument and is \
-                        not counted";
+            let text = "the yaw rate is the derivative of the heading, with its noise and jumps: it is not a second \
+                        instrument and is not used";
             warnings.push(Code::YawRate.warning(text));
         }
         match plausibility::check(&trial) {
-            Ok(found) => warnings.extend(found),
+            Ok(doubts) => warnings.extend(doubts),
             Err(implausible) if !checked => warnings.push(Code::Implausible.warning(implausible.to_string())),
             Err(implausible) => return Err(fault(implausible.into())),
         }
@@ -256,23 +267,23 @@ impl Log {
     }
 }
 
-/// Seconds to add to the times of the second clock to have them on the first.
-fn offset(own: &Clock, its: &Clock) -> f64 {
-    let zone = own.zone.zip(its.zone).map_or(0.0, |(own, its)| 60.0 * f64::from(own - its));
-    let seconds = its.second - own.second + zone;
-    match own.day.zip(its.day) {
-        Some((own, its)) => seconds + DAY * (its - own) as f64,
-        // Times of day alone: the nearest.
+/// Seconds from the times of the second clock to those of the first.
+fn offset(first: &Clock, second: &Clock) -> f64 {
+    let zone = first.zone.zip(second.zone).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
+    let seconds = second.second - first.second + zone;
+    match first.day.zip(second.day) {
+        Some((first, second)) => seconds + DAY * (second - first) as f64,
+        // Times of day without a date: the nearest.
         None => (seconds + 0.5 * DAY).rem_euclid(DAY) - 0.5 * DAY,
     }
 }
 
-/// One hash for two: that of both.
-fn joined_hash(one: &str, other: &str) -> String {
-    lines::sha256(format!("{one} {other}").as_bytes())
+/// Hash of two hashes.
+fn joined_hash(first: &str, second: &str) -> String {
+    lines::sha256(format!("{first} {second}").as_bytes())
 }
 
-/// The log of sentences or messages that were read; `whole` says whether it has to hold a whole record.
+/// Log of sentences or messages; a `whole` record needs rudder and heading.
 fn of_series(
     path: &Path,
     read: Result<(Vec<Series>, Log), Problem>,
@@ -284,46 +295,45 @@ fn of_series(
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
-/// Channels with instants of their own, each cleaned by itself, and of them the part that the sidecar asks for.
+/// Log of channels with their own instants, each cleaned by itself, in the part that the sidecar declares.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
-        let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
+        let mut single = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if sidecar.is_checked() {
-            log.warnings.extend(rudder::hold(&mut own));
-            log.warnings.extend(cleaning::clean(&mut own, &mut log.rejected));
+            log.warnings.extend(rudder::hold(&mut single));
+            log.warnings.extend(cleaning::clean(&mut single, &mut log.rejected));
         }
-        Series { channel, values: own.channels.remove(&channel).unwrap_or_default(), time: own.time, source }
+        Series { channel, values: single.channels.remove(&channel).unwrap_or_default(), time: single.time, source }
     });
     let cleaned: Vec<Series> = cleaned.collect();
-    log.readings = cleaned.iter().map(|series| ChannelReadings::of(series, sidecar.part())).collect();
-    let mut columns = columns(cleaned);
-    let keep: Vec<bool> = columns.time.iter().map(|t| sidecar.part().contains(t)).collect();
+    let (mut columns, part) = (columns(&cleaned), sidecar.part());
+    let keep: Vec<bool> = columns.time.iter().map(|t| part.contains(t)).collect();
     columns.retain(&keep);
+    log.readings = Readings::Series(cleaned.into_iter().map(|series| (series.within(&part), 0.0)).collect());
     Log { columns, ..log }
 }
 
-/// Reads the trial at `path`, with the sidecar beside it where there is one.
+/// Reads the trial at `path`, with the sidecar beside it if there is one.
 ///
 /// Fails as [`read_with`] does.
 pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
     read_with(path, Sidecar::found_beside(path).as_deref())
 }
 
-/// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` reads it by its header alone.
+/// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` uses the header only.
 ///
-/// Fails with [`ReadError`] when the file is not there, larger than [`RECORD`](super::RECORD) or of no known format,
-/// when a needed channel is absent, a cell is no number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or
-/// more than [`super::MAX_ROWS`] rows are usable, the sidecar is at fault, or the record contradicts itself
-/// ([`plausibility`]).
+/// Fails with [`ReadError`] when the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format, when
+/// a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more
+/// than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
     Log::open(path, sidecar, &[])?.into_trial(None)
 }
 
-/// Reads a trial from `input`; `path` names it, and `size` (bytes), where known, serves to estimate the rows of a file
-/// that is too long.
+/// Reads a trial from `input`; `path` is its name, and `size` (bytes) serves to estimate the rows of a file that is too
+/// long.
 ///
 /// Fails as [`read_with`] does, except for faults of the file system.
 pub fn read_bytes(

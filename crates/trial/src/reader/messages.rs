@@ -1,6 +1,6 @@
-//! Logs of messages, one quantity or a few at a time, each with its stamp and source: NMEA 2000 as canboat writes it
-//! (JSON lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K
-//! exports them. Every channel comes from one source; which, is said.
+//! Logs of messages, each with its stamp, its source and one or a few quantities: NMEA 2000 as canboat writes it (JSON
+//! lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K exports
+//! them. Every channel comes from a single source, which a warning names.
 
 mod can;
 mod canboat;
@@ -19,20 +19,20 @@ use super::lines::Lines;
 use super::source::{Log, Series};
 use crate::channel::Channel;
 use crate::clock::{Clock, DAY, Stamp, StampFault, Stamps};
-use crate::words::{counted, shortened};
+use crate::wording::{counted, shortened};
 use canboat::Canboat;
 use message::Message;
 use table::LongTable;
 
-/// Share of the readings of the busiest source below which a source speaks now and then.
-const SPARSE: f64 = 0.2;
+/// Maximum share of a sparse source among the readings of the busiest source.
+const SPARSE_SHARE: f64 = 0.2;
 
-/// Largest rudder in radians, and largest heading, where no line says the unit.
-const LARGEST_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
+/// Maximum rudder and maximum heading of a log in radians, where no line states the unit.
+const MAX_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
 pub(super) use can::is_log as is_can_log;
 
-/// How the lines of a log are written.
+/// Format of the lines of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum MessageFormat {
     /// NMEA 2000.
@@ -41,7 +41,7 @@ pub(super) enum MessageFormat {
     Long,
 }
 
-/// The format of a log of messages, from its first lines; `None` for other files.
+/// Format of a log of messages, from its first lines; `None` for other files.
 pub(super) fn format<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Option<MessageFormat> {
     if lines.clone().any(canboat::is_message) {
         return Some(MessageFormat::Canboat);
@@ -49,7 +49,7 @@ pub(super) fn format<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Option
     lines.map(str::trim).find(|line| !line.is_empty()).and_then(LongTable::of).map(|_| MessageFormat::Long)
 }
 
-/// A channel of a source, and how good a quantity of its kind it is.
+/// A channel of a source; the lower `class` is the better quantity for the channel.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct MessageSource {
     channel: Channel,
@@ -57,7 +57,7 @@ struct MessageSource {
     name: String,
 }
 
-/// What was read so far.
+/// Readings so far, by source.
 #[derive(Default)]
 struct MessageLog {
     stamps: Stamps,
@@ -97,24 +97,24 @@ impl MessageLog {
         Ok(())
     }
 
-    /// One source for every channel, and what was decided.
+    /// The series of the best source of every channel, with warnings of the choice.
     fn choice(self) -> (Vec<Series>, Vec<Warning>) {
         let (mut series, mut warnings) = (Vec::new(), Vec::new());
         for channel in Channel::ALL {
-            let is_own =
+            let is_offer =
                 |(source, signal): &(&MessageSource, &Series)| source.channel == channel && !signal.time.is_empty();
-            let mut offers: Vec<_> = self.sources.iter().filter(is_own).collect();
+            let mut offers: Vec<_> = self.sources.iter().filter(is_offer).collect();
             let most = offers.iter().map(|(_, signal)| signal.time.len()).max().unwrap_or(0);
             offers.sort_by_key(|(source, signal)| {
                 let readings = signal.time.len();
-                ((readings as f64) < SPARSE * most as f64, source.class, usize::MAX - readings)
+                ((readings as f64) < SPARSE_SHARE * most as f64, source.class, usize::MAX - readings)
             });
             let Some(&(MessageSource { class, name, .. }, signal)) = offers.first() else { continue };
             let kind = match (channel, class) {
                 (Channel::Heading, 1) => "magnetic heading",
                 (Channel::Speed, 0) => "speed through the water",
                 (Channel::Speed, _) => "speed over ground",
-                (channel_of, _) => channel_of.spoken(),
+                (channel, _) => channel.spoken(),
             };
             let unused_sources: Vec<String> =
                 offers[1..].iter().map(|(source, signal)| format!("{} ({})", source.name, signal.time.len())).collect();
@@ -126,7 +126,7 @@ impl MessageLog {
             let text = format!("{kind} from {name} ({}){unused}", counted(signal.time.len(), "reading"));
             warnings.push(Code::Instrument.warning(text));
             if (channel, *class) == (Channel::Heading, 1) {
-                let text = "the heading is magnetic; changes of heading are right, the direction of north is not";
+                let text = "the heading is magnetic; changes of heading are correct, its zero is not true north";
                 warnings.push(Code::OtherReference.warning(text));
             }
             series.push(signal.clone());
@@ -135,9 +135,9 @@ impl MessageLog {
     }
 }
 
-/// Reads the whole log: one series for each channel, and a log that has no columns yet.
+/// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails where a stamp is none, and where no message gives a quantity that is used.
+/// Fails on an invalid stamp, and where no message holds a quantity that is used.
 pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Result<(Vec<Series>, Log), Problem> {
     let mut log = MessageLog::default();
     let (mut canboat, mut table) = (Canboat::default(), None);
@@ -169,20 +169,20 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
         warnings.extend(in_radians(&mut series, canboat.is_si));
     }
     if unread > 0 {
-        let text = format!("{} of {} give no quantity that is used", counted(unread, "line"), counted(rows, "line"));
+        let text = format!("{} of {} hold no quantity that is used", counted(unread, "line"), counted(rows, "line"));
         warnings.push(Code::LeftOut.warning(text));
     }
     let clock = begin_at_zero(&mut series, clock);
     Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
 }
 
-/// Brings angles to radians: canboat writes degrees, and radians where it is asked to.
+/// Converts angles to radians: canboat writes degrees, or radians with an option.
 fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
-    let of = |channel: Channel| {
+    let largest = |channel: Channel| {
         let signal = series.iter().find(|signal| signal.channel == channel);
         signal.map_or(0.0, |signal| signal.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())))
     };
-    let seems_si = of(Channel::Rudder) <= LARGEST_RAD[0] && of(Channel::Heading) <= LARGEST_RAD[1];
+    let seems_si = largest(Channel::Rudder) <= MAX_RAD[0] && largest(Channel::Heading) <= MAX_RAD[1];
     if !is_si.unwrap_or(seems_si) {
         let is_angle = |signal: &&mut Series| signal.channel.is_angle();
         series.iter_mut().filter(is_angle).flat_map(|signal| &mut signal.values).for_each(|value| *value *= DEGREE);
@@ -190,10 +190,10 @@ fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
     let unit = if seems_si { "radians" } else { "degrees" };
     is_si
         .is_none()
-        .then(|| Code::AssumedUnit.warning(format!("angles are read as {unit}, which fits their values alone")))
+        .then(|| Code::AssumedUnit.warning(format!("angles are read as {unit}, the only unit that fits their values")))
 }
 
-/// Makes the first instant time 0.
+/// Shifts times so that the first instant is 0.
 fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     let first = series.iter().filter_map(|signal| signal.time.first()).copied().fold(f64::INFINITY, f64::min);
     let rounded = |time: f64| (time * 1e6).round() / 1e6;

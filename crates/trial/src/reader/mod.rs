@@ -1,14 +1,12 @@
-//! Reading a measured trial: a table, text or not, with a sidecar where its columns need words, becomes a
-//! [`Trial`](crate::Trial) or one message that says what is wrong, where, and what to do. Nothing is guessed silently:
-//! what the reader had to decide is a warning.
+//! Reader of measured trials: a table, text or binary, with a sidecar where its columns need a description, becomes a
+//! [`Trial`](crate::Trial), or a single error with its place and a remedy. Every decision of the reader is a warning.
 //!
-//! A table is one row per line below a header of `quantity_unit` names (see [`crate::channel`]), separated by commas,
-//! semicolons, tabs or blanks. Lines that start with `#` and empty lines are passed over; a commented header is used
-//! when the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are left out, so that
-//! the rudder runs straight between its neighbours; rows without heading stay. A speed that was not recorded is √(u² +
-//! v²) where surge and sway were. Numbers that loggers write for no reading, rudder angles no rudder has, repeated
-//! values and a frozen heading are left out and told, unless a sidecar has `plausibility = false`. How to describe
-//! other tables: [`crate::sidecar`].
+//! A table has one row per line below a header of `quantity_unit` names (see [`crate::channel`]), separated by commas,
+//! semicolons, tabs or blanks. Lines that start with `#` and empty lines are skipped; a commented header is used when
+//! the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are left out, so that the
+//! rudder is interpolated between its neighbours; rows without heading stay. A speed that was not recorded is √(u² + v²)
+//! of surge and sway. Sentinels of loggers, impossible rudder angles, repeated values and a frozen heading are left out
+//! and reported, unless a sidecar has `plausibility = false`. Other tables are described in [`crate::sidecar`].
 
 mod assemble;
 mod code;

@@ -1,5 +1,7 @@
-//! Latitude and longitude to metres north and east of the first position: a plane is exact enough for a trial, whose
-//! track is a few miles long.
+//! Projection of latitude and longitude to metres north and east of the first position: a plane is exact enough for a
+//! track of a few miles.
+//!
+//! Source: radii of curvature of the WGS 84 ellipsoid, NIMA TR 8350.2, third edition.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,12 +12,12 @@ const A: f64 = 6_378_137.0;
 /// First eccentricity squared (same, table 3.3).
 const E2: f64 = 6.694_379_990_14e-3;
 
-/// Metres north and east of the first position, from latitude and longitude (rad); NaN where there is none, and `None`
-/// where there is none at all.
+/// Metres north and east of the first position, from latitude and longitude (rad); NaN for a row without a position, and
+/// `None` without any position.
 ///
 /// north = M (φ − φ₀) and east = N cos φₘ (λ − λ₀), with the radii of curvature M of the meridian and N of the prime
-/// vertical and the cosine at the mean φₘ of both latitudes, the former at φₘ as well. Of 10 miles the error is below a
-/// few decimetres away from the poles.
+/// vertical and the cosine at the mean latitude φₘ. Over 10 miles the error is below a few decimetres away from the
+/// poles.
 pub(super) fn plane(latitude: &[f64], longitude: &[f64]) -> Option<[(Channel, Vec<f64>); 2]> {
     let mut positions = latitude.iter().zip(longitude);
     let (&first_latitude, &first_longitude) = positions.find(|(phi, lambda)| (**phi + **lambda).is_finite())?;

@@ -1,5 +1,5 @@
-//! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left
-//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::table`].
+//! Rows of a table: cells to SI units, part and thinning, rows that are left out, and the limit of memory. Only the rows
+//! kept are held; [`super::table`] makes columns of them.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -14,9 +14,9 @@ use crate::cleaning::is_sentinel;
 use crate::clock::{Stamp, StampFault, Stamps};
 use crate::record::Trial;
 use crate::sidecar::Sidecar;
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// What was counted on the way, for warnings.
+/// Counts of rows, for warnings.
 #[derive(Debug, Default)]
 pub(super) struct Counts {
     pub rows: usize,
@@ -24,22 +24,22 @@ pub(super) struct Counts {
     /// Rows with neither rudder nor heading nor yaw rate.
     pub nothing: usize,
     pub repeated: usize,
-    /// Times that do not fit those around them.
+    /// Times that do not fit their neighbours.
     pub astray: Vec<f64>,
     pub short: usize,
     pub decimal_commas: usize,
 }
 
-/// The last rows, to tell one that does not follow from one after which time starts anew.
+/// The last rows, to distinguish a single stray time from a clock that starts again.
 #[derive(Debug, Default)]
 struct Before {
     /// The last row with a time, as it was read.
     last: Option<(f64, Vec<f64>)>,
     /// Time of the row before that.
     earlier: Option<f64>,
-    /// Whether the last row was kept.
+    /// `true` where the last row was kept.
     kept: bool,
-    /// A row left out because its time is before that of the last one: its line and time.
+    /// Line and time of a row left out because its time is before the last time.
     astray: Option<(usize, f64)>,
 }
 
@@ -53,12 +53,12 @@ pub(super) struct Rows<'a> {
     pub(super) time_place: Option<usize>,
     date_place: Option<usize>,
     heading_place: Option<usize>,
-    /// Places of the channels of which a row has to have one.
+    /// Columns of the channels of which a row needs at least one.
     wanted: Vec<usize>,
     pub(super) stamps: Option<Stamps>,
-    /// Whether no stamp has had a fraction of a second so far.
+    /// `true` while no stamp has a fraction of a second.
     pub(super) whole_seconds: bool,
-    /// Columns that are kept, with that of time.
+    /// Number of columns that are kept, with the column of time.
     width: usize,
 
     pub(super) time: Vec<f64>,
@@ -66,7 +66,7 @@ pub(super) struct Rows<'a> {
     row: Vec<f64>,
     before: Before,
     last_heading: Option<f64>,
-    /// Rows of the part with time and one of the wanted channels.
+    /// Number of rows of the part with time and one of the wanted channels.
     pub(super) usable: usize,
     /// First and last time in the file.
     pub(super) span: Option<(f64, f64)>,
@@ -75,10 +75,10 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     pub fn new(layout: Layout, separator: Separator, sidecar: &'a Sidecar) -> Self {
-        let main = [layout.rudder(), layout.place(Channel::Heading), layout.place(Channel::YawRate)];
+        let main = [layout.rudder(), layout.index(Channel::Heading), layout.index(Channel::YawRate)];
         let mut wanted: Vec<usize> = main.into_iter().flatten().collect();
         if wanted.is_empty() {
-            // A table that holds some other channel of a record only.
+            // A table with other channels of a record.
             let is_channel = |&place: &usize| matches!(layout.columns[place].content, Content::Channel(..));
             wanted.extend((0..layout.columns.len()).filter(is_channel));
         }
@@ -91,7 +91,7 @@ impl<'a> Rows<'a> {
             every: sidecar.part.every.unwrap_or(1),
             time_place,
             date_place: layout.date(),
-            heading_place: layout.place(Channel::Heading),
+            heading_place: layout.index(Channel::Heading),
             wanted,
             stamps: stamped.then(Stamps::default),
             whole_seconds: true,
@@ -108,24 +108,25 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Fails when there are more rows than [`MAX_ROWS`] and [`MAX_CELLS`] allow after `consumed` of the `size` bytes of
-    /// the file, or when its size says early that there will be far too many, so that nobody has to wait for it.
+    /// Checks the number of rows after `consumed` of the `size` bytes of the file.
+    ///
+    /// Fails beyond [`MAX_ROWS`] and [`MAX_CELLS`], and early where the size of the file predicts far too many rows.
     pub fn check_length(&self, consumed: u64, size: Option<u64>) -> Result<(), Problem> {
-        const EARLY: usize = 10_000;
-        const FAR: f64 = 1.5;
+        const ESTIMATE_ROWS: usize = 10_000;
+        const MIN_EXCESS: f64 = 1.5;
         let kept = self.time.len();
         let limit = MAX_ROWS.min(MAX_CELLS / self.width).max(Trial::FEWEST_ROWS);
-        if kept <= limit && kept != EARLY {
+        if kept <= limit && kept != ESTIMATE_ROWS {
             return Ok(());
         }
         let size = size.filter(|&size| consumed > 0 && size > consumed);
         let estimate = size.map(|size| kept as f64 * (size as f64 / consumed as f64));
         let whole = self.part == (f64::NEG_INFINITY..=f64::INFINITY);
-        if kept <= limit && !(whole && estimate.is_some_and(|rows| rows > FAR * limit as f64)) {
+        if kept <= limit && !(whole && estimate.is_some_and(|rows| rows > MIN_EXCESS * limit as f64)) {
             return Ok(());
         }
         let estimate = estimate.map(|rows| {
-            // Two digits: more would claim a precision the estimate does not have.
+            // Two significant digits, the precision of the estimate.
             let digit = 10f64.powi(rows.log10().floor() as i32 - 1);
             ((rows / digit).round() * digit) as u64
         });
@@ -133,7 +134,7 @@ impl<'a> Rows<'a> {
         Err(Problem::TooManyRows { limit, columns: self.width, estimate, every: times * self.every as u64 })
     }
 
-    /// Takes one line: a row, a comment or nothing.
+    /// Adds a line: a row, a comment or an empty line.
     pub fn add(&mut self, line: &str, number: usize) -> Result<(), Problem> {
         if is_comment(line) {
             return Ok(());
@@ -168,7 +169,7 @@ impl<'a> Rows<'a> {
             return Ok(());
         }
         self.usable += 1;
-        // Rows may share a stamp: which of them is used is decided when their instants are known.
+        // Rows may share a stamp: they are thinned once their instants are known.
         if self.stamps.is_some() || (self.usable - 1).is_multiple_of(self.every) {
             self.before.kept = true;
             self.time.push(time);
@@ -180,19 +181,19 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Seconds of the stamp of a row since the first one; NaN for an empty cell.
+    /// Seconds from the first stamp to the stamp of a row; NaN for an empty cell.
     fn stamp(&mut self, line: &str, number: usize, place: usize) -> Result<f64, Problem> {
         let text = |place: usize| self.cells.get(place).map_or("", |range| &line[range.clone()]);
-        let own = text(place);
-        let read = Stamp::parse(own).and_then(|time| match self.date_place {
+        let time_cell = text(place);
+        let read = Stamp::parse(time_cell).and_then(|time| match self.date_place {
             Some(date) => Some(Stamp::joined(Stamp::parse(text(date))?, time)),
             None => Some(time),
         });
-        let value = || shortened(own);
+        let value = || shortened(time_cell);
         let no_stamp =
             || Problem::NotAStamp { line: number, column: self.layout.columns[place].name.clone(), value: value() };
         let (Some(stamp), Some(stamps)) = (read, &mut self.stamps) else {
-            let missing = cell(own, self.separator) == Cell::Missing;
+            let missing = cell(time_cell, self.separator) == Cell::Missing;
             return if missing { Ok(f64::NAN) } else { Err(no_stamp()) };
         };
         self.whole_seconds &= !stamp.has_fraction();
@@ -204,13 +205,13 @@ impl<'a> Rows<'a> {
 
     /// Cells to numbers in SI units, into `self.row`.
     fn parse(&mut self, line: &str, number: usize) -> Result<(), Problem> {
-        let (found, expected) = (self.cells.len(), self.layout.cells);
-        let surplus = self.cells.get(expected..).is_some_and(|rest| rest.iter().any(|cell| !cell.is_empty()));
-        // With blanks between the cells nobody can tell which one is missing.
-        if surplus || (found < expected && self.separator == Separator::Blank) {
-            return Err(Problem::Cells { line: number, found, expected });
+        let (cells, expected) = (self.cells.len(), self.layout.cells);
+        let surplus = self.cells.get(expected..).is_some_and(|extra| extra.iter().any(|cell| !cell.is_empty()));
+        // With blanks between the cells a missing cell cannot be located.
+        if surplus || (cells < expected && self.separator == Separator::Blank) {
+            return Err(Problem::Cells { line: number, cells, expected });
         }
-        self.counts.short += usize::from(found < expected);
+        self.counts.short += usize::from(cells < expected);
         let checked = self.sidecar.is_checked();
         for (place, column) in self.layout.columns[..expected].iter_mut().enumerate() {
             let text = self.cells.get(place).map_or("", |range| &line[range.clone()]);
@@ -239,7 +240,7 @@ impl<'a> Rows<'a> {
                     f64::NAN
                 }
                 Cell::Number(value) | Cell::CommaNumber(value) => {
-                    column.note(value);
+                    column.count(value);
                     (value - column.zero) * factor
                 }
                 Cell::Missing => f64::NAN,
@@ -253,12 +254,12 @@ impl<'a> Rows<'a> {
                 }
             };
         }
-        self.work_out(line);
+        self.evaluate_formulas(line);
         Ok(())
     }
 
-    /// Works out the columns that are none of the table.
-    fn work_out(&mut self, line: &str) {
+    /// Evaluates the columns with formulas.
+    fn evaluate_formulas(&mut self, line: &str) {
         let Layout { columns, cells: first, formulas, .. } = &mut self.layout;
         for (column, (place, (formula, sources))) in columns[*first..].iter_mut().zip((*first..).zip(formulas.iter())) {
             let number = |place: &usize| {
@@ -268,14 +269,14 @@ impl<'a> Rows<'a> {
             let value = formula.value(&sources.iter().map(number).collect::<Vec<_>>());
             let Content::Channel(_, factor) = column.content else { continue };
             if value.is_finite() {
-                column.note(value);
+                column.count(value);
             }
             self.row[place] = (value - column.zero) * factor;
         }
     }
 
-    /// Whether the row comes after the one before. A row that repeats the one before in every value does not, nor does
-    /// a single row whose time does not fit those around it; where time goes on from an earlier one it is an error.
+    /// `true` for a row that follows the last one in time. An exact copy of the last row and a single row with a stray
+    /// time do not; fails where time continues from an earlier time.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;
         let Some((last, row)) = &mut self.before.last else {
@@ -283,15 +284,15 @@ impl<'a> Rows<'a> {
             return Ok(true);
         };
         if time < *last {
-            if let Some((line, found)) = self.before.astray {
-                return Err(Problem::TimeBackwards { line, before: *last, found });
+            if let Some((line, time)) = self.before.astray {
+                return Err(Problem::TimeBackwards { line, before: *last, time });
             }
             if self.before.earlier.is_none_or(|earlier| time <= earlier) {
                 self.counts.astray.push(time);
                 self.before.astray = Some((number, time));
                 return Ok(false);
             }
-            // It fits the row but one before: the row before was ahead of time.
+            // The row fits the last but one: the time of the last row was too late.
             self.counts.astray.push(*last);
             if self.before.kept {
                 self.time.pop();
@@ -314,7 +315,7 @@ impl<'a> Rows<'a> {
         Ok(true)
     }
 
-    /// Removes the wrap of the heading before rows are left out: thinning may turn a fast turn into steps beyond 180°.
+    /// Unwraps the heading before rows are left out: thinning may turn a fast turn into steps beyond 180°.
     fn unwrap(&mut self, place: usize) {
         let heading = self.row[place];
         if heading.is_nan() {
@@ -329,14 +330,14 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The sign of a word for a side: port is negative.
+/// Sign of a word for a side; port is negative.
 fn side_word(text: &str) -> Option<f64> {
     const PORT: [&str; 8] = ["p", "port", "l", "left", "bb", "backbord", "babord", "bâbord"];
     const STARBOARD: [&str; 10] =
         ["s", "stbd", "starboard", "r", "right", "stb", "sb", "steuerbord", "tribord", "styrbord"];
     let word = text.trim_end_matches('.').to_lowercase();
-    let is_of = |words: &[&str]| words.contains(&word.as_str());
-    if is_of(&PORT) { Some(-1.0) } else { is_of(&STARBOARD).then_some(1.0) }
+    let is_side = |side: &[&str]| side.contains(&word.as_str());
+    if is_side(&PORT) { Some(-1.0) } else { is_side(&STARBOARD).then_some(1.0) }
 }
 
 /// A rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).

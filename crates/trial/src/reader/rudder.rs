@@ -1,5 +1,5 @@
-//! What is done with the rudder before it is that of a record: one that was written on change holds its value, and what
-//! a sidecar says of it: that it is read late, or that its column is the order.
+//! Corrections of the rudder before it becomes part of a record: a rudder written on change holds its value, and a
+//! sidecar may declare a delay of the rudder, or the column as an order.
 
 use document::{Code, Warning};
 use estimation::statistics::median;
@@ -10,23 +10,24 @@ use super::source::Series;
 use crate::channel::Channel;
 use crate::record::Columns;
 
-/// Fewest readings, fewest long rests between them, and how many usual intervals a long rest has, where a rudder is
-/// written on change.
+/// Minimum number of readings and of long rests of a rudder written on change, and minimum length of a long rest in
+/// usual intervals.
 const ON_CHANGE: (usize, usize, f64) = (20, 2, 5.0);
 
-/// The smallest change of a rudder that is written on change, of its usual one: noise has nearly none.
-const LEAST_CHANGE: f64 = 0.3;
+/// Minimum change of a rudder written on change, as a share of its median change; noise has smaller changes.
+const MIN_CHANGE_SHARE: f64 = 0.3;
 
-/// Most readings that are put into one rest.
-const MOST_HELD: f64 = 1000.0;
+/// Maximum number of readings added in a rest.
+const MAX_HELD_READINGS: f64 = 1000.0;
 
-/// Holds a rudder that was written on change: between two readings it has the value before, at the usual interval.
-/// `None` where it is written otherwise.
+/// Holds the value of a rudder written on change between two readings, at the usual interval. `None` for a rudder that
+/// is not written on change.
 ///
-/// Written on change, no reading repeats the one before, and over a long rest the rudder goes no further than between
-/// two rows of a movement.
+/// In a rudder written on change no reading repeats the reading before, and over a long rest the rudder moves no further
+/// than between two rows of a movement.
 pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
-    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|own| columns.channels.contains_key(own))?;
+    let is_recorded = |channel: &Channel| columns.channels.contains_key(channel);
+    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(is_recorded)?;
     let values = &columns.channels[&channel];
     let read: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
     if read.len() < ON_CHANGE.0 {
@@ -39,7 +40,7 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
     let largest = steps.iter().filter(|step| !is_rest(step)).map(|(_, change)| *change).fold(0.0, f64::max);
     let mut changes: Vec<f64> = steps.iter().map(|(_, change)| *change).collect();
     let typical = median(&mut changes)?;
-    let small = changes.iter().filter(|change| **change < LEAST_CHANGE * typical).count();
+    let small = changes.iter().filter(|change| **change < MIN_CHANGE_SHARE * typical).count();
     let rests: Vec<f64> = steps.iter().filter(is_rest).map(|(_, change)| *change).collect();
     let is_held = rests.len() >= ON_CHANGE.1 && rests.iter().all(|change| *change <= 2.0 * largest);
     let least = changes.iter().copied().fold(f64::INFINITY, f64::min);
@@ -47,40 +48,40 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
         return None;
     }
     let mut all = assemble::series(std::mem::take(columns), 0.0);
-    for own in all.iter_mut().filter(|own| own.channel == channel) {
-        let mut held = Series { time: Vec::new(), values: Vec::new(), ..own.clone() };
-        for (place, (&time, &value)) in own.time.iter().zip(&own.values).enumerate() {
+    for series in all.iter_mut().filter(|series| series.channel == channel) {
+        let mut held = Series { time: Vec::new(), values: Vec::new(), ..series.clone() };
+        for (index, (&time, &value)) in series.time.iter().zip(&series.values).enumerate() {
             held.time.push(time);
             held.values.push(value);
-            let rest = own.time.get(place + 1).map_or(0.0, |next| next - time);
-            let every = usual.max(rest / MOST_HELD);
+            let pause = series.time.get(index + 1).map_or(0.0, |next| next - time);
+            let every = usual.max(pause / MAX_HELD_READINGS);
             let between =
-                (1..).map(|step| time + every * f64::from(step)).take_while(|at| *at < time + rest - 0.5 * usual);
+                (1..).map(|step| time + every * f64::from(step)).take_while(|at| *at < time + pause - 0.5 * usual);
             let points: Vec<f64> = between.collect();
             held.values.extend(points.iter().map(|_| value));
             held.time.extend(points);
         }
-        *own = held;
+        *series = held;
     }
-    *columns = assemble::columns(all);
+    *columns = assemble::columns(&all);
     Some(Code::FaultyReadings.warning(format!(
-        "the {} is written on change: its empty cells hold the last value until the next one, and so it is read; a change that is too \
-         small to be written (here below {:.2}°) is missing from it",
+        "the {} is written on change: its empty cells are read as the last value; changes below {:.2}°, too small to be \
+         written, are missing",
         channel.spoken(),
         least.to_degrees(),
     )))
 }
 
-/// The columns if every reading of the rudder was made `late` seconds before: rows are the instants of all readings.
+/// Columns with every reading of the rudder `late` seconds earlier; rows are the instants of all readings.
 pub(super) fn earlier(columns: Columns, late: f64) -> Columns {
     let mut all = assemble::series(columns, 0.0);
-    for own in all.iter_mut().filter(|own| matches!(own.channel, Channel::Rudder | Channel::RudderOrder)) {
-        own.time.iter_mut().for_each(|time| *time -= late);
+    for rudder in all.iter_mut().filter(|series| matches!(series.channel, Channel::Rudder | Channel::RudderOrder)) {
+        rudder.time.iter_mut().for_each(|time| *time -= late);
     }
-    assemble::columns(all)
+    assemble::columns(&all)
 }
 
-/// Makes an angle of an order that the gear follows at a rate, deg/s; whether there is an order.
+/// Computes the rudder angle from an order that the gear follows at a rate, deg/s; `false` without an order.
 pub(super) fn follow_order(columns: &mut Columns, rate: f64) -> bool {
     let Columns { time, channels, .. } = columns;
     let order = channels.get(&Channel::RudderOrder).or_else(|| channels.get(&Channel::Rudder)).cloned();
@@ -90,7 +91,7 @@ pub(super) fn follow_order(columns: &mut Columns, rate: f64) -> bool {
     true
 }
 
-/// The angle of a gear that follows an order at one rate (rad/s); an order that changes between two rows changes
+/// Angle of a gear that follows an order at a constant rate (rad/s); an order that changes between two rows changes
 /// half-way.
 fn following(time: &[f64], order: &[f64], rate: f64) -> Vec<f64> {
     let mut last = order.iter().copied().find(|order| order.is_finite()).unwrap_or(f64::NAN);
@@ -119,7 +120,7 @@ mod tests {
         let rudder = time.iter().map(read).collect();
         let channels = [(Channel::Heading, time.clone()), (Channel::Rudder, rudder)].into();
         let mut moved = earlier(Columns { time, channels, unknown: Vec::new() }, 2.5);
-        assemble::straight_rudder(&mut moved);
+        assemble::interpolate_rudder(&mut moved);
         for (t, angle) in moved.time.iter().zip(&moved.channels[&Channel::Rudder]) {
             assert!((angle - 2.0 * t).abs() < 1e-12, "{t} s: {angle}");
             assert!(!(6.5 < *t && *t < 27.5), "{t} s lies in the gap");

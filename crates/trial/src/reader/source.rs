@@ -1,4 +1,4 @@
-//! What files hold before it is a record: channels, each at its own instants, and the columns that
+//! Logs and channels of files before they are a record: series with their own instants, and the columns that
 //! [`super::assemble`] makes of them.
 
 use std::ops::RangeInclusive;
@@ -13,101 +13,147 @@ use crate::plausibility::extremes;
 use crate::record::{Columns, RejectedReading};
 use crate::sidecar::Sidecar;
 
-/// Changes below this are rounding of the arithmetic, in SI units and radians.
+/// Maximum change by rounding of the arithmetic, in SI units and radians.
 const ROUNDING: f64 = 1e-9;
 
-/// A channel at its own instants.
+/// A channel with its own sampling instants.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
-    /// What it holds, in SI units and radians.
+    /// The channel; values are in SI units and radians.
     pub channel: Channel,
     /// Instants, s, on the clock of the file; strictly increasing.
     pub time: Vec<f64>,
-    /// Values; NaN where nothing was read. Headings are not unwrapped.
+    /// Values; NaN for a missing reading. Headings are not unwrapped.
     pub values: Vec<f64>,
-    /// The column or instrument that gives it, where that has a name.
+    /// Name of the column or instrument.
     pub source: Option<String>,
 }
 
-/// What one or several files hold, cleaned and on one clock.
+/// Readings of a log for [`Log::inspect`], as they were before the log was joined or completed.
+#[derive(Debug, Clone, Default)]
+pub(super) enum Readings {
+    /// The columns of the log, which hold nothing but readings.
+    #[default]
+    InColumns,
+    /// The columns as they were read.
+    Columns(Columns),
+    /// Channels with their own instants, each with the shift (s) from its clock to that of the log.
+    Series(Vec<(Series, f64)>),
+}
+
+/// Content of one or several files, cleaned and on a common clock.
 #[derive(Debug, Clone, Default)]
 pub struct Log {
     pub(super) path: PathBuf,
     pub(super) columns: Columns,
-    /// What the clock shows at time 0, where the files have stamps.
+    /// Clock at time 0, where the files have stamps.
     pub clock: Option<Clock>,
     /// SHA-256 of the bytes, hexadecimal.
     pub(super) sha256: String,
-    /// Rows or lines of the files.
+    /// Number of rows or lines of the files.
     pub(super) rows: usize,
     pub(super) sidecar: Sidecar,
     pub(super) part: Option<[f64; 2]>,
-    /// What the reader had to decide or found remarkable.
+    /// Decisions and remarks of the reader.
     pub warnings: Vec<Warning>,
-    /// Readings taken as missing or told as doubtful.
+    /// Readings taken as missing or reported as doubtful.
     pub(super) rejected: Vec<RejectedReading>,
-    /// The columns that channels come from.
+    /// Names of the columns of channels.
     pub(super) names: Vec<(Channel, String)>,
-    /// What was read of every channel.
-    pub(super) readings: Vec<ChannelReadings>,
+    /// Readings of every channel.
+    pub(super) readings: Readings,
 }
 
-/// What was read of a channel, in SI units and radians; a heading unwrapped.
+/// Statistics of the readings of a channel, in SI units and radians; a heading unwrapped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelReadings {
     /// The channel.
     pub channel: Channel,
-    /// The column or instrument it comes from; nothing where it was made of others.
+    /// Name of the column or instrument; `None` for a derived channel.
     pub source: Option<String>,
-    /// How many there are.
+    /// Number of readings.
     pub count: usize,
-    /// Median time from one to the next, s.
+    /// Median interval between readings, s.
     pub interval: Option<f64>,
-    /// Begin of the longest way from one to the next, and its length, s.
+    /// Beginning and length of the longest gap between readings, s.
     pub longest: Option<[f64; 2]>,
-    /// The smallest and the largest.
+    /// Smallest and largest reading.
     pub range: [f64; 2],
-    /// The smallest change from one to the next.
+    /// Smallest change between two readings.
     pub step: Option<f64>,
-    /// How often a heading crosses north.
+    /// Number of times a heading crosses north.
     pub wraps: Option<usize>,
 }
 
 impl ChannelReadings {
-    /// Of a series, within a part of the log.
-    pub(super) fn of(Series { channel, time, values, source }: &Series, part: RangeInclusive<f64>) -> Self {
-        let read = time.iter().zip(values).filter(|(t, value)| value.is_finite() && part.contains(t));
+    /// Statistics of a channel; `shift` (s) is added to the times of its clock.
+    fn new(channel: Channel, source: Option<String>, time: &[f64], values: &[f64], shift: f64) -> Self {
+        let read = time.iter().zip(values).filter(|(_, value)| value.is_finite());
         let read: Vec<(f64, f64)> = read.map(|(t, value)| (*t, *value)).collect();
-        let ways = || read.windows(2).map(|pair| [pair[0].0, pair[1].0 - pair[0].0]);
+        let gaps = || read.windows(2).map(|pair| [pair[0].0, pair[1].0 - pair[0].0]);
+        let longest = gaps().max_by(|first, second| first[1].total_cmp(&second[1]));
         let changes = read.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).filter(|change| *change > ROUNDING);
         let (low, high) = extremes(read.iter().map(|(_, value)| *value));
         let turns = |value: f64| (value / std::f64::consts::TAU).floor();
         let crossings = || read.windows(2).filter(|pair| turns(pair[0].1) != turns(pair[1].1)).count();
         Self {
-            channel: *channel,
-            source: source.clone(),
+            channel,
+            source,
             count: read.len(),
-            interval: upper_median(ways().map(|[_, way]| way)),
-            longest: ways().max_by(|first, second| first[1].total_cmp(&second[1])),
+            interval: upper_median(gaps().map(|[_, length]| length)),
+            longest: longest.map(|[begin, length]| [begin + shift, length]),
             range: [low, high],
             step: changes.min_by(f64::total_cmp),
-            wraps: (*channel == Channel::Heading).then(crossings),
+            wraps: (channel == Channel::Heading).then(crossings),
         }
     }
+}
 
-    /// Of the columns of a table with their names.
-    pub(super) fn of_columns(columns: &Columns, names: &[(Channel, String)]) -> Vec<Self> {
-        let of = |(channel, values): (&Channel, &Vec<f64>)| {
-            let source = names.iter().find(|(named, _)| named == channel).map(|(_, name)| name.clone());
-            let series = Series { channel: *channel, time: columns.time.clone(), values: values.clone(), source };
-            Self::of(&series, f64::NEG_INFINITY..=f64::INFINITY)
+impl Series {
+    /// The series within a part of its log, s, both ends included.
+    pub(super) fn within(mut self, part: &RangeInclusive<f64>) -> Self {
+        let end = self.time.partition_point(|t| t <= part.end());
+        let begin = self.time.partition_point(|t| t < part.start()).min(end);
+        for column in [&mut self.time, &mut self.values] {
+            column.truncate(end);
+            column.drain(..begin);
+        }
+        self
+    }
+}
+
+impl Log {
+    /// Statistics of the readings of every channel.
+    pub(super) fn readings(&self) -> Vec<ChannelReadings> {
+        let columns = match &self.readings {
+            Readings::InColumns => &self.columns,
+            Readings::Columns(columns) => columns,
+            Readings::Series(all) => {
+                let statistics = |(series, shift): &(Series, f64)| {
+                    ChannelReadings::new(series.channel, series.source.clone(), &series.time, &series.values, *shift)
+                };
+                return all.iter().map(statistics).collect();
+            }
         };
-        columns.channels.iter().map(of).collect()
+        let statistics = |(channel, values): (&Channel, &Vec<f64>)| {
+            ChannelReadings::new(*channel, self.column_name(*channel), &columns.time, values, 0.0)
+        };
+        columns.channels.iter().map(statistics).collect()
     }
 
-    /// The same on a clock that shows so many seconds more.
-    pub(super) fn later(self, offset: f64) -> Self {
-        Self { longest: self.longest.map(|[begin, way]| [begin + offset, way]), ..self }
+    /// Readings of every channel as series, on the clock of this log.
+    pub(super) fn take_readings(&mut self) -> Vec<(Series, f64)> {
+        let columns = match std::mem::take(&mut self.readings) {
+            Readings::InColumns => self.columns.clone(),
+            Readings::Columns(columns) => columns,
+            Readings::Series(series) => return series,
+        };
+        let named = |series: Series| Series { source: self.column_name(series.channel), ..series };
+        super::assemble::series(columns, 0.0).into_iter().map(|series| (named(series), 0.0)).collect()
+    }
+
+    fn column_name(&self, channel: Channel) -> Option<String> {
+        self.names.iter().find(|(named, _)| *named == channel).map(|(_, name)| name.clone())
     }
 }
 
@@ -120,7 +166,7 @@ mod tests {
     fn headings_of_any_size_pass_north_once_a_row() {
         let values = vec![6.2, 6.4, 1e300, -1e300, 1e300];
         let time = (0..values.len()).map(|row| row as f64).collect();
-        let series = Series { channel: Channel::Heading, time, values, source: None };
-        assert_eq!(ChannelReadings::of(&series, 0.0..=9.0).wraps, Some(4));
+        let columns = Columns { time, channels: [(Channel::Heading, values)].into(), unknown: Vec::new() };
+        assert_eq!(Log { columns, ..Log::default() }.readings()[0].wraps, Some(4));
     }
 }

@@ -1,5 +1,5 @@
-//! A table from its first line to its columns. When the last row is read: instants of shared stamps, columns by
-//! channel, complaints about what is missing, and the list of what was decided.
+//! Reader of a table, from its first line to its columns: after the last row come the instants of shared stamps, the
+//! columns by channel, errors of missing values, and the warnings.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,9 +26,9 @@ use crate::clock::Stamps;
 use crate::encoding::Encoding;
 use crate::record::Columns;
 use crate::sidecar::Sidecar;
-use crate::words::{counted, instant, listed, shortened};
+use crate::wording::{counted, instant, listed, shortened};
 
-/// Reads a table; `whole` says whether it has to hold a whole record.
+/// Reads a table; a `whole` record needs rudder and heading.
 pub(super) fn read(
     path: &Path,
     input: Text,
@@ -37,8 +37,8 @@ pub(super) fn read(
     whole: bool,
 ) -> Result<Log, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
-    // What was written here has tabs between its cells and is UTF-8, whatever is said of other files.
-    let (separator, encoding) = match input.is_made {
+    // A generated text has tabs between its cells and is UTF-8, whatever a sidecar declares.
+    let (separator, encoding) = match input.is_generated {
         true => (Some(Separator::Tab), Encoding::Utf8),
         false => (sidecar.table.separator, sidecar.table.encoding),
     };
@@ -56,7 +56,7 @@ pub(super) fn read(
         rows.add(text, number).map_err(fault)?;
         rows.check_length(consumed, size).map_err(fault)?;
     }
-    let mut log = rows.finish(head.passed).map_err(fault)?;
+    let mut log = rows.finish(head.skipped).map_err(fault)?;
     log.sha256 = lines.sha256();
     if sidecar.is_checked() {
         log.warnings.extend(rudder::hold(&mut log.columns));
@@ -66,8 +66,8 @@ pub(super) fn read(
 }
 
 impl Rows<'_> {
-    /// The columns of all rows kept; `passed` lines before the names were passed over.
-    fn finish(mut self, passed: usize) -> Result<Log, Problem> {
+    /// Columns of all rows kept; `skipped` lines were before the names.
+    fn finish(mut self, skipped: usize) -> Result<Log, Problem> {
         let line = self.layout.line;
         if self.counts.rows == 0 {
             return Err(no_rows(line));
@@ -81,7 +81,7 @@ impl Rows<'_> {
             self.check_numbers()?;
             warnings.extend(counts::take_side(&mut self.layout.columns));
         }
-        let Layout { columns, understood, .. } = self.layout;
+        let Layout { columns, recognised, .. } = self.layout;
         let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
         let open_time = open_time.map(|column| column.name.clone());
         let (mut channels, mut unknown, mut open, mut names) = (BTreeMap::new(), Vec::new(), Vec::new(), Vec::new());
@@ -90,7 +90,7 @@ impl Rows<'_> {
             let RawColumn { name, content, values, largest, .. } = column;
             let missing = values.iter().all(|value| value.is_nan());
             match content {
-                // A channel nobody needs and nobody recorded is as good as absent.
+                // A channel without values counts as absent.
                 Content::Channel(..) if missing => {
                     let text = format!("the column `{}` has no value and is left out", shortened(&name));
                     warnings.push(Code::LeftOut.warning(text));
@@ -106,28 +106,27 @@ impl Rows<'_> {
                 _ => unknown.push((name, values)),
             }
         }
-        for (channel, values) in
-            latitude.zip(longitude).and_then(|(one, other)| plane(&one, &other)).into_iter().flatten()
-        {
+        let positions = latitude.zip(longitude).and_then(|(latitude, longitude)| plane(&latitude, &longitude));
+        for (channel, values) in positions.into_iter().flatten() {
             channels.entry(channel).or_insert(values);
         }
         let clock = self.stamps.as_ref().and_then(Stamps::clock);
         let columns = Columns { time: self.time, channels, unknown };
         let mut log = Log { columns, clock, rows: self.counts.rows, names, ..Log::default() };
         let decided = units::settle(&mut log, open, open_time, line)?;
-        if passed > 0 {
-            let text = format!("{} before the header passed over", counted(passed, "line"));
+        if skipped > 0 {
+            let text = format!("{} before the header skipped", counted(skipped, "line"));
             log.warnings.push(Code::Notation.warning(text));
         }
-        if !understood.is_empty() {
-            let text = format!("columns understood by their names: {}", listed(&understood));
+        if !recognised.is_empty() {
+            let text = format!("columns recognised by their names: {}", listed(&recognised));
             log.warnings.push(Code::Columns.warning(text));
         }
         log.warnings.extend(decided.into_iter().chain(warnings));
         Ok(log)
     }
 
-    /// Refuses numbers that are no angle or no time in the unit of their column.
+    /// Refuses numbers that cannot be angles or times in the unit of their column.
     fn check_numbers(&self) -> Result<(), Problem> {
         let Layout { columns, line, .. } = &self.layout;
         let time = self.time_place.map(|place| &columns[place]);
@@ -137,7 +136,7 @@ impl Rows<'_> {
         counts::check(columns, *line)
     }
 
-    /// Gives rows that share a stamp their instants, and leaves out those that are thinned; what was decided.
+    /// Spreads rows that share a stamp, and thins the rows; with a warning of shared stamps.
     fn spread_stamps(&mut self) -> Option<Warning> {
         let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
         let thin = |values: &mut Vec<f64>| {
@@ -147,7 +146,7 @@ impl Rows<'_> {
         self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
         usual.map(|usual| {
             Code::SharedStamps.warning(format!(
-                "rows share their stamps, {usual} as a rule; they are spread evenly over the time to the next stamp"
+                "rows share their time stamps, usually {usual} per stamp; they are spread evenly up to the next stamp"
             ))
         })
     }
@@ -169,7 +168,7 @@ impl Rows<'_> {
         if let Some(place) = layout.rudder().filter(is_empty) {
             return all_missing(place, Channel::Rudder.spoken());
         }
-        let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.place(channel));
+        let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.index(channel));
         match (heading, rate) {
             (_, Some(rate)) if !is_empty(&rate) => Ok(()),
             (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.spoken()),
@@ -187,10 +186,11 @@ impl Rows<'_> {
         count(counts.no_time, Code::LeftOut, "without time left out");
         count(counts.nothing, Code::LeftOut, "with neither rudder nor heading nor yaw rate left out");
         count(counts.repeated, Code::LeftOut, "left out as exact copies of the row before");
-        let short = "with fewer cells than the header; the last columns were taken as missing there";
+        let short = "with fewer cells than the header; their last columns are taken as missing";
         count(counts.short, Code::MissingValues, short);
         let first = instant(counts.astray.first().copied().unwrap_or_default());
-        let astray = format!("left out because the time does not fit the rows around, the first has {first} s");
+        let astray =
+            format!("left out, because the time does not fit the neighbouring rows; the first is at {first} s");
         count(counts.astray.len(), Code::LeftOut, &astray);
         if counts.decimal_commas > 0 {
             let text = format!("{} read with a decimal comma", counted(counts.decimal_commas, "number"));

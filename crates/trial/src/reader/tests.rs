@@ -139,7 +139,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
     assert_eq!(trial.channel(Channel::Roll), None);
     let has = |part: &str| warnings.iter().any(|warning| warning.text.contains(part));
     assert!(has("1 row without time"), "{warnings:?}");
-    assert!(has("2 rows without rudder angle, which runs straight between its readings there"), "{warnings:?}");
+    assert!(has("2 rows without rudder angle, which is interpolated between its readings"), "{warnings:?}");
     assert!(has("1 heading missing; the longest gap, 2.0 s, begins at 39.0 s"), "{warnings:?}");
     assert!(has("1 row left out as exact copies"), "{warnings:?}");
     assert!(has("1 row with fewer cells"), "{warnings:?}");
@@ -154,7 +154,7 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
         parse(table("t_s,heading_deg,rudder_order_deg", ",")).expect("the order stands for the rudder");
     assert_eq!(trial.rudder()[0], from_deg(10.0));
     assert_eq!(trial.channel(Channel::RudderOrder), Some(trial.rudder()));
-    assert!(warnings[0].text.contains("the order stands for it"), "{warnings:?}");
+    assert!(warnings[0].text.contains("the rudder order is used instead"), "{warnings:?}");
 
     let mut text = String::from("t_s yaw_rate_deg_s rudder_deg\n");
     let rows = rows();
@@ -196,9 +196,9 @@ fn files_that_are_no_tables_are_named() {
 
 #[test]
 fn missing_and_doubled_columns_are_named_with_what_was_found() {
-    let found =
+    let refusal =
         problem(table("t_s,heading_deg,helm", ","), &["line 1", "rudder angle", "rudder_deg or rudder_rad", "`helm`"]);
-    assert!(matches!(found, Problem::NoColumn { line: 1, .. }));
+    assert!(matches!(refusal, Problem::NoColumn { line: 1, .. }));
     problem(table("t_s,compass,rudder_deg", ","), &["heading_deg", "yaw_rate_deg_s", "`compass`", "sidecar"]);
     problem(table("t_s,course,rudder_deg", ","), &["`course` is the course over ground", "no heading", "sidecar"]);
     problem(table("clock,heading_deg,rudder_deg", ","), &["no column holds the time", "t_s", "`clock`", "time-step-s"]);
@@ -213,29 +213,29 @@ fn wrong_cells_and_times_are_named_with_their_line() {
         lines[line - 1] = row.to_owned();
         lines.join("\n")
     };
-    let found = problem(broken(12, "10,35o.2,10"), &["line 12", "`heading_deg`", "`35o.2`", "expected a number"]);
-    assert!(matches!(found, Problem::NotANumber { line: 12, .. }));
+    let refusal = problem(broken(12, "10,35o.2,10"), &["line 12", "`heading_deg`", "`35o.2`", "expected a number"]);
+    assert!(matches!(refusal, Problem::NotANumber { line: 12, .. }));
     problem(broken(12, "10,inf,10"), &["line 12", "`inf`"]);
     problem(broken(3, "1e999,1,1"), &["line 3", "`t_s`", "`1e999`"]);
     assert!(matches!(problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]), Problem::Cells { .. }));
     problem(table("t_s heading_deg rudder_deg", " ").replacen("\n3 ", "\n", 1), &["line 5 has 2 cells, expected 3"]);
     let single = parse(broken(12, "3.5,1,10")).expect("a single row can be left out");
-    assert!(single.warnings[0].text.contains("1 row left out because the time does not fit"), "{:?}", single.warnings);
+    assert!(single.warnings[0].text.contains("1 row left out, because the time does not fit"), "{:?}", single.warnings);
     let ahead = parse(broken(12, "3000,1,10")).expect("a single row can be left out");
-    assert!(ahead.warnings[0].text.contains("the first has 3000 s"), "{:?}", ahead.warnings);
+    assert!(ahead.warnings[0].text.contains("the first is at 3000 s"), "{:?}", ahead.warnings);
     assert_eq!((single.trial.len(), ahead.trial.len()), (239, 239));
     let again = broken(12, "3.5,1,10").replacen("\n11,", "\n4.5,", 1);
-    let found = problem(again, &["line 12", "3.5 s after 9 s", "time-step-s"]);
-    assert!(matches!(found, Problem::TimeBackwards { line: 12, .. }));
-    let found = problem(broken(12, "9,1,10"), &["line 12", "time 9 s is there twice"]);
-    assert!(matches!(found, Problem::TimeRepeats { line: 12, .. }));
+    let refusal = problem(again, &["line 12", "3.5 s after 9 s", "time-step-s"]);
+    assert!(matches!(refusal, Problem::TimeBackwards { line: 12, .. }));
+    let refusal = problem(broken(12, "9,1,10"), &["line 12", "time 9 s occurs twice"]);
+    assert!(matches!(refusal, Problem::TimeRepeats { line: 12, .. }));
 }
 
 #[test]
 fn records_with_too_little_in_them_are_refused() {
     let few: String = simple().lines().take(7).map(|line| format!("{line}\n")).collect();
-    let found = problem(few, &["6 of 6 rows", "at least 8"]);
-    assert!(matches!(found, Problem::TooShort { found: 6, needed: 8, rows: 6 }));
+    let refusal = problem(few, &["6 of 6 rows", "at least 8"]);
+    assert!(matches!(refusal, Problem::TooShort { usable: 6, needed: 8, rows: 6 }));
     let all_missing = |place: usize| {
         let text = simple();
         let lines = text.lines().skip(1).map(|line| {
@@ -256,26 +256,26 @@ fn records_with_too_little_in_them_are_refused() {
         .enumerate()
         .map(|(i, line)| if i == 0 { format!("{line},rudder_deg\n") } else { format!("{line},{}\n", -rows[i - 1][2]) })
         .collect();
-    let found = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
-    assert!(matches!(found, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
+    let refusal = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
+    assert!(matches!(refusal, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
     // What the message says mends it.
-    let mended = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
-    assert_eq!(mended.warnings, []);
-    let believed = parse_with(&flipped, "[check]\nplausibility = false\n").expect("the check is off");
-    assert!(believed.warnings[0].text.contains("looks flipped"), "{:?}", believed.warnings);
+    let corrected = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
+    assert_eq!(corrected.warnings, []);
+    let unchecked = parse_with(&flipped, "[check]\nplausibility = false\n").expect("the check is off");
+    assert!(unchecked.warnings[0].text.contains("looks flipped"), "{:?}", unchecked.warnings);
 }
 
 /// A table of a hundred million rows that exists only while it is read.
 struct Endless {
     row: u64,
     line: Vec<u8>,
-    given: usize,
+    consumed: usize,
     total: u64,
 }
 
 impl Read for Endless {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        if self.given == self.line.len() {
+        if self.consumed == self.line.len() {
             if self.row == 100_000_000 {
                 return Ok(0);
             }
@@ -286,11 +286,11 @@ impl Read for Endless {
             }
             writeln!(self.line, "{:09},12.5,10.0", self.row)?;
             self.row += 1;
-            self.given = 0;
+            self.consumed = 0;
         }
-        let length = buffer.len().min(self.line.len() - self.given);
-        buffer[..length].copy_from_slice(&self.line[self.given..self.given + length]);
-        self.given += length;
+        let length = buffer.len().min(self.line.len() - self.consumed);
+        buffer[..length].copy_from_slice(&self.line[self.consumed..self.consumed + length]);
+        self.consumed += length;
         self.total += length as u64;
         Ok(length)
     }
@@ -299,11 +299,11 @@ impl Read for Endless {
 #[test]
 fn a_hundred_million_rows_are_refused_before_they_are_read() {
     let size = 27 + 100_000_000 * 20;
-    let mut endless = Endless { row: 0, line: Vec::new(), given: 0, total: 0 };
+    let mut endless = Endless { row: 0, line: Vec::new(), consumed: 0, total: 0 };
     let result = read_bytes(Path::new("run.csv"), &mut endless, Some(size), None);
-    let found = complaint(result, &["more than 16666666 rows", "about 100000000", "every = 7", "from-s"]);
+    let refusal = complaint(result, &["more than 16666666 rows", "about 100000000", "every = 7", "from-s"]);
     assert!(matches!(
-        found,
+        refusal,
         Problem::TooManyRows { limit: 16_666_666, columns: 3, estimate: Some(99_000_000..=110_000_000), every: 7 }
     ));
     assert!(endless.total < size / 4, "{} of {size} bytes were read", endless.total);
@@ -325,10 +325,10 @@ fn a_sidecar_that_does_not_fit_its_table_is_named_with_its_line() {
         let ReadError::Sidecar(error) = error else { panic!("{message}") };
         error.problem
     };
-    let found = fault("[[column]]\nname = \"helm\"\nis = \"rudder_deg\"\n", 1, "`t_s`, `heading_deg`, `rudder_deg`");
-    assert!(matches!(found, SidecarProblem::NameNotFound { .. }));
-    let found = fault("\n[[column]]\nindex = 4\nis = \"roll_deg\"\n", 2, "no column 4; run.csv has 3 columns");
-    assert!(matches!(found, SidecarProblem::IndexBeyond { .. }));
+    let refusal = fault("[[column]]\nname = \"helm\"\nis = \"rudder_deg\"\n", 1, "`t_s`, `heading_deg`, `rudder_deg`");
+    assert!(matches!(refusal, SidecarProblem::NameNotFound { .. }));
+    let refusal = fault("\n[[column]]\nindex = 4\nis = \"roll_deg\"\n", 2, "no column 4; run.csv has 3 columns");
+    assert!(matches!(refusal, SidecarProblem::IndexBeyond { .. }));
     let twice = "[[column]]\nindex = 1\nis = \"t_s\"\n[[column]]\nname = \"t_s\"\nis = \"t_min\"\n";
     assert!(matches!(fault(twice, 4, "described twice"), SidecarProblem::DescribedTwice { .. }));
     let headless = "[table]\nheader = false\nskip-lines = 1\n[[column]]\nindex = 3\nflip = true\n";
@@ -364,7 +364,7 @@ fn a_sidecar_scales_columns_and_works_out_others() {
     let sound = parse(simple()).expect("sound").trial;
     for sidecar in [counts, formula] {
         let trial = parse_with(&text, sidecar).expect(sidecar).trial;
-        let far = trial.rudder().iter().zip(sound.rudder()).map(|(own, sound)| (own - sound).abs());
+        let far = trial.rudder().iter().zip(sound.rudder()).map(|(delta, sound)| (delta - sound).abs());
         assert!(far.fold(0.0, f64::max) < 1e-9, "{sidecar}");
     }
     let unknown = parse_with(&text, &formula.replace("port", "helm")).expect_err("no such column").to_string();
@@ -410,12 +410,12 @@ fn latitude_and_longitude_are_metres_from_the_first() {
 #[test]
 fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
     let read = |late: f64| parse_with(simple(), &format!("[rudder]\nlate-s = {late}"));
-    let told = &read(2.5).expect("a late rudder").warnings[0].text;
-    assert!(told.contains("taken 2.5 s earlier"), "{told}");
+    let text = &read(2.5).expect("a late rudder").warnings[0].text;
+    assert!(text.contains("taken 2.5 s earlier"), "{text}");
     for late in [1e4, -1e4] {
         let message = read(late).expect_err("no time in common").to_string();
         assert!(
-            message.starts_with("run.trial.toml: `late-s` is ") && message.contains("less than the log"),
+            message.starts_with("run.trial.toml: `late-s` is ") && message.contains("less than the length of the log"),
             "{message}"
         );
     }

@@ -1,5 +1,5 @@
-//! Units that a table does not name, found from its values where these leave one reading only. Where two are possible
-//! the table is refused, or the channel left out if nobody needs it: nothing is guessed.
+//! Units of columns without a unit, from their values where only one unit fits. Where two units fit, the table is
+//! refused, or the channel is left out if it is not needed.
 
 use std::collections::BTreeMap;
 
@@ -11,26 +11,26 @@ use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
-const RUDDER_RAD: f64 = 0.8;
+/// Maximum number of a rudder in radians: 45°. In degrees the rudder of a manoeuvre goes further.
+const MAX_RUDDER_RAD: f64 = 0.8;
 
-/// Largest angle that may still be radians: a rudder of 90°.
-const RUDDER_EITHER: f64 = 1.6;
+/// Minimum number of a rudder in degrees: 90° in radians.
+const MIN_RUDDER_DEG: f64 = 1.6;
 
-/// Least and largest range of the heading over that of the rudder in a zig-zag: factor 56 apart, less than the 57.3
-/// between degrees and radians.
+/// Bounds of the range of the heading over the range of the rudder in a zig-zag: a factor of 56 apart, less than the
+/// 57.3 between degrees and radians.
 pub(super) const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
 
-/// The same where the rudder is laid to one side: course changes and turning circles.
+/// The same bounds for a rudder laid to a single side: course changes and turning circles.
 const TURN: [f64; 2] = [1.0, 500.0];
 
-/// Beyond this a heading is no continuous angle in radians: six circles.
-const SIX_CIRCLES: f64 = 38.0;
+/// Maximum continuous heading in radians: six circles.
+const MAX_HEADING_RAD: f64 = 38.0;
 
-/// Slowest rudder, rad/s: 0.2 °/s.
-const SLOWEST_RUDDER: f64 = 3.5e-3;
+/// Minimum rate of a rudder, rad/s: 0.2 °/s.
+const MIN_RUDDER_RATE: f64 = 3.5e-3;
 
 /// Seconds since 1970 from the years 1990 to 2100.
 pub(super) const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
@@ -43,19 +43,19 @@ const SERIAL_ZERO: i64 = -25_569;
 
 type Channels = BTreeMap<Channel, Vec<f64>>;
 
-/// A channel whose unit its values have to show.
+/// A channel without a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct UnitlessColumn {
     pub channel: Channel,
     /// Name of its column.
     pub name: String,
-    /// Its largest number, without its sign.
+    /// Largest absolute number.
     pub largest: f64,
 }
 
-/// Finds the units of `open` columns, and of that of time where its name is in `open_time`; what was decided.
+/// Settles the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
 ///
-/// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
+/// Fails where heading, rudder, a yaw rate used for the heading, or time could have two units.
 pub(super) fn settle(
     log: &mut Log,
     mut open: Vec<UnitlessColumn>,
@@ -64,15 +64,15 @@ pub(super) fn settle(
 ) -> Result<Vec<Warning>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    // The unit of a heading is seen beside the rudder, that of a yaw rate beside the heading.
+    // The heading needs the rudder, and the yaw rate needs the heading.
     const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
     open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
     let (time, channels) = (&log.columns.time, &mut log.columns.channels);
     for open in &open {
         let is_angle = open.channel.units().contains(&Unit::Radian);
         let unit = match open.channel {
-            Channel::Rudder | Channel::RudderOrder if open.largest <= RUDDER_RAD => Some(Unit::Radian),
-            Channel::Rudder | Channel::RudderOrder => (open.largest > RUDDER_EITHER).then_some(Unit::Degree),
+            Channel::Rudder | Channel::RudderOrder if open.largest <= MAX_RUDDER_RAD => Some(Unit::Radian),
+            Channel::Rudder | Channel::RudderOrder => (open.largest > MIN_RUDDER_DEG).then_some(Unit::Degree),
             Channel::Heading => heading(channels, open),
             Channel::YawRate => yaw_rate(time, channels),
             _ if is_angle && open.largest > std::f64::consts::TAU + 0.01 => Some(Unit::Degree),
@@ -102,19 +102,19 @@ pub(super) fn settle(
     for open in &left_out {
         channels.remove(&open.channel);
     }
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     if !decided.is_empty() {
         let text = format!("columns without a unit: {}, the only unit that fits their values", decided.join(", "));
-        told.push(Code::AssumedUnit.warning(text));
+        warnings.push(Code::AssumedUnit.warning(text));
     }
-    told.extend(left_out.into_iter().map(without_unit));
+    warnings.extend(left_out.into_iter().map(without_unit));
     if let Some(name) = open_time {
-        told.push(Code::AssumedUnit.warning(seconds(log, &name, line)?));
+        warnings.push(Code::AssumedUnit.warning(seconds(log, &name, line)?));
     }
-    Ok(told)
+    Ok(warnings)
 }
 
-/// The warning of a column that is left out because its values do not show its unit.
+/// Warning of a column that is left out because its values do not show its unit.
 fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warning {
     let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
     Code::LeftOut.warning(format!(
@@ -126,7 +126,7 @@ fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warnin
     ))
 }
 
-/// Values were read as if in the unit files are written in.
+/// Converts a channel that was read in the unit of written files.
 fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     let factor = unit.to_si() / channel.written_unit().to_si();
     if factor != 1.0
@@ -136,7 +136,7 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     }
 }
 
-/// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
+/// Unit of a heading that was read as degrees; a heading in radians is unwrapped at 2π.
 fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
@@ -152,7 +152,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
         }
         return Some(Unit::Radian);
     }
-    if open.largest > SIX_CIRCLES {
+    if open.largest > MAX_HEADING_RAD {
         return Some(Unit::Degree);
     }
     let rudder = rudder?;
@@ -166,7 +166,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     }
 }
 
-/// The unit of a yaw rate that was read as deg/s, from the heading.
+/// Unit of a yaw rate that was read as deg/s, from the heading.
 fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (heading, rate) = (channels.get(&Channel::Heading)?, channels.get(&Channel::YawRate)?);
     let (mut last, mut integral) = (None, 0.0);
@@ -183,7 +183,7 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
         .collect();
     let pairs = changes(time, heading).zip(changes(time, &integrals));
     let (product, square) = pairs.fold((0.0, 0.0), |(xy, xx), ((psi, _), (sum, _))| (xy + psi * sum, xx + sum * sum));
-    // A rate of the opposite sign is for the checks of a record to find.
+    // The sign of the rate is checked with the record.
     let ratio = (product / square).abs();
     let near = |unit: &&Unit| {
         let factor = unit.to_si() / Unit::DegreePerSecond.to_si();
@@ -192,17 +192,17 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     Channel::YawRate.units().iter().find(near).copied()
 }
 
-/// The unit of a speed that was read as m/s, from the positions.
+/// Unit of a speed that was read as m/s, from the positions.
 fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (north, east) = (channels.get(&Channel::North)?, channels.get(&Channel::East)?);
     let values: Vec<f64> = channels.get(&Channel::Speed)?.iter().copied().filter(|speed| speed.is_finite()).collect();
-    let way: f64 = changes(time, north).zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
+    let distance: f64 = changes(time, north).zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
     let duration: f64 = changes(time, north).map(|(_, time)| time).sum();
-    let ratio = way / duration / (values.iter().sum::<f64>() / values.len() as f64);
+    let ratio = distance / duration / (values.iter().sum::<f64>() / values.len() as f64);
     Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.to_si()))).copied()
 }
 
-/// Time without a unit: seconds where ships can turn like that, or the count of a clock.
+/// Settles a time without a unit: a count since 1970 or 1899, or seconds where ships can turn at such rates.
 fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let name = shortened(name);
     let times = &mut log.columns.time;
@@ -235,11 +235,11 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
             .map(|row| ((rudder[row] - rudder[row - 1]) / (times[row] - times[row - 1])).abs())
             .filter(|rate| rate.is_finite())
             .fold(0.0, f64::max);
-        if fastest > 0.0 && fastest < SLOWEST_RUDDER {
+        if fastest > 0.0 && fastest < MIN_RUDDER_RATE {
             return Err(refusal());
         }
     }
-    // A second in minutes is 0.016667: no clock counts seconds in such steps.
+    // A second in minutes is 0.016667, which is no step of a clock in seconds.
     if let Some(step) = upper_median(times.windows(2).map(|pair| pair[1] - pair[0])) {
         let is_round = |step: f64| (100.0 * step - (100.0 * step).round()).abs() < 0.02;
         if step < 1.0 && !is_round(step) && is_round(60.0 * step) {
@@ -249,7 +249,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     Ok(format!("`{name}` has no unit and is read as seconds"))
 }
 
-/// The clock at a number of seconds after a day, which is counted from 1970-01-01.
+/// Clock at a number of seconds after day `zero`, counted from 1970-01-01.
 fn clock(seconds: f64, zero: i64) -> Clock {
     let day = (seconds / crate::clock::DAY).floor();
     Clock { day: Some(zero + day as i64), second: seconds - day * crate::clock::DAY, zone: Some(0) }

@@ -1,4 +1,4 @@
-//! Records made from another one: without some of it, without a current, at another scale.
+//! Derived records: without channels, readings or a current, with another rudder, at another scale.
 
 use ship::Particulars;
 
@@ -12,8 +12,8 @@ impl Trial {
         self
     }
 
-    /// The same record with the positions that it had without a uniform current (north and east, m/s): its first row is
-    /// where it was.
+    /// The same record with the drift of a uniform current (north and east, m/s) taken from its positions; the position
+    /// of the first row stays.
     pub fn without_current(mut self, velocity: [f64; 2]) -> Self {
         let since: Vec<f64> = self.time().iter().map(|time| time - self.time()[0]).collect();
         for (channel, speed) in [Channel::North, Channel::East].into_iter().zip(velocity) {
@@ -38,20 +38,20 @@ impl Trial {
         Some(self)
     }
 
-    /// The record that a similar ship of another length and approach speed would have made: every time is multiplied
-    /// with (L₂/V₂)/(L₁/V₁), a yaw rate and the rate of the propeller are divided by it, speeds are multiplied with
-    /// V₂/V₁ and lengths with L₂/L₁; angles stay, and so do columns that are not known.
+    /// The record of a similar ship of another length and approach speed: times are multiplied by
+    /// (L₂/V₂)/(L₁/V₁), yaw rate and propeller rate divided by it, speeds multiplied by V₂/V₁ and lengths by L₂/L₁.
+    /// Angles and unknown columns stay.
     ///
-    /// What has no dimension is the same in both (K', T'). `None` where length and speed of this ship are not declared
-    /// and where a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
+    /// Dimensionless quantities (K', T') are invariant. `None` where length and speed of this ship are not declared
+    /// or a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
     pub fn scaled_to(&self, particulars: Particulars) -> Option<Self> {
-        let own = self.particulars?;
-        let second = own.factor_to(particulars, [1, 0]);
-        let metre = own.factor_to(particulars, [0, 1]);
+        let ship = self.particulars?;
+        let second = ship.factor_to(particulars, [1, 0]);
+        let metre = ship.factor_to(particulars, [0, 1]);
         if ![second, metre].iter().all(|factor| factor.is_finite() && *factor > 0.0) {
             return None;
         }
-        let factor = |channel: Channel| own.factor_to(particulars, channel.dimension());
+        let factor = |channel: Channel| ship.factor_to(particulars, channel.dimension());
         let times = self.time().iter().map(|time| time * second).collect();
         let mut scaled = self.clone();
         scaled.rudder = RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?);

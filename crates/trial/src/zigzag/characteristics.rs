@@ -1,5 +1,7 @@
-//! Puts executes and heading together: from a record to the characteristics of its zig-zag. How executes are found and
-//! how headings are read is not decided here.
+//! Characteristics of the zig-zag of a record, from the executes of its rudder (`executes`) and its smoothed heading
+//! (`heading`).
+//!
+//! Source of the definitions: ITTC 7.5-04-02-01 (2017).
 
 use document::Quantity;
 use ship::angle::{from_deg, to_deg};
@@ -14,30 +16,32 @@ use crate::plausibility::range;
 use crate::record::Trial;
 use estimation::statistics::median;
 
-/// A first execute starts from at most this share of the largest yaw rate; at a reversal it is 0.7 or more.
-const STRAIGHT_RATE: f64 = 0.4;
+/// Maximum yaw rate at a first execute, as a share of the largest; at a reversal it is 0.7 or more.
+const MAX_START_RATE: f64 = 0.4;
 
-/// A first execute starts within this share of the execute heading from the middle course; at a peak it is beyond 1.
-const STRAIGHT_HEADING: f64 = 0.6;
+/// Maximum distance from the middle course at a first execute, as a share of the execute heading; at a peak it is
+/// beyond 1.
+const MAX_START_HEADING: f64 = 0.6;
 
-/// Rudder of the first row, as a share of that of the trial off amidships, with which the first execute had begun.
-const BEGUN: f64 = 0.1;
+/// Minimum rudder off amidships in the first row, as a share of the rudder of the trial, of a first execute that began
+/// before the record.
+const MIN_BEGUN_SHARE: f64 = 0.1;
 
-/// Rudder movement within which an approach counts as steady, as a share of the rudder of the trial.
+/// Tolerance of the rudder in a steady approach, as a share of the rudder of the trial.
 const STEADY_RUDDER: f64 = 0.25;
 
-/// Standard deviation of an overshoot beyond which it is not measured, deg.
-const LARGEST_SD_DEG: f64 = 3.0;
+/// Maximum standard deviation of a measured overshoot, deg.
+const MAX_OVERSHOOT_SD_DEG: f64 = 3.0;
 
-/// Fewest headings whose mean is a base course.
-const FEWEST_APPROACH_ROWS: usize = 3;
+/// Minimum number of headings of an approach whose mean is the base course.
+const MIN_APPROACH_ROWS: usize = 3;
 
 impl ZigZag {
-    /// Reads the characteristics off a record.
+    /// Characteristics of the zig-zag of a record.
     ///
-    /// Fails when the record is no zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to both
-    /// sides with two reversals, is not held there, or the heading moves against it; or when headings are missing at an
-    /// execute.
+    /// Fails when the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to
+    /// both sides with two reversals, is not held there, or the heading moves against it; or when headings are missing
+    /// at an execute.
     pub fn of(trial: &Trial) -> Result<Self, ZigZagError> {
         read(trial)
     }
@@ -121,7 +125,7 @@ fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagErro
     })
 }
 
-/// Between two reversals the heading has to go to the side of the rudder.
+/// Check that the heading goes to the side of the rudder between two reversals.
 fn check_direction(reversals: &[Execute]) -> Result<(), ZigZagError> {
     for pair in reversals.windows(2) {
         let change = pair[1].heading.value - pair[0].heading.value;
@@ -137,7 +141,7 @@ fn check_direction(reversals: &[Execute]) -> Result<(), ZigZagError> {
     Ok(())
 }
 
-/// Midway between the mean headings at the executes to starboard and to port: a late helm cancels.
+/// Middle course: midway between the mean headings at the executes to starboard and to port, so that a late helm cancels.
 fn middle_course(reversals: &[Execute]) -> Quantity {
     let mean = |side: Side| {
         let headings: Vec<Quantity> =
@@ -147,8 +151,8 @@ fn middle_course(reversals: &[Execute]) -> Quantity {
     Quantity::mean(&[mean(Side::Port), mean(Side::Starboard)]).expect("there are two sides")
 }
 
-/// Whether the ship runs straight on the middle course when the rudder moves into its first hold: then this is the
-/// first execute of the trial, else the record begins within a reversal.
+/// `true` where the ship runs straight on the middle course when the rudder moves into its first hold: this is the first
+/// execute of the trial. Otherwise the record begins within a reversal.
 fn starts_straight(
     start: f64,
     heading: &Heading,
@@ -158,8 +162,8 @@ fn starts_straight(
 ) -> bool {
     let Some(largest) = largest_rate else { return false };
     // At the first row of a record a cubic is many times as noisy as a line, and a line has the mean rate of its
-    // window: the highest degree whose noise is well below the rate looked for.
-    let precise = 0.4 * STRAIGHT_RATE * largest.value;
+    // window: the highest degree with sufficiently low noise is used.
+    let precise = 0.4 * MAX_START_RATE * largest.value;
     let Some((psi, rate)) = start_motion::<4>(heading, start, precise)
         .or_else(|| start_motion::<3>(heading, start, precise))
         .or_else(|| start_motion::<2>(heading, start, f64::INFINITY))
@@ -168,16 +172,16 @@ fn starts_straight(
     };
     let amplitude = 0.5 * (reversals[0].heading.value - reversals[1].heading.value).abs();
     let off_course = psi + heading.origin - middle.value;
-    rate.abs() <= STRAIGHT_RATE * largest.value && off_course.abs() <= STRAIGHT_HEADING * amplitude
+    rate.abs() <= MAX_START_RATE * largest.value && off_course.abs() <= MAX_START_HEADING * amplitude
 }
 
-/// Whether the record begins within the movement of the first execute.
+/// `true` where the record begins within the movement of the first execute.
 fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
     let amidships = 0.5 * (holds[0].level + holds[1].level);
-    first.foot == 0 && (first.before - amidships).abs() > BEGUN * holds[0].level.abs()
+    first.foot == 0 && (first.before - amidships).abs() > MIN_BEGUN_SHARE * holds[0].level.abs()
 }
 
-/// Whether the record has half a fit of headings before an execute: a fit to one side misses the bend there.
+/// `true` where the record has half a fit of headings before an execute: a one-sided fit misses the bend there.
 fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
     execute.time.value - heading.half_width >= heading.time[0]
 }
@@ -196,7 +200,7 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
     let from = moved.map_or(trial.time()[0], |row| trial.time()[row]);
     let rows = heading.rows(from, first.start.value);
     let n = rows.len();
-    if n < FEWEST_APPROACH_ROWS {
+    if n < MIN_APPROACH_ROWS {
         let heading = Quantity::new(heading.origin + heading.relative[0], heading.noise);
         return BaseCourse { heading, source: BaseCourseSource::FirstHeading };
     }
@@ -205,10 +209,10 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
     BaseCourse { heading: Quantity::new(heading.origin + mean, sd), source: BaseCourseSource::Approach }
 }
 
-/// Nominal pair from the rudder held and the headings at the reversals; the helm is late rather than early.
+/// Nominal pair from the held rudder and the headings at the reversals; the helm is late rather than early.
 ///
-/// Headings count from the middle course: it is less noisy than the first heading of a record, and where an approach
-/// was not steered on the course of the trial it is the right one.
+/// Headings count from the middle course: it is less noisy than the first heading of a record, and it is valid where the
+/// approach was not on the course of the trial.
 fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();
@@ -234,7 +238,7 @@ fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &H
             let (peak_time, peak) = heading.peak(side, execute.time.value, until)?;
             let peak_heading = Quantity { value: peak.value + heading.origin, ..peak };
             let angle = peak_heading.minus(execute.heading).scaled(side);
-            if angle.sd.is_some_and(|sd| to_deg(sd) > LARGEST_SD_DEG) {
+            if angle.sd.is_some_and(|sd| to_deg(sd) > MAX_OVERSHOOT_SD_DEG) {
                 return None;
             }
             Some(Overshoot {

@@ -1,14 +1,14 @@
-//! Movements of the rudder between its holds: when it starts to move, from which angle, how fast. Works on ramps, on
-//! orders that jump in one sample, on quantised, drifting and noisy rudders. Whether the first movement of a record is
-//! the first execute of a trial is not decided here: that takes the heading.
+//! Movements of the rudder between its holds: start time, angle before and rate. Works on ramps, on orders that jump
+//! within a sample, and on quantised, drifting and noisy rudders. Whether the first movement of a record is the first
+//! execute of the trial depends on the heading; see `characteristics`.
 
 use super::holds::{Hold, LAID};
 use document::Quantity;
 use estimation::statistics::median;
 
-/// Change between two rows with which the rudder is under way, in standard deviations of its noise and as a share of
-/// the movement.
-const UNDER_WAY: (f64, f64) = (4.0, 0.01);
+/// Minimum change between two rows of a moving rudder, in standard deviations of its noise and as a share of the
+/// movement.
+const MIN_MOVING: (f64, f64) = (4.0, 0.01);
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,13 +21,13 @@ pub struct Movement {
     pub after: f64,
     /// Last row at the level before.
     pub foot: usize,
-    /// Speed of the rudder, rad/s; `None` where the movement is too fast for the sampling.
+    /// Rate of the rudder, rad/s; `None` where the movement is too fast for the sampling.
     pub rate: Option<f64>,
-    /// Least speed that the rows about a single row under way allow, rad/s; `None` for other movements.
+    /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; `None` for other movements.
     least_rate: Option<f64>,
 }
 
-/// The angle of a rudder at rest: a median of rows.
+/// Angle of a rudder at rest: a median of rows.
 #[derive(Clone, Copy)]
 struct Level {
     angle: f64,
@@ -44,22 +44,22 @@ impl Level {
     }
 }
 
-/// The rudder channel with what is needed to time its movements.
+/// Rudder channel with its holds, noise and rate.
 pub struct RudderMovements<'a> {
     time: &'a [f64],
     angle: &'a [f64],
     holds: &'a [Hold],
     /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
     noise: f64,
-    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about
-    /// as long as a sampling interval, `None` where it is shorter.
+    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound where a ramp is
+    /// about as long as a sampling interval, `None` where it is shorter.
     pub rate: Option<f64>,
-    /// Whether that speed is a lower bound.
+    /// `true` where the rate is a lower bound.
     rate_is_bound: bool,
 }
 
 impl<'a> RudderMovements<'a> {
-    /// The rudder with its holds; the noise is the declared one, or estimated from row to row within the holds.
+    /// The rudder with its holds; the noise is declared, or estimated from row to row within the holds.
     pub fn new(time: &'a [f64], angle: &'a [f64], holds: &'a [Hold], declared_noise: Option<f64>) -> Self {
         let noise = declared_noise.unwrap_or_else(|| {
             let mut steps: Vec<f64> = holds
@@ -74,8 +74,8 @@ impl<'a> RudderMovements<'a> {
         let mut rudder = Self { time, angle, holds, noise, rate: None, rate_is_bound: false };
         let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
         let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
-        // With one row under way in most reversals a ramp is about as long as a sampling interval, and the tightest of
-        // the bounds is near the speed; with such rows in few it is much shorter and its speed remains unknown.
+        // Where most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
+        // tightest bound is near the rate. Where few have one, ramps are much shorter and the rate remains unknown.
         let bounds: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.least_rate).collect();
         let tightest = bounds.iter().copied().max_by(f64::total_cmp).filter(|_| 2 * bounds.len() >= reversals.len());
         rudder.rate = median(&mut rates).or(tightest);
@@ -88,11 +88,11 @@ impl<'a> RudderMovements<'a> {
         let (from, to) = (&self.holds[index - 1], &self.holds[index]);
         let foot = self.foot(from.level, to);
         let window = 0.25 * (self.time[from.last] - self.time[from.first]);
-        // The foot may be under way already: of a short hold such rows would be half of the level.
+        // The foot may already be moving: in a short hold such rows would distort the level.
         let way = to.level - from.level;
         let is_under_way = |row: usize| {
             let step = (self.angle[row] - self.angle[row - 1]) * way.signum();
-            step > (UNDER_WAY.0 * self.noise).max(UNDER_WAY.1 * way.abs())
+            step > (MIN_MOVING.0 * self.noise).max(MIN_MOVING.1 * way.abs())
         };
         let mut row = foot.min(from.last);
         while row > from.first && is_under_way(row) {
@@ -109,7 +109,7 @@ impl<'a> RudderMovements<'a> {
         if to.first == 0 {
             return None;
         }
-        // Back along the steep part: manual steering may already have carried the rudder some way to the same side.
+        // Back along the steep part: manual steering may already have moved the rudder to the same side.
         let steps = (self.time[to.first] - self.time[0]) / to.first as f64;
         let rate = self.rate.unwrap_or(2.0 * to.level.abs() / steps);
         // Long enough for a ramp to stand out of the noise.
@@ -124,8 +124,8 @@ impl<'a> RudderMovements<'a> {
             }
             row -= 1;
         }
-        // The lookback ends a little after the true foot. What counts is the angle the helm has just then, not the mean
-        // of what he did before.
+        // The lookback ends a little after the true foot. The angle just before it counts, not the mean of the steering
+        // before.
         let clear = row_before(self.time, row, 0.3 * look_back);
         let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
@@ -133,7 +133,7 @@ impl<'a> RudderMovements<'a> {
         Some(self.movement(Level::of(&mut steady)?, to))
     }
 
-    /// Last row before a hold at which the rudder has done at most a tenth of its way from `before`.
+    /// Last row before a hold at which the rudder has moved at most a tenth of the way from `before`.
     fn foot(&self, before: f64, to: &Hold) -> usize {
         (0..to.first).rev().find(|&row| progress(self.angle[row], before, to.level) <= 0.1).unwrap_or(0)
     }
@@ -172,8 +172,7 @@ impl<'a> RudderMovements<'a> {
                 }
             }
             ([], rate) => {
-                // The faster a rudder may be, the later it may have started: a bound on its speed leaves the whole
-                // interval.
+                // A faster rudder may have started later: a lower bound of the rate leaves the whole interval.
                 let under_way = rate.filter(|_| !self.rate_is_bound).map_or(0.0, |rate| LAID * travel.abs() / rate);
                 (uniform(earliest, (latest - under_way).max(earliest)), None)
             }
@@ -183,39 +182,41 @@ impl<'a> RudderMovements<'a> {
         Movement { start, before, after: to.level, foot, rate, least_rate }
     }
 
-    /// Least-squares line through the rows of a ramp: the time it leaves `before`, with its speed (rad/s, signed).
+    /// Least-squares line through the rows of a ramp: the time at which it leaves `before`, with its rate (rad/s,
+    /// signed).
     ///
-    /// A steering gear has one speed, so a ramp whose own speed does not differ from that of the others by more than
-    /// its uncertainty takes theirs: a short ramp in whole degrees is timed far better so.
+    /// A steering gear has a constant rate. A ramp whose rate agrees with the common rate within its uncertainty takes
+    /// the common rate: a short ramp in whole degrees is then timed far better.
     fn line_start(&self, ramp: &[usize], level: Level, direction: f64) -> Option<(Quantity, f64)> {
         let n = ramp.len() as f64;
         let mean_time = ramp.iter().map(|&row| self.time[row]).sum::<f64>() / n;
         let mean_angle = ramp.iter().map(|&row| self.angle[row]).sum::<f64>() / n;
         let off = |&row: &usize| (self.time[row] - mean_time, self.angle[row] - mean_angle);
         let (tt, ta) = ramp.iter().map(off).fold((0.0, 0.0), |(tt, ta), (t, angle)| (tt + t * t, ta + t * angle));
-        let own_rate = ta / tt;
-        if direction * own_rate <= 0.0 {
+        let ramp_rate = ta / tt;
+        if direction * ramp_rate <= 0.0 {
             return None;
         }
-        let squares: f64 = ramp.iter().map(off).map(|(t, angle)| (angle - own_rate * t).powi(2)).sum();
+        let squares: f64 = ramp.iter().map(off).map(|(t, angle)| (angle - ramp_rate * t).powi(2)).sum();
         let scatter = if ramp.len() > 2 { (squares / (n - 2.0)).sqrt() } else { 0.0 };
         let noise = self.noise.max(scatter);
         let common =
-            self.rate.map(|rate| direction * rate).filter(|rate| (rate - own_rate).abs() <= 3.0 * noise / tt.sqrt());
-        let rate = common.unwrap_or(own_rate);
+            self.rate.map(|rate| direction * rate).filter(|rate| (rate - ramp_rate).abs() <= 3.0 * noise / tt.sqrt());
+        let rate = common.unwrap_or(ramp_rate);
         let start = mean_time + (level.angle - mean_angle) / rate;
         let lever = if common.is_some() { 0.0 } else { (start - mean_time).powi(2) / tt };
         let gain = (1.0 / n + lever + level.gain * level.gain).sqrt();
-        Some((Quantity::new(start, Some(noise / rate.abs() * gain)), own_rate))
+        Some((Quantity::new(start, Some(noise / rate.abs() * gain)), ramp_rate))
     }
 }
 
-/// Last row at least `by` seconds before another one, the first row where there is none.
+/// Last row at least `by` seconds before another row, or the first row.
 pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
     time.partition_point(|&t| t <= time[row] - by).saturating_sub(1).min(row)
 }
 
-/// Step of a rounded channel: the smallest distance between two of its values. Next to nothing for one not rounded.
+/// Step of a rounded channel: the smallest distance between two of its values. Close to zero for a channel that is not
+/// rounded.
 pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);
@@ -229,7 +230,7 @@ fn progress(angle: f64, before: f64, after: f64) -> f64 {
     (angle - before) / (after - before)
 }
 
-/// The middle of an interval in which something happened, with the standard deviation of a uniform distribution.
+/// Middle of the interval of an event, with the standard deviation of a uniform distribution.
 fn uniform(from: f64, to: f64) -> Quantity {
     Quantity::new(0.5 * (from + to), Some((to - from).max(0.0) / 12.0_f64.sqrt()))
 }

@@ -1,4 +1,5 @@
-//! What a zig-zag shows, and why a record is none.
+//! Characteristics of a zig-zag: pair, base course, executes, overshoots and times, and the errors of a record that is
+//! not a zig-zag.
 
 use std::fmt;
 
@@ -9,16 +10,16 @@ use thiserror::Error;
 
 use document::Quantity;
 
-/// Why a record has no zig-zag characteristics.
+/// Error of a record without zig-zag characteristics.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ZigZagError {
     /// The rudder is never laid.
-    #[error("not a zig-zag: the rudder is laid to {largest_deg:.2} deg at most, a zig-zag needs {needed_deg:.1} deg")]
+    #[error("not a zig-zag: the largest rudder angle is {largest_deg:.2} deg, a zig-zag needs {needed_deg:.1} deg")]
     NoRudder { largest_deg: f64, needed_deg: f64 },
     /// The rudder does not go from one side to the other often enough.
-    #[error("not a zig-zag: {found} reversals of the rudder from one side to the other, a zig-zag needs {needed}")]
-    TooFewReversals { found: usize, needed: usize },
+    #[error("not a zig-zag: the rudder has {reversals} reversals from side to side, a zig-zag needs {needed}")]
+    TooFewReversals { reversals: usize, needed: usize },
     /// The rudder moves all the time, as under an autopilot or in a random manoeuvre.
     #[error(
         "not a zig-zag: the rudder is held for {:.0} % of the rows, a zig-zag needs {:.0} %", 100.0 * share, 100.0 * needed
@@ -77,7 +78,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Whether this is the pair δ/ψ, given in degrees.
+    /// `true` for the pair δ/ψ in degrees.
     pub fn is_deg(&self, delta_deg: f64, psi_deg: f64) -> bool {
         (to_deg(self.rudder) - delta_deg).abs() < 1e-6 && (to_deg(self.heading) - psi_deg).abs() < 1e-6
     }
@@ -89,23 +90,23 @@ impl fmt::Display for Pair {
     }
 }
 
-/// What the base course was read from.
+/// Source of the base course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BaseCourseSource {
     /// Mean heading of the approach, from the last change of rudder before the first execute.
     Approach,
-    /// The first heading: the record begins with, or less than three headings before, the first execute.
+    /// First heading: the record begins with, or less than three headings before, the first execute.
     FirstHeading,
     /// Midway between the headings at the executes of either side: the record begins within the trial.
     Executes,
 }
 
-/// The course a zig-zag is steered about.
+/// Base course of a zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseCourse {
     /// The course, rad.
     pub heading: Quantity,
-    /// What it was read from.
+    /// Source of the course.
     pub source: BaseCourseSource,
 }
 
@@ -114,9 +115,9 @@ pub struct BaseCourse {
 pub struct Execute {
     /// Time at which the rudder starts to move, s, on the clock of the record.
     pub time: Quantity,
-    /// Heading then (execute heading angle, ITTC), rad, not relative to the base course.
+    /// Heading at that time (execute heading angle, ITTC), rad, not relative to the base course.
     pub heading: Quantity,
-    /// Yaw rate then, rad/s; `None` where the heading around it is missing.
+    /// Yaw rate at that time, rad/s; `None` where headings are missing around it.
     pub yaw_rate: Option<Quantity>,
     /// Rudder angle before, rad.
     pub rudder_before: f64,
@@ -131,10 +132,10 @@ impl Execute {
     }
 }
 
-/// How far the heading goes on after the rudder is reversed.
+/// Overshoot: the further change of heading after the rudder is reversed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overshoot {
-    /// Index of the execute it follows, in [`ZigZag::executes`].
+    /// Index of the execute before it, in [`ZigZag::executes`].
     pub execute: usize,
     /// Time of the peak, s.
     pub peak_time: Quantity,
@@ -149,21 +150,20 @@ pub struct Overshoot {
     pub time_to_check_yaw: Quantity,
 }
 
-/// The characteristics of a zig-zag trial. Angles in rad, times in s; `None` and empty where a record does not show
-/// them.
+/// Characteristics of a zig-zag trial. Angles in rad, times in s; `None` or empty where a record does not show them.
 ///
-/// In a record that begins within the trial there is no first execute, and what counts from it is `None`; times from a
-/// first execute within whose movement the record begins are `None`, too.
+/// A record that begins within the trial has no first execute, and all that counts from it is `None`. Times from a first
+/// execute are `None` where the record begins within its movement.
 ///
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZigZag {
-    /// Nominal δ/ψ, guessed from the rudder held and the headings at the executes; `None` when those headings differ by
-    /// more than half their size.
+    /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` where those headings differ by more
+    /// than half their size.
     pub pair: Option<Pair>,
     /// Side of the first execute; `None` when the record begins within the trial.
     pub side: Option<Side>,
-    /// The course the trial is steered about.
+    /// Base course of the trial.
     pub base_course: BaseCourse,
     /// Executes in the order of time; the first one included where the record shows it.
     pub executes: Vec<Execute>,
@@ -171,55 +171,55 @@ pub struct ZigZag {
     pub initial_turning_time: Option<Quantity>,
     /// Distance travelled in that time, m: integral of the recorded speed; `None` where the record has none.
     pub initial_turning_distance: Option<f64>,
-    /// Whether the record begins so near to its first reversal that the heading there is not known.
+    /// `true` where the record begins too near to its first reversal for the heading there to be measured.
     pub begins_at_reversal: bool,
     /// Overshoots in the order of time, one for every reversal whose beginning and peak the record shows.
     pub overshoots: Vec<Overshoot>,
-    /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute holds the
-    /// transient of the start and counts only where there is no other.
+    /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute contains
+    /// the initial transient and counts only where it is the only cycle.
     pub period: Option<Quantity>,
     /// Reach t_A, s: from the first execute to the base course after the second execute.
     pub reach: Option<Quantity>,
     /// Time of a complete cycle t_B, s: from the first execute to the base course after the third execute.
     pub complete_cycle_time: Option<Quantity>,
-    /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the largest of many noisy
-    /// slopes it is high by about one of its standard deviations.
+    /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the maximum of many noisy
+    /// slopes it is biased upwards by about one standard deviation.
     pub largest_yaw_rate: Option<Quantity>,
-    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is
+    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is
     /// about as long as a sampling interval; `None` where it is shorter.
     pub rudder_rate: Option<f64>,
-    /// Standard deviation of the heading noise the uncertainties are made with, rad: the declared one, or a robust
-    /// estimate from the record ([`super::noise_sd`]).
+    /// Standard deviation of the heading noise behind the uncertainties, rad: declared, or a robust estimate from the
+    /// record ([`super::noise_sd`]).
     pub heading_noise: Option<f64>,
 }
 
-/// Yaw rate at the first execute, as a share of the largest of the record, up to which the approach was straight.
+/// Maximum yaw rate at the first execute after a straight approach, as a share of the largest of the record.
 pub const STRAIGHT_APPROACH: f64 = 0.1;
 
-/// Standard deviations of a yaw rate by which it may be off for its readings alone.
-const READ: f64 = 3.0;
+/// Tolerance of a yaw rate, standard deviations.
+const TOLERANCE_SDS: f64 = 3.0;
 
 impl ZigZag {
-    /// Yaw rate at the first execute, rad/s, where the ship goes straight: it is at most [`STRAIGHT_APPROACH`] of the
-    /// largest but for the error of its readings. `None` for a record that begins in a turn or within the trial.
+    /// Yaw rate at the first execute after a straight approach, rad/s: at most [`STRAIGHT_APPROACH`] of the largest yaw
+    /// rate, within its error. `None` for a record that begins in a turn or within the trial.
     pub fn straight_yaw_rate(&self) -> Option<Quantity> {
         self.side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
-        let limit = STRAIGHT_APPROACH * largest.value + READ * rate.sd.unwrap_or(0.0);
+        let limit = STRAIGHT_APPROACH * largest.value + TOLERANCE_SDS * rate.sd.unwrap_or(0.0);
         (rate.value.abs() <= limit).then_some(rate)
     }
 
-    /// The same where the record shows the approach before it.
+    /// Yaw rate at the first execute after a straight approach that the record shows, rad/s.
     pub fn approach_yaw_rate(&self) -> Option<Quantity> {
         self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
 
-    /// The period of the first so many executes.
+    /// Period of the first executes.
     pub fn period_of(&self, executes: usize) -> Option<Quantity> {
         period(self.executes.get(..executes).unwrap_or(&self.executes), self.side.is_some())
     }
 
-    /// Whether the record begins within the trial, so that its first execute is not known.
+    /// `true` where the record begins within the trial, without its first execute.
     pub fn begins_within_trial(&self) -> bool {
         self.side.is_none()
     }
@@ -244,7 +244,7 @@ pub(super) fn period(executes: &[Execute], from_first_execute: bool) -> Option<Q
     let reversals = executes.get(usize::from(from_first_execute)..)?;
     let cycles = reversals.len().checked_sub(2).filter(|&cycles| cycles > 0)?;
     let first = usize::from(from_first_execute && cycles > 1);
-    // Sums telescope: only the first and last two executes carry error, each 1/n of its own.
+    // Sums telescope: only the first and last two executes contribute an error, each divided by n.
     let cycles_used = (cycles - first) as f64;
     let total: f64 = (first..cycles).map(|index| reversals[index + 2].time.value - reversals[index].time.value).sum();
     let ends = 2.min(cycles - first);

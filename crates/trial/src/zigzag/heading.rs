@@ -1,26 +1,29 @@
-//! The heading of a record as a smooth signal: its noise, the width of local fits that suits it, and its values,
-//! slopes, peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
+//! Smoothed heading of a record: noise, width of the local fits, and values, slopes, peaks and crossings with their
+//! uncertainty.
+//!
+//! Source of local polynomial fits and their optimal width: Fan & Gijbels (1996), Local Polynomial Modelling and Its
+//! Applications.
 
 use super::local::Cubic;
 use crate::plausibility::range;
 use document::Quantity;
 use estimation::statistics::median;
 
-/// Half-width of the residual window that the noise is estimated with, in periods of the manoeuvre.
+/// Half-width of the window of the noise estimate, periods of the manoeuvre.
 const NOISE_WINDOW: f64 = 0.02;
 
-/// Widest half-width of a local fit, in periods: beyond it a cubic no longer follows a swing.
-const WIDEST: f64 = 0.1;
+/// Maximum half-width of a local fit, periods: in a wider window a cubic does not follow a swing.
+const MAX_HALF_WIDTH: f64 = 0.1;
 
-/// Slopes, and with them the times of peaks, are noisier than values (variance h⁻³ against h⁻¹): their best window is
-/// wider by about this factor.
-const WIDENING: f64 = 1.5;
+/// Width of a fit for slopes over that for values. Slopes, and with them the times of peaks, are noisier (variance h⁻³
+/// against h⁻¹), so that their best window is wider.
+const SLOPE_WIDENING: f64 = 1.5;
 
-/// Factors by which a local fit is widened until it holds enough headings.
+/// Factors by which a local fit is widened until it has enough headings.
 const WIDENINGS: [f64; 5] = [1.0, 1.5, 2.25, 3.4, 5.1];
 
-/// Most local fits made to learn one number of a whole record.
-const MOST_FITS: usize = 2000;
+/// Maximum number of local fits for a single figure of a record.
+const MAX_FITS: usize = 2000;
 
 /// Robust standard deviation of the white noise of a sampled signal, in the unit of the signal.
 ///
@@ -29,7 +32,7 @@ const MOST_FITS: usize = 2000;
 /// tenths of the rows do not matter. NaN values are skipped. `None` when fewer than 8 windows hold 6 values or more.
 pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
     // A median over some rows is as good; over all of a densely sampled record it would cost their square.
-    let every = time.len().div_ceil(MOST_FITS);
+    let every = time.len().div_ceil(MAX_FITS);
     let mut residuals: Vec<f64> = time
         .iter()
         .zip(value)
@@ -52,14 +55,14 @@ pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
 pub(super) struct Heading {
     pub time: Vec<f64>,
     pub relative: Vec<f64>,
-    /// The heading all others are relative to, rad.
+    /// Heading at a relative heading of zero, rad.
     pub origin: f64,
     /// Standard deviation of the noise, rad.
     pub noise: Option<f64>,
     /// Half-width of local fits for values, s.
     pub half_width: f64,
-    /// Longest step between headings across which a peak is believed, s.
-    longest_step: f64,
+    /// Maximum step between headings around a peak, s.
+    max_step: f64,
 }
 
 impl Heading {
@@ -84,14 +87,14 @@ impl Heading {
         let ratio = noise.unwrap_or(0.0) / amplitude.max(f64::MIN_POSITIVE);
         let best = 0.35 * period * (ratio * ratio * step / period).powf(1.0 / 7.0);
         let narrowest = 2.0 * step;
-        let half_width = best.clamp(narrowest, narrowest.max(WIDEST * period));
-        let longest_step = (2.0 * half_width).max(4.0 * step);
-        Some(Self { time, relative, origin, noise, half_width, longest_step })
+        let half_width = best.clamp(narrowest, narrowest.max(MAX_HALF_WIDTH * period));
+        let max_step = (2.0 * half_width).max(4.0 * step);
+        Some(Self { time, relative, origin, noise, half_width, max_step })
     }
 
     /// Half-width of local fits for slopes, s.
     pub fn slope_half_width(&self) -> f64 {
-        WIDENING * self.half_width
+        SLOPE_WIDENING * self.half_width
     }
 
     /// Half-width of the widest fit tried where headings are missing, s.
@@ -116,12 +119,12 @@ impl Heading {
 
     /// The largest |yaw rate| between two times, at the rows whose fit has samples on both sides.
     ///
-    /// It is the largest of many noisy slopes, so on a noisy record it is high by about one of its standard deviations.
+    /// The maximum of many noisy slopes is biased upwards by about one standard deviation.
     pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
         let reach = self.slope_half_width();
         let (start, end) = (self.time[0] + reach, self.time[self.time.len() - 1] - reach);
         let rows = self.rows(from.max(start), to.min(end));
-        let every = rows.len().div_ceil(MOST_FITS).max(1);
+        let every = rows.len().div_ceil(MAX_FITS).max(1);
         rows.step_by(every)
             .filter_map(|row| self.rate_at(self.time[row]))
             .map(|rate| Quantity { value: rate.value.abs(), ..rate })
@@ -130,11 +133,11 @@ impl Heading {
 
     /// Time and heading of the peak towards `side` (+1 or −1) between two times.
     ///
-    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit, or beside a gap that
-    /// is longer than a fit: the peak was not seen.
+    /// `None` where the record does not show the peak: the heading is largest at the end of the span, or nearer to it
+    /// than half a fit, or beside a gap longer than a fit.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
         let rows = self.rows(from, to);
-        let every = rows.len().div_ceil(MOST_FITS).max(1);
+        let every = rows.len().div_ceil(MAX_FITS).max(1);
         let highest = rows
             .step_by(every)
             .filter_map(|row| Some((row, side * self.local(self.time[row], self.half_width)?.value(self.time[row]))))
@@ -142,7 +145,7 @@ impl Heading {
             .0;
         let half_width = self.slope_half_width();
         let mut fit = self.local(self.time[highest], half_width)?;
-        // Centred on the peak, a cubic has no first-order error there; two moves are enough to get there.
+        // A cubic centred on the peak has no first-order error there; two iterations are enough.
         for _ in 0..2 {
             fit = self.local(fit.stationary_point()?, half_width)?;
         }
@@ -152,11 +155,11 @@ impl Heading {
         is_seen.then(|| (fit.time_of_peak(t, self.noise), fit.value_at(t, self.noise)))
     }
 
-    /// Whether there is a gap of the headings between two times, longer than a local fit and its usual steps.
+    /// `true` where the headings have a gap between two times, longer than a local fit and the usual steps.
     fn has_a_gap(&self, from: f64, to: f64) -> bool {
         let within = self.rows(from, to);
         let around = within.start.saturating_sub(1)..(within.end + 1).min(self.time.len());
-        self.time[around].windows(2).any(|pair| pair[1] - pair[0] > self.longest_step)
+        self.time[around].windows(2).any(|pair| pair[1] - pair[0] > self.max_step)
     }
 
     /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1

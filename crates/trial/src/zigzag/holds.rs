@@ -1,23 +1,23 @@
-//! Where the rudder is laid to one side and held there, and which conventional angles a trial used. Works on drifting,
-//! quantised and noisy rudders; the moments at which the rudder moves are found in `executes`.
+//! Holds of the rudder to either side, and the conventional angles of a trial. Works on drifting, quantised and noisy
+//! rudders; the movements between holds are timed in `executes`.
 
 use ship::angle::to_deg;
 
 use super::findings::ZigZagError;
 use estimation::statistics::median;
 
-/// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
-/// before a first execute can use more than half the rudder of the trial.
+/// Minimum share of the level of a side at which the rudder counts as laid to that side. It is high because manual
+/// steering before a first execute can use more than half the rudder of the trial.
 pub const LAID: f64 = 0.85;
 
-/// Smallest rudder angle of a zig-zag, degrees.
-const SMALLEST_RUDDER_DEG: f64 = 0.5;
+/// Minimum rudder angle of a zig-zag, degrees.
+const MIN_RUDDER_DEG: f64 = 0.5;
 
-/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise
+/// Minimum share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise
 /// 0.15.
-const LEAST_HELD: f64 = 0.3;
+const MIN_HELD_SHARE: f64 = 0.3;
 
-/// A stretch with the rudder laid to one side.
+/// A hold: rows with the rudder laid to a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
     /// +1 starboard, −1 port.
@@ -37,8 +37,8 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     let starboard = level(rudder, 1.0);
     let port = level(rudder, -1.0);
     let largest = starboard.max(port);
-    if to_deg(largest) < SMALLEST_RUDDER_DEG {
-        return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: SMALLEST_RUDDER_DEG });
+    if to_deg(largest) < MIN_RUDDER_DEG {
+        return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: MIN_RUDDER_DEG });
     }
     // A neutral rudder of a degree or two in a turning circle is not the other side of a zig-zag.
     let side_of = |delta: f64| {
@@ -55,15 +55,15 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
             _ => holds.push(Hold { side, first: row, last: row, level: 0.0 }),
         }
     }
-    let found = holds.len().saturating_sub(1);
-    if found < 2 {
-        return Err(ZigZagError::TooFewReversals { found, needed: 2 });
+    let reversals = holds.len().saturating_sub(1);
+    if reversals < 2 {
+        return Err(ZigZagError::TooFewReversals { reversals, needed: 2 });
     }
     for hold in &mut holds {
         hold.level =
             median(&mut rudder[hold.first..=hold.last].to_vec()).expect("a hold has at least the row it began with");
     }
-    let span = &rudder[holds[0].first..=holds[found].last];
+    let span = &rudder[holds[0].first..=holds[reversals].last];
     let held = span
         .iter()
         .filter(|&&delta| {
@@ -72,15 +72,15 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
         })
         .count();
     let share = held as f64 / span.len() as f64;
-    if share < LEAST_HELD {
-        return Err(ZigZagError::NotHeld { share, needed: LEAST_HELD });
+    if share < MIN_HELD_SHARE {
+        return Err(ZigZagError::NotHeld { share, needed: MIN_HELD_SHARE });
     }
     Ok(holds)
 }
 
-/// The angle the rudder is laid to on one side, rad; 0 where it is never on that side.
+/// Angle to which the rudder is laid on a side, rad; 0 where it is never on that side.
 ///
-/// Median of what lies above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach move it.
+/// Median of the angles above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach matter.
 fn level(rudder: &[f64], side: f64) -> f64 {
     let mut angles: Vec<f64> = rudder.iter().map(|delta| side * delta).filter(|&delta| delta > 0.0).collect();
     if angles.is_empty() {
@@ -92,14 +92,14 @@ fn level(rudder: &[f64], side: f64) -> f64 {
     median(&mut angles[first..]).unwrap_or(0.0)
 }
 
-/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole
-/// degree else.
+/// Conventional trial angle near a measured angle, degrees: 1, 2, 3 or a multiple of 5 within the tolerance, else a
+/// whole degree.
 ///
-/// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
-/// adds what the noise of the measurement allows.
+/// `below` and `above` are tolerances of the measured angle as shares of the conventional angle; `slack_deg` is added for
+/// the noise of the measurement.
 pub fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
     const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
-    // Small angles are missed by an absolute error (a rudder offset, a late helm), hence half a degree at least.
+    // Small angles have an absolute error (a rudder offset, a late helm), hence a minimum tolerance.
     let near = |&nominal: &f64| {
         measured_deg >= nominal - (below * nominal).max(0.3) - slack_deg
             && measured_deg <= nominal + (above * nominal).max(0.5) + slack_deg

@@ -1,5 +1,8 @@
-//! Local least-squares polynomials: the value, slope, peak and crossings of a sampled signal near one instant, with the
-//! gain by which each passes on white noise. It does not choose the width of the fit; see `heading`.
+//! Local least-squares polynomials: value, slope, peak and crossings of a sampled signal near an instant, each with its
+//! gain for white noise. The width of the fit is chosen in `heading`.
+//!
+//! Source: Savitzky & Golay (1964), Smoothing and differentiation of data by simplified least squares procedures,
+//! doi:10.1021/ac60214a047.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -15,7 +18,7 @@ pub(super) struct Local<const N: usize> {
     /// Samples in the window.
     pub samples: usize,
     coefficients: SVector<f64, N>,
-    /// (XᵀX)⁻¹, so that the covariance of the coefficients is this times the noise variance.
+    /// (XᵀX)⁻¹: the covariance of the coefficients over the noise variance.
     inverse_gram: SMatrix<f64, N, N>,
 }
 
@@ -30,7 +33,7 @@ impl<const N: usize> Local<N> {
     /// `None` when the window holds fewer than `N` values or they do not determine the polynomial. `time` must
     /// increase.
     pub fn fit(time: &[f64], value: &[f64], centre: f64, half_width: f64) -> Option<Self> {
-        // Times such as 0.1 k carry rounding errors: a sample meant to lie on the rim of the window is in it.
+        // Times such as 0.1 k have rounding errors: a sample on the rim of the window counts as inside.
         let reach = half_width * (1.0 + 1e-9);
         let first = time.partition_point(|&t| t < centre - reach);
         let last = time.partition_point(|&t| t <= centre + reach);
@@ -92,34 +95,34 @@ impl<const N: usize> Local<N> {
         slopes.dot(&(self.inverse_gram * slopes)).max(0.0).sqrt() / self.half_width
     }
 
-    /// Value at time `t`, with its error where the standard deviation of white noise is known.
+    /// Value at time `t`, with its standard deviation where that of the white noise is given.
     pub fn value_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.value(t), noise.map(|sd| sd * self.value_gain(t)))
     }
 
-    /// Slope at time `t`, per second, likewise.
+    /// Slope at time `t`, per second, with its standard deviation as above.
     pub fn slope_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.slope(t), noise.map(|sd| sd * self.slope_gain(t)))
     }
 
-    /// The time `t` of a stationary point, likewise.
+    /// The time `t` of a stationary point, with its standard deviation as above.
     pub fn time_of_peak(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.slope_gain(t) / self.curvature(t).abs()))
     }
 
-    /// The time `t` at which a level is crossed, likewise.
+    /// The time `t` of a crossing, with its standard deviation as above.
     pub fn time_of_crossing(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
-    /// The time near the centre at which the polynomial takes the value `level`; `None` when Newton's iteration leaves
-    /// the window.
+    /// The time near the centre at which the polynomial has the value `level`; `None` where Newton's iteration leaves the
+    /// window.
     pub fn crossing(&self, level: f64) -> Option<f64> {
         let mut t = self.centre;
         for _ in 0..20 {
             let step = (level - self.value(t)) / self.slope(t);
             let x = self.x(t + step).abs();
-            // NaN comes of 0/0 on a flat signal.
+            // A flat signal gives 0/0, NaN.
             if x.is_nan() || x > 1.0 + 1e-9 {
                 return None;
             }
@@ -131,8 +134,8 @@ impl<const N: usize> Local<N> {
         Some(t)
     }
 
-    /// The time at which the slope of a parabola or cubic is zero and its bend has the sign it has at the centre;
-    /// `None` when that is outside the window or nowhere.
+    /// The stationary point of a parabola or cubic at which the curvature has the sign of that at the centre; `None`
+    /// where it is outside the window or does not exist.
     pub fn stationary_point(&self) -> Option<f64> {
         let [c1, c2, c3] = [1, 2, 3].map(|k| self.coefficients.get(k).copied().unwrap_or(0.0));
         // c₁ + 2 c₂ x + 3 c₃ x² = 0, in the form that is regular at c₃ = 0.

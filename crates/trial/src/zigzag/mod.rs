@@ -1,11 +1,10 @@
-//! Zig-zag characteristics of one record after ITTC 7.5-04-02-01: executes, initial turning time, overshoots, time to
-//! check yaw, reach, period, yaw rates, each with the uncertainty that the noise of the record gives it. Works from the
-//! record alone, simulated or measured. It compares with no criterion (see [`crate::imo`]) and identifies nothing; the
-//! points a characteristic-point identification needs are in [`points`].
+//! Zig-zag characteristics of a record after ITTC 7.5-04-02-01 (2017): executes, initial turning time, overshoots, time
+//! to check yaw, reach, period and yaw rates, each with its uncertainty from the noise of the record. The criteria are
+//! in [`crate::imo`], the points for characteristic-point identification in [`points`].
 //!
-//! Executes come from the rudder (`holds`, `executes`): a rudder is laid to alternate sides and the moment it starts to
-//! move is where the line through its ramp leaves the level before. Everything about the heading comes from local cubic
-//! fits (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
+//! Executes come from the rudder (`holds`, `executes`): the rudder is laid to alternate sides, and an execute is the
+//! instant at which the line through its ramp leaves the level before. Headings come from local cubic fits (`heading`),
+//! so that an overshoot is the extremum of a smooth curve and not the maximum of many noisy samples.
 
 mod characteristics;
 pub mod executes;

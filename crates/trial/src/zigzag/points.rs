@@ -1,14 +1,15 @@
-//! Heading extrema and zero-crossings by local least-squares polynomials: the points that the characteristic-point
-//! identification of K and T reads off a record. It needs no rudder and does not identify anything.
+//! Heading extrema and zero-crossings by local least-squares polynomials: the points of the characteristic-point
+//! identification of K and T. The rudder is not used.
 //!
-//! Source of the procedure: the analysis of Nomoto (1960) as re-derived for this project; the parabola at an extremum
-//! carries a known small bias, because the turning rate of a ship does not change uniformly through a peak.
+//! Source of the procedure: Nomoto (1960), Analysis of Kempf's standard maneuver test and proposed steering quality
+//! indices, DTMB Report 1461, re-derived for this project. The parabola at an extremum has a known small bias, because
+//! the turning rate of a ship does not change uniformly through a peak.
 
 use super::local::{Cubic, Parabola};
 use estimation::statistics::median;
 
-/// Extrema below this share of the largest |heading| are ripples or the remains of the start.
-const SMALLEST_EXTREMUM: f64 = 0.35;
+/// Minimum size of an extremum as a share of the largest |heading|; smaller extrema are ripples or the initial transient.
+const MIN_EXTREMUM_SHARE: f64 = 0.35;
 
 /// Extrema of a heading (rad, measured from the base course) at increasing times (s): time (s) and heading (rad) of the
 /// vertex of each, where the yaw rate is zero.
@@ -40,7 +41,7 @@ pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> 
         let Some(t) = fit.stationary_point() else { continue };
         let (psi, curvature) = (fit.value(t), fit.curvature(t));
         let outside = t < bound[0] || t > bound[1];
-        if outside || psi * curvature >= 0.0 || psi.abs() < SMALLEST_EXTREMUM * largest {
+        if outside || psi * curvature >= 0.0 || psi.abs() < MIN_EXTREMUM_SHARE * largest {
             continue;
         }
         extrema.push([t, psi]);
@@ -63,14 +64,14 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f6
     passages(time, heading).into_iter().filter_map(crossing).collect()
 }
 
-/// Changes of sign of the heading, several close ones taken together: time (s), and +1 where it goes to starboard.
+/// Changes of sign of the heading, close ones merged: time (s), and +1 where it goes to starboard.
 fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
-    // Crossings nearer to each other than a twelfth of the period are one: 10 s for a ship with a period of 120 s.
+    // Crossings within a twelfth of the period are merged: 10 s for a ship with a period of 120 s.
     let mut halves: Vec<f64> = departures(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
     let merge = median(&mut halves).map_or(0.0, |half| half / 6.0);
     let mut changes: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<(f64, f64)> = None;
-    // A heading of exactly zero has no side: it neither makes a change of sign nor hides one.
+    // A heading of exactly zero has no side and is skipped.
     for (&t, &psi) in time.iter().zip(heading).filter(|&(_, &psi)| psi != 0.0) {
         if let Some((before, psi_before)) = last
             && psi * psi_before < 0.0
@@ -88,13 +89,13 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// Times, s, at which a heading (rad, measured from the base course) departs to the other side by 0.35 of its largest
-/// size: one for every swing, for noise about zero cannot fake any.
+/// size: one for every swing, because noise about zero is smaller.
 pub fn departures(time: &[f64], heading: &[f64]) -> Vec<f64> {
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let mut side = 0.0;
     let mut departures = Vec::new();
     for (&t, &psi) in time.iter().zip(heading) {
-        if psi.abs() > SMALLEST_EXTREMUM * largest && psi.signum() != side {
+        if psi.abs() > MIN_EXTREMUM_SHARE * largest && psi.signum() != side {
             side = psi.signum();
             departures.push(t);
         }

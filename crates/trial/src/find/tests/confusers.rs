@@ -36,14 +36,14 @@ fn changes_of_course_are_nothing() {
         sea.steer(course, 60.0);
     }
     sea.steer(course, 300.0);
-    assert_eq!(sea.found(), []);
+    assert_eq!(sea.detected(), []);
 }
 
 /// Random orders for random times, any angle or multiples of five degrees, about the times a zig-zag would have. In so
 /// many a few look like a trial of three executes.
 #[test]
 fn harbour_manoeuvring_is_nothing() {
-    let mut found = Vec::new();
+    let mut detected = Vec::new();
     for seed in 0..20 {
         for in_fives in [false, true] {
             let mut sea = Sea::new(0.5);
@@ -53,10 +53,10 @@ fn harbour_manoeuvring_is_nothing() {
                 let order = if in_fives { 5.0 * (order / 5.0).round() } else { order };
                 sea.hold(from_deg(order.clamp(-35.0, 35.0)), time);
             }
-            found.extend(sea.found().into_iter().map(|found| (seed, in_fives, found)));
+            detected.extend(sea.detected().into_iter().map(|part| (seed, in_fives, part)));
         }
     }
-    assert!(found.len() <= 3, "{} in 16 000 orders: {found:?}", found.len());
+    assert!(detected.len() <= 3, "{} in 16 000 orders: {detected:?}", detected.len());
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_ship_that_does_not_answer_makes_no_zig_zag() {
     let headings = std::mem::replace(&mut sea.heading, vec![f64::NAN; sea.time.len()]);
     assert_eq!(sea.names(), [""; 0]);
     sea.heading = headings.iter().map(|psi| -psi).collect();
-    assert_eq!(sea.found(), []);
+    assert_eq!(sea.detected(), []);
 }
 
 #[test]
@@ -80,8 +80,8 @@ fn a_gap_of_the_log_ends_a_zig_zag() {
     sea.zig_zag(10.0, 10.0, 5);
     sea.keep(300.0);
     sea.time[rows - 5..].iter_mut().for_each(|t| *t += 7200.0);
-    let found = sea.found();
-    assert!(found.iter().all(|found| found.until - found.from < 1000.0), "{found:?}");
+    let detected = sea.detected();
+    assert!(detected.iter().all(|manoeuvre| manoeuvre.until - manoeuvre.from < 1000.0), "{detected:?}");
 }
 
 /// The rudder goes from a long circle quickly round a short one, and only then amidships.
@@ -99,7 +99,7 @@ fn between_two_turns_there_is_no_pull_out() {
     }
     let log = Signals { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
     let list = manoeuvres(&log);
-    let names: Vec<String> = list.iter().map(|found| found.name()).collect();
+    let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, ["turning circle 10 to starboard", "turning circle 25 to port", "pull-out", "straight"]);
     assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from), "{list:?}");
 }

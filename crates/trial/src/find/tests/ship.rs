@@ -127,12 +127,12 @@ impl Sea {
     }
 
     /// The manoeuvres but for the straight pieces.
-    pub fn found(&self) -> Vec<FoundManoeuvre> {
-        manoeuvres(&self.log()).into_iter().filter(|found| found.manoeuvre.is_some()).collect()
+    pub fn detected(&self) -> Vec<FoundManoeuvre> {
+        manoeuvres(&self.log()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
     }
 
     /// Names of all of them.
     pub fn names(&self) -> Vec<String> {
-        manoeuvres(&self.log()).iter().map(|found| found.name()).collect()
+        manoeuvres(&self.log()).iter().map(|manoeuvre| manoeuvre.name()).collect()
     }
 }

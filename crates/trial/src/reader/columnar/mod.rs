@@ -1,9 +1,9 @@
-//! Files that are tables and no text: MATLAB variables, Parquet with the feature `parquet`, and spreadsheets with the
-//! feature `spreadsheets`.
+//! Binary tables: MATLAB variables, Parquet with the feature `parquet`, and spreadsheets with the feature
+//! `spreadsheets`.
 //!
-//! Each becomes the text of a table, a line at a time, and goes the way of every other table from there: names, units,
-//! stamps and sidecars are no matter of this module, and nothing is chosen or left out here but what no table can
-//! hold (columns inside columns, variables of other lengths).
+//! Each becomes the text of a table, a line at a time, and is then read like every other table. Names, units, stamps
+//! and sidecars are handled there; only content that no table can hold is left out here (nested columns, variables of
+//! other lengths).
 
 mod matlab;
 #[cfg(feature = "parquet")]
@@ -20,7 +20,7 @@ use std::io::Read;
 
 use super::error::Problem;
 
-/// A kind of such a file.
+/// Kind of a binary table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Parquet,
@@ -29,7 +29,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// The kind of a file by its first bytes; `None` for every other file.
+    /// Kind of a file by its first bytes; `None` for every other file.
     pub fn of(start: &[u8]) -> Option<Self> {
         match start {
             [b'P', b'A', b'R', b'1', ..] => Some(Self::Parquet),
@@ -39,9 +39,9 @@ impl Kind {
         }
     }
 
-    /// The text of the table that a file of this kind holds: names in the first line, a tab between two cells.
+    /// Table of a file of this kind as text: names in the first line, a tab between two cells.
     ///
-    /// Fails when the file is damaged, packed in a way that is not read, or holds no table.
+    /// Fails when the file is damaged, uses an unsupported compression, or holds no table.
     pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         match self {
             #[cfg(feature = "parquet")]

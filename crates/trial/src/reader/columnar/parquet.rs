@@ -1,5 +1,7 @@
-//! Parquet files as text: one flat column is one column, whatever it holds and however it is packed (zstd and brotli
-//! aside). Rows are decoded a few thousand at a time, row group by row group. Columns inside columns are left out.
+//! Parquet files as text: every flat column of any type is a column, with every compression but zstd, brotli and LZO.
+//! Rows are decoded a few thousand at a time, row group by row group. Nested columns are left out.
+//!
+//! Source of the layout: Apache Parquet format, `parquet.thrift` (types, logical types and compression).
 
 use std::io::Read;
 
@@ -17,40 +19,40 @@ use crate::decoder::{CheckedPages, PageHead, guarded};
 use crate::reader::error::Problem;
 
 /// Rows decoded at a time.
-const BATCH: usize = 4096;
+const BATCH_ROWS: usize = 4096;
 
-/// Largest size of a page before it is packed, bytes: some programs write a column of all rows as one page.
-const LARGEST_PAGE: u64 = 8 * crate::reader::MAX_ROWS as u64;
+/// Maximum unpacked size of a page, bytes: some programs write a column of all rows as a single page.
+const MAX_PAGE_BYTES: u64 = 8 * crate::reader::MAX_ROWS as u64;
 
-/// A page up to this size, bytes, may be packed to nothing.
-const SMALL_PAGE: u64 = 1 << 24;
+/// Unpacked size of a page up to which any compression is accepted, bytes.
+const SMALL_PAGE_BYTES: u64 = 1 << 24;
 
-/// How often the size of what is packed a larger page may have; deflate reaches 1032.
-const MOST_PACKED: u64 = 1100;
+/// Maximum compression of a larger page; deflate reaches 1032.
+const MAX_COMPRESSION: u64 = 1100;
 
-/// Most values of a dictionary; the decoder reserves some forty bytes for each.
-const MOST_WORDS: u64 = 1 << 22;
+/// Maximum number of values of a dictionary; the decoder reserves some forty bytes for each.
+const MAX_DICTIONARY_VALUES: u64 = 1 << 22;
 
-/// Whether a page may state so much.
+/// `true` for a page whose stated sizes are within the limits.
 fn fits(PageHead { is_dictionary, unpacked, packed, values }: PageHead) -> bool {
-    unpacked <= SMALL_PAGE.max(packed.saturating_mul(MOST_PACKED))
-        && unpacked <= LARGEST_PAGE
-        && (!is_dictionary || values <= MOST_WORDS.min(unpacked))
+    unpacked <= SMALL_PAGE_BYTES.max(packed.saturating_mul(MAX_COMPRESSION))
+        && unpacked <= MAX_PAGE_BYTES
+        && (!is_dictionary || values <= MAX_DICTIONARY_VALUES.min(unpacked))
 }
 
-/// What the values of a column mean.
+/// Meaning of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Meaning {
-    /// What their type says.
+    /// As their type says.
     Plain,
     Unsigned,
-    /// Units of this decimal place.
+    /// Integers in units of this decimal place.
     Decimal(u32),
     Half,
     Day,
-    /// Since midnight, in this part of a second.
+    /// Time since midnight, in this part of a second.
     TimeOfDay(i64),
-    /// Since 1970, in this part of a second.
+    /// Time since 1970, in this part of a second.
     Stamp {
         per_second: i64,
         utc: bool,
@@ -58,7 +60,7 @@ enum Meaning {
 }
 
 impl Meaning {
-    /// What a column holds; `None` for what is neither number, stamp nor text.
+    /// Meaning of a column; `None` for a type that is neither number, stamp nor text.
     fn of(column: &ColumnDescriptor) -> Option<Self> {
         let per_second = |unit: &TimeUnit| match unit {
             TimeUnit::MILLIS => 1_000,
@@ -76,7 +78,7 @@ impl Meaning {
             Some(LogicalType::Integer(integer)) if !integer.is_signed => Self::Unsigned,
             Some(LogicalType::Float16) => Self::Half,
             _ => match column.converted_type() {
-                // These do not say whether they are UTC: many programs wrote local time so.
+                // Converted types do not tell UTC from local time: many programs wrote local time.
                 ConvertedType::TIMESTAMP_MILLIS => Self::Stamp { per_second: 1_000, utc: false },
                 ConvertedType::TIMESTAMP_MICROS => Self::Stamp { per_second: 1_000_000, utc: false },
                 ConvertedType::TIME_MILLIS => Self::TimeOfDay(1_000),
@@ -89,24 +91,24 @@ impl Meaning {
                 _ => Self::Plain,
             },
         };
-        let other_bytes =
+        let plain_bytes =
             column.physical_type() == Type::FIXED_LEN_BYTE_ARRAY && !matches!(meaning, Self::Decimal(_) | Self::Half);
-        (!other_bytes).then_some(meaning)
+        (!plain_bytes).then_some(meaning)
     }
 }
 
-/// A column as far as it is decoded.
+/// A column and its decoded rows.
 struct Column {
-    /// Its place in the file.
-    place: usize,
+    /// Index in the file.
+    index: usize,
     name: String,
     meaning: Meaning,
     reader: Option<ColumnReader>,
-    /// The cells of the rows that are decoded, one after the other.
+    /// Cells of the decoded rows.
     cells: Cells,
 }
 
-/// Cells one after the other, and where each ends.
+/// Texts of cells in one string, with the end of each.
 #[derive(Default)]
 struct Cells {
     text: String,
@@ -125,32 +127,32 @@ struct Rows {
     file: SerializedFileReader<CheckedPages<Bytes>>,
     columns: Vec<Column>,
     headed: bool,
-    /// Row groups begun.
+    /// Number of row groups begun.
     groups: usize,
-    /// Rows of the group that are not decoded yet.
+    /// Rows of the group that remain to be decoded.
     left: usize,
 }
 
-fn damaged(found: String) -> Problem {
-    Problem::Damaged { format: "a Parquet file", found }
+fn damaged(damage: String) -> Problem {
+    Problem::Damaged { format: "a Parquet file", damage }
 }
 
 fn failed(error: ParquetError) -> Problem {
     damaged(error.to_string())
 }
 
-/// The text of a file.
+/// Table of a file as text.
 pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let mut rows = checked(|| Rows::open(bytes))?;
     Ok(Box::new(Written::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
 }
 
 fn checked<T>(work: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
-    guarded(work).unwrap_or_else(|| Err(damaged("what it holds contradicts itself".to_owned())))
+    guarded(work).unwrap_or_else(|| Err(damaged("its content contradicts itself".to_owned())))
 }
 
-/// What a file is called where the way it is packed is not read.
-fn unread(compression: Compression) -> Option<&'static str> {
+/// Name of a file with an unsupported compression; `None` for a supported compression.
+fn unsupported(compression: Compression) -> Option<&'static str> {
     match compression {
         Compression::ZSTD(_) => Some("a Parquet file written with zstd compression, which is not read"),
         Compression::BROTLI(_) => Some("a Parquet file written with brotli compression, which is not read"),
@@ -164,22 +166,22 @@ impl Rows {
         let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(failed)?;
         let schema = file.metadata().file_metadata().schema_descr_ptr();
         let mut columns = Vec::new();
-        for (place, column) in schema.columns().iter().enumerate() {
+        for (index, column) in schema.columns().iter().enumerate() {
             let flat = column.max_rep_level() == 0 && column.path().parts().len() == 1;
             let Some(meaning) = Meaning::of(column).filter(|_| flat) else { continue };
             let name = column.name().to_owned();
-            columns.push(Column { place, name, meaning, reader: None, cells: Cells::default() });
+            columns.push(Column { index, name, meaning, reader: None, cells: Cells::default() });
         }
         if columns.is_empty() {
-            let found = schema.columns().iter().map(|column| column.path().string()).collect();
-            return Err(Problem::NoTable { format: "a Parquet file", wanted: "flat columns", found });
+            let content = schema.columns().iter().map(|column| column.path().string()).collect();
+            return Err(Problem::NoTable { format: "a Parquet file", wanted: "flat columns", content });
         }
         for group in file.metadata().row_groups() {
             if group.num_rows() < 0 {
                 return Err(damaged(format!("a group of it has {} rows", group.num_rows())));
             }
             for column in &columns {
-                if let Some(format) = unread(group.column(column.place).compression()) {
+                if let Some(format) = unsupported(group.column(column.index).compression()) {
                     return Err(Problem::Format { format, cure: "write it with snappy compression or without" });
                 }
             }
@@ -187,11 +189,11 @@ impl Rows {
         Ok(Self { file, columns, headed: false, groups: 0, left: 0 })
     }
 
-    /// The names, and then the next rows; `None` where there are none.
+    /// The names, then the next rows; `None` after the last row.
     fn chunk(&mut self) -> Result<Option<String>, Problem> {
         let mut text = String::new();
         if !std::mem::replace(&mut self.headed, true) {
-            text::line(&mut text, self.columns.len(), |text, place| text::words(text, &self.columns[place].name));
+            text::line(&mut text, self.columns.len(), |text, number| text::cell(text, &self.columns[number].name));
             return Ok(Some(text));
         }
         while self.left == 0 {
@@ -201,17 +203,19 @@ impl Rows {
             let group = self.file.get_row_group(self.groups).map_err(failed)?;
             self.left = group.metadata().num_rows().unsigned_abs() as usize;
             for column in &mut self.columns {
-                column.reader = Some(group.get_column_reader(column.place).map_err(failed)?);
+                column.reader = Some(group.get_column_reader(column.index).map_err(failed)?);
             }
             self.groups += 1;
         }
-        let length = self.left.min(BATCH);
+        let length = self.left.min(BATCH_ROWS);
         for column in &mut self.columns {
             column.decode(length)?;
         }
         self.left -= length;
         for row in 0..length {
-            text::line(&mut text, self.columns.len(), |text, place| text.push_str(self.columns[place].cells.get(row)));
+            text::line(&mut text, self.columns.len(), |text, number| {
+                text.push_str(self.columns[number].cells.get(row))
+            });
         }
         Ok(Some(text))
     }
@@ -221,7 +225,7 @@ impl Column {
     fn decode(&mut self, length: usize) -> Result<(), Problem> {
         let Self { name, reader, cells, meaning, .. } = self;
         let meaning = *meaning;
-        let early = || damaged(format!("its column `{}` ends too early", crate::words::shortened(name)));
+        let early = || damaged(format!("its column `{}` ends too early", crate::wording::shortened(name)));
         let whole = match reader.as_mut().ok_or_else(early)? {
             ColumnReader::BoolColumnReader(reader) => {
                 read(reader, length, cells, |text, &value| text.push(if value { '1' } else { '0' }))
@@ -251,7 +255,7 @@ impl Column {
     }
 }
 
-/// A stamp in nanoseconds of a day, and days of the Julian calendar of astronomers; 1970-01-01 is 2 440 588.
+/// Writes a stamp of nanoseconds of the day and a Julian day number; 1970-01-01 is 2 440 588.
 fn julian(text: &mut String, stamp: &Int96) {
     let [low, high, day] = *stamp.data() else { return };
     let nanoseconds = (u64::from(high) << 32 | u64::from(low)) as i64;
@@ -279,14 +283,14 @@ fn bytes(text: &mut String, bytes: &[u8], meaning: Meaning) {
     match (meaning, bytes) {
         (Meaning::Decimal(_), [] | [_, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, ..]) => {}
         (Meaning::Decimal(decimals), [first, ..]) => {
-            // The largest digits first, in two's complement.
+            // Big-endian two's complement.
             let sign = if first & 0x80 == 0 { 0 } else { -1 };
             let value = bytes.iter().fold(sign, |value: i128, &byte| value << 8 | i128::from(byte));
             text::decimal(text, value, decimals);
         }
         (Meaning::Half, &[low, high]) => text::single(text, f16::from_le_bytes([low, high]).to_f32()),
         (Meaning::Half, _) => {}
-        _ => text::words(text, &String::from_utf8_lossy(bytes)),
+        _ => text::cell(text, &String::from_utf8_lossy(bytes)),
     }
 }
 
@@ -311,7 +315,7 @@ fn read<T: DataType>(
     let mut values = values.iter();
     let rows = if present.is_empty() { values.len() } else { present.len() };
     for row in 0..rows {
-        // No level stands where every row has a value.
+        // Levels are absent where every row has a value.
         if present.get(row).is_none_or(|&level| level > 0) {
             let Some(value) = values.next() else { return Ok(false) };
             write(&mut cells.text, value);

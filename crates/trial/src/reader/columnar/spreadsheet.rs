@@ -1,8 +1,10 @@
-//! Excel spreadsheets (.xlsx) as text: one sheet, its rows on the lines they have in Excel. Formulas are what they
-//! gave when the file was written. Other kinds of spreadsheets are not read.
+//! Excel spreadsheets (.xlsx) as text: a single sheet, its rows on the lines they have in Excel. Formulas have the
+//! values that were stored with them. Other kinds of spreadsheets are not read.
 //!
-//! The decoder keeps hold of the file while it goes through a sheet, so it has a thread of its own, which waits where
-//! its lines are not read.
+//! The decoder borrows the file while it goes through a sheet; it therefore runs in its own thread, which waits until
+//! its lines are read.
+//!
+//! Source of the layout: ECMA-376, Office Open XML File Formats, part 1.
 
 use std::io::{Cursor, Read};
 use std::sync::mpsc::{SyncSender, sync_channel};
@@ -14,41 +16,41 @@ use crate::decoder::guarded;
 use crate::names;
 use crate::reader::error::Problem;
 
-/// Most rows and columns of a sheet (Excel 2007 and later).
-const LARGEST: (u32, u32) = (1 << 20, 1 << 14);
+/// Maximum number of rows and columns of a sheet (Excel 2007 and later).
+const MAX_SIZE: (u32, u32) = (1 << 20, 1 << 14);
 
-/// Rows at the begin of a sheet in which names are looked for.
-const LOOKED_AT: u32 = 60;
+/// Rows at the beginning of a sheet that are searched for names.
+const HEAD_ROWS: u32 = 60;
 
-/// Bytes handed on at a time.
-const CHUNK: usize = 1 << 16;
+/// Size of a chunk of text, bytes.
+const CHUNK_BYTES: usize = 1 << 16;
 
-/// Days from 1970-01-01 back to day 0 of the two calendars of Excel, those before March 1900 aside.
+/// Day 0 of the two calendars of Excel, counted from 1970-01-01; valid from March 1900.
 const DAY_0: [i64; 2] = [-25_569, -24_107];
 
 type Book = Xlsx<Cursor<Vec<u8>>>;
 type Cells<'a> = XlsxCellReader<'a, Cursor<Vec<u8>>>;
 type Chunk = Result<String, Problem>;
 
-fn damaged(found: impl ToString) -> Problem {
-    Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", found: found.to_string() }
+fn damaged(damage: impl ToString) -> Problem {
+    Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", damage: damage.to_string() }
 }
 
-/// The text of a file.
+/// Table of a file as text.
 pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {
         let done = guarded(|| decode(bytes, &send));
-        if let Err(problem) = done.unwrap_or_else(|| Err(damaged("what it holds contradicts itself"))) {
-            // Nobody waits for it where the file was given up.
+        if let Err(problem) = done.unwrap_or_else(|| Err(damaged("its content contradicts itself"))) {
+            // The receiver is gone where reading was given up.
             let _ = send.send(Err(problem));
         }
     };
-    std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::of_input)?;
+    std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::from_input)?;
     Ok(Box::new(Written::new(receive.into_iter())))
 }
 
-/// Hands on the lines of the sheet with the table.
+/// Sends the lines of the sheet with the table.
 fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
     let mut book: Book = Xlsx::new(Cursor::new(bytes)).map_err(|error| match error {
         XlsxError::FileNotFound(_) => Problem::Format {
@@ -62,10 +64,10 @@ fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
     let Some(first) = names.first() else { return Err(damaged("it has no sheet")) };
     let (mut chosen, mut head) = (first, None);
     for name in &names {
-        let found = look(book.worksheet_cells_reader(name).map_err(damaged)?)?;
-        if found.width.is_some() || head.is_none() {
-            let is_table = found.width.is_some();
-            (chosen, head) = (name, Some(found));
+        let sheet = read_head(book.worksheet_cells_reader(name).map_err(damaged)?)?;
+        if sheet.width.is_some() || head.is_none() {
+            let is_table = sheet.width.is_some();
+            (chosen, head) = (name, Some(sheet));
             if is_table {
                 break;
             }
@@ -80,32 +82,32 @@ fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
             line += 1;
         }
         write_row(&mut text, cells, &head, is_1904);
-        // A full channel that nobody reads any more ends the work.
-        Ok(text.len() < CHUNK || send.send(Ok(std::mem::take(&mut text))).is_ok())
+        // A closed channel ends the work.
+        Ok(text.len() < CHUNK_BYTES || send.send(Ok(std::mem::take(&mut text))).is_ok())
     })?;
     text.push('\n');
     let _ = send.send(Ok(text));
     Ok(())
 }
 
-/// What the first rows of a sheet show.
+/// Head of a sheet, from its first rows.
 #[derive(Default)]
 struct Head {
-    /// Cells of the row with the names, where there is one.
+    /// Number of cells of the row with the names; `None` without such a row.
     width: Option<u32>,
     /// Columns with times of day in their stamps.
     timed: Vec<u32>,
 }
 
-fn look(cells: Cells) -> Result<Head, Problem> {
+fn read_head(cells: Cells) -> Result<Head, Problem> {
     let mut head = Head::default();
     each_row(cells, |row, cells| {
-        let said = |value: &DataRef| match value {
+        let is_name = |value: &DataRef| match value {
             DataRef::String(name) => names::meaning(name).is_some(),
             DataRef::SharedString(name) => names::meaning(name).is_some(),
             _ => false,
         };
-        if head.width.is_none() && cells.iter().filter(|(_, value)| said(value)).count() >= 2 {
+        if head.width.is_none() && cells.iter().filter(|(_, value)| is_name(value)).count() >= 2 {
             head.width = cells.last().map(|(column, _)| column + 1);
         }
         for (column, value) in cells {
@@ -113,34 +115,34 @@ fn look(cells: Cells) -> Result<Head, Problem> {
                 head.timed.push(*column);
             }
         }
-        Ok(row < LOOKED_AT)
+        Ok(row < HEAD_ROWS)
     })?;
     Ok(head)
 }
 
-/// Hands every row with something in it to `take`, with its place, as long as that says so.
+/// Passes every row with a cell, and its number, to `take` until that returns `false`.
 fn each_row<'a>(
     mut cells: Cells<'a>,
     mut take: impl FnMut(u32, &[(u32, DataRef<'a>)]) -> Result<bool, Problem>,
 ) -> Result<(), Problem> {
-    let (mut row, mut own) = (0, Vec::new());
+    let (mut row, mut row_cells) = (0, Vec::new());
     while let Some(cell) = cells.next_cell().map_err(damaged)? {
-        let (of_row, column) = cell.get_position();
-        let follows = of_row > row || (of_row == row && own.last().is_none_or(|&(last, _)| column > last));
-        if !follows || of_row >= LARGEST.0 || column >= LARGEST.1 {
-            return Err(damaged(format!("a cell of row {} has no place", u64::from(of_row) + 1)));
+        let (cell_row, column) = cell.get_position();
+        let follows = cell_row > row || (cell_row == row && row_cells.last().is_none_or(|&(last, _)| column > last));
+        if !follows || cell_row >= MAX_SIZE.0 || column >= MAX_SIZE.1 {
+            return Err(damaged(format!("a cell of row {} has no place", u64::from(cell_row) + 1)));
         }
-        if of_row > row {
-            if !own.is_empty() && !take(row, &own)? {
+        if cell_row > row {
+            if !row_cells.is_empty() && !take(row, &row_cells)? {
                 return Ok(());
             }
-            own.clear();
-            row = of_row;
+            row_cells.clear();
+            row = cell_row;
         }
-        own.push((column, cell.get_value().clone()));
+        row_cells.push((column, cell.get_value().clone()));
     }
-    if !own.is_empty() {
-        take(row, &own)?;
+    if !row_cells.is_empty() {
+        take(row, &row_cells)?;
     }
     Ok(())
 }
@@ -153,17 +155,17 @@ fn write_row(text: &mut String, cells: &[(u32, DataRef)], head: &Head, is_1904: 
             text.push('\t');
             at += 1;
         }
-        let mut put = |words: &str| match words.strip_prefix('#') {
+        let mut put = |content: &str| match content.strip_prefix('#') {
             Some(remark) if *column == 0 => {
                 text.push('#');
-                text::words(text, remark);
+                text::cell(text, remark);
             }
-            _ => text::words(text, words),
+            _ => text::cell(text, content),
         };
         match value {
-            DataRef::String(words) => put(words),
-            DataRef::SharedString(words) => put(words),
-            DataRef::DateTimeIso(words) | DataRef::DurationIso(words) => put(words),
+            DataRef::String(content) => put(content),
+            DataRef::SharedString(content) => put(content),
+            DataRef::DateTimeIso(content) | DataRef::DurationIso(content) => put(content),
             DataRef::Int(value) => text::whole(text, *value),
             DataRef::Float(value) => text::number(text, *value),
             DataRef::Bool(value) => text.push(if *value { '1' } else { '0' }),
@@ -179,22 +181,24 @@ fn write_row(text: &mut String, cells: &[(u32, DataRef)], head: &Head, is_1904: 
     }
 }
 
-/// Writes days since the begin of the calendar: a time of day below one, and a date without its time where the column
-/// has none.
+/// Writes days since the beginning of the calendar: a time of day below 1, and a date without its time where the column
+/// has no times.
 fn stamp(text: &mut String, days: f64, is_1904: bool, timed: bool, is_duration: bool) {
-    // The numbers of our years are known to half a microsecond.
+    // Days of present dates resolve half a microsecond.
     const TICKS: i64 = 100_000;
-    const OF_DAY: i64 = 86_400 * TICKS;
-    let ticks = (days * OF_DAY as f64).round() as i64;
+    const TICKS_PER_DAY: i64 = 86_400 * TICKS;
+    let ticks = (days * TICKS_PER_DAY as f64).round() as i64;
     let nanoseconds = |ticks: i64| ticks * (1_000_000_000 / TICKS);
     if is_duration || (0.0..1.0).contains(&days) {
-        return text::time_of_day(text, nanoseconds(ticks.clamp(-OF_DAY, 1000 * OF_DAY)));
+        return text::time_of_day(text, nanoseconds(ticks.clamp(-TICKS_PER_DAY, 1000 * TICKS_PER_DAY)));
     }
-    // Excel believes in 29 February 1900, day 60.
+    // Excel counts 29 February 1900, which did not exist, as day 60.
     let early = i64::from(!is_1904 && days < 60.0);
-    let day = ticks.div_euclid(OF_DAY) + DAY_0[usize::from(is_1904)] + early;
-    match ticks.rem_euclid(OF_DAY) {
+    let day = ticks.div_euclid(TICKS_PER_DAY) + DAY_0[usize::from(is_1904)] + early;
+    match ticks.rem_euclid(TICKS_PER_DAY) {
         0 if !timed => text::day(text, day),
-        of_day => text::stamp(text, day * 86_400 + of_day / TICKS, nanoseconds(of_day % TICKS), false),
+        ticks_of_day => {
+            text::stamp(text, day * 86_400 + ticks_of_day / TICKS, nanoseconds(ticks_of_day % TICKS), false)
+        }
     }
 }

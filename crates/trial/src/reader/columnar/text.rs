@@ -1,4 +1,4 @@
-//! Values written as the cells of a text, and the text given out as it is written.
+//! Values written as cells of a text, and a reader of the text as it is written.
 
 use std::fmt::Write as _;
 use std::io::{self, Read};
@@ -6,87 +6,87 @@ use std::io::{self, Read};
 use crate::clock;
 use crate::reader::error::Problem;
 
-/// The text of chunks of lines, given out as they are written.
+/// Reader of chunks of lines as they are written.
 pub struct Written<I> {
     chunks: I,
     text: String,
-    given: usize,
+    consumed: usize,
 }
 
 impl<I: Iterator<Item = Result<String, Problem>>> Written<I> {
     pub fn new(chunks: I) -> Self {
-        Self { chunks, text: String::new(), given: 0 }
+        Self { chunks, text: String::new(), consumed: 0 }
     }
 }
 
 impl<I: Iterator<Item = Result<String, Problem>>> Read for Written<I> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        while self.given == self.text.len()
+        while self.consumed == self.text.len()
             && let Some(chunk) = self.chunks.next()
         {
-            (self.text, self.given) = (chunk.map_err(io::Error::other)?, 0);
+            (self.text, self.consumed) = (chunk.map_err(io::Error::other)?, 0);
         }
-        let count = buffer.len().min(self.text.len() - self.given);
-        buffer[..count].copy_from_slice(&self.text.as_bytes()[self.given..self.given + count]);
-        self.given += count;
+        let count = buffer.len().min(self.text.len() - self.consumed);
+        buffer[..count].copy_from_slice(&self.text.as_bytes()[self.consumed..self.consumed + count]);
+        self.consumed += count;
         Ok(count)
     }
 }
 
-/// A line of so many cells, with its end.
+/// Writes a line of cells with its end; `write` gets the index of each cell.
 pub fn line(text: &mut String, cells: usize, mut write: impl FnMut(&mut String, usize)) {
-    for place in 0..cells {
-        if place > 0 {
+    for index in 0..cells {
+        if index > 0 {
             text.push('\t');
         }
-        write(text, place);
+        write(text, index);
     }
     text.push('\n');
 }
 
-/// Puts what is written for one value at the end of a text.
+/// Appends formatted text.
 fn put(text: &mut String, written: std::fmt::Arguments) {
     text.write_fmt(written).expect("a string takes all text");
 }
 
-/// A number with as few digits as tell it from every other; nothing for NaN.
+/// Writes a number with the fewest digits that are read back as the same number; nothing for NaN.
 pub fn number(text: &mut String, value: f64) {
     if !value.is_nan() {
         put(text, format_args!("{value:?}"));
     }
 }
 
-/// A number of single precision with as few digits as tell it from its neighbours.
+/// Writes a number of single precision with the fewest digits that are read back as the same number.
 pub fn single(text: &mut String, value: f32) {
     if !value.is_nan() {
         put(text, format_args!("{value:?}"));
     }
 }
 
-/// A whole number.
+/// Writes a whole number.
 pub fn whole(text: &mut String, value: impl Into<i128>) {
     put(text, format_args!("{}", value.into()));
 }
 
-/// A whole number of units of the decimal place `decimals`.
+/// Writes a whole number of units of the decimal place `decimals`.
 pub fn decimal(text: &mut String, value: i128, decimals: u32) {
     let sign = if value < 0 { "-" } else { "" };
     let digits = value.unsigned_abs();
     match 10_u128.checked_pow(decimals) {
-        Some(one) if decimals > 0 => {
-            let (whole, part) = (digits / one, digits % one);
+        Some(unit) if decimals > 0 => {
+            let (whole, part) = (digits / unit, digits % unit);
             put(text, format_args!("{sign}{whole}.{part:0width$}", width = decimals as usize));
         }
         _ => put(text, format_args!("{sign}{digits}e-{decimals}")),
     }
 }
 
-/// A day since 1970-01-01.
+/// Writes a day since 1970-01-01.
 pub fn day(text: &mut String, day: i64) {
     put(text, format_args!("{}", clock::date(day)));
 }
 
-/// Nanoseconds since midnight, as a time of day.
+/// Writes nanoseconds since midnight as a time of day.
 pub fn time_of_day(text: &mut String, nanoseconds: i64) {
     let (seconds, part) = (nanoseconds.div_euclid(1_000_000_000), nanoseconds.rem_euclid(1_000_000_000));
     put(text, format_args!("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60));
@@ -96,7 +96,7 @@ pub fn time_of_day(text: &mut String, nanoseconds: i64) {
     }
 }
 
-/// Date and time of an instant `part` nanoseconds after `seconds` since 1970-01-01.
+/// Writes date and time of an instant `part` nanoseconds after `seconds` since 1970-01-01.
 pub fn stamp(text: &mut String, seconds: i64, part: i64, utc: bool) {
     day(text, seconds.div_euclid(86_400));
     text.push('T');
@@ -106,14 +106,14 @@ pub fn stamp(text: &mut String, seconds: i64, part: i64, utc: bool) {
     }
 }
 
-/// A text as one cell: control characters become blanks, and a text with a quote or the sign of a comment in it
-/// stands in quotes.
-pub fn words(text: &mut String, words: &str) {
-    let quoted = words.contains(['"', '#']);
+/// Writes a text as a cell: control characters become blanks, and a text with a quote or the sign of a comment is put
+/// in quotes.
+pub fn cell(text: &mut String, content: &str) {
+    let quoted = content.contains(['"', '#']);
     if quoted {
         text.push('"');
     }
-    for c in words.chars() {
+    for c in content.chars() {
         match c {
             '"' => text.push_str("\"\""),
             c if c.is_control() => text.push(' '),
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(written(|text| stamp(text, at, 0, true)), "2026-11-20T14:03:05Z");
         assert_eq!(written(|text| stamp(text, -1, 1, false)), "1969-12-31T23:59:59.000000001");
         assert_eq!(written(|text| stamp(text, 0, 0, false)), "1970-01-01T00:00:00");
-        assert_eq!(written(|text| words(text, "a\tb\r\nc")), "a b  c");
-        assert_eq!(written(|text| words(text, "# \"x\"")), "\"# \"\"x\"\"\"");
+        assert_eq!(written(|text| cell(text, "a\tb\r\nc")), "a b  c");
+        assert_eq!(written(|text| cell(text, "# \"x\"")), "\"# \"\"x\"\"\"");
     }
 }

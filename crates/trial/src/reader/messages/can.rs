@@ -1,5 +1,5 @@
-//! Frames of a CAN bus in hexadecimal, as candump and loggers of the bus write them: recognised, not read, because what
-//! they mean stands in no frame.
+//! Frames of a CAN bus in hexadecimal, as candump and loggers of the bus write them: recognised but not read, because a
+//! frame does not hold its meaning.
 
 /// Bits of an extended identifier.
 const MAX_IDENTIFIER: u32 = 0x1fff_ffff;
@@ -7,15 +7,15 @@ const MAX_IDENTIFIER: u32 = 0x1fff_ffff;
 /// Hexadecimal digits of a standard and of an extended identifier.
 const DIGITS: [usize; 2] = [3, 8];
 
-/// Whether most lines are frames.
+/// `true` where most lines are frames.
 pub fn is_log<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
     let written = lines.filter(|line| !line.trim().is_empty());
     let (frames, all) = written.fold((0, 0), |(frames, all), line| (frames + usize::from(is_frame(line)), all + 1));
     2 * frames > all
 }
 
-/// Whether a line is a frame: an identifier with its bytes as `09F1120A#FF1027FF`, or an identifier, their number, and
-/// the bytes in cells or as one word. A letter among the digits tells it from a row of numbers.
+/// `true` for a frame: an identifier with its bytes as `09F1120A#FF1027FF`, or an identifier, the number of bytes, and
+/// the bytes in cells or as a word. A letter among the digits distinguishes it from a row of numbers.
 fn is_frame(line: &str) -> bool {
     let cells = line.split([',', ';', '\t', ' ', '"', '\r']).map(str::trim).filter(|cell| !cell.is_empty());
     let cells: Vec<&str> = cells.collect();
@@ -43,14 +43,15 @@ fn is_hexadecimal(cell: &str, digits: usize) -> bool {
     cell.len() == digits && cell.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
-/// Whether a cell is an identifier: of three or eight digits, or of any with a prefix or the `x` of an extended one.
+/// `true` for an identifier: three or eight digits, or any number of digits with a prefix or the `x` of an extended
+/// identifier.
 fn is_identifier(cell: &str) -> bool {
     let digits = unprefixed(cell).trim_end_matches(['x', 'X', 'h', 'H']);
     let is_whole = digits.len() < cell.len() || DIGITS.contains(&digits.len());
     is_whole && u32::from_str_radix(digits, 16).is_ok_and(|number| number <= MAX_IDENTIFIER)
 }
 
-/// Whether a cell is an identifier and its bytes, as candump writes them into files.
+/// `true` for an identifier with its bytes, as candump writes them into files.
 fn is_joined(cell: &str) -> bool {
     let Some((id, bytes)) = cell.split_once('#') else { return false };
     let is_even = bytes.len().is_multiple_of(2) && is_hexadecimal(bytes, bytes.len());

@@ -1,49 +1,51 @@
 //! Messages of NMEA 2000 as canboat writes them: JSON lines of its `analyzer`, and the plain lines that it reads, with
 //! bytes in hexadecimal.
+//!
+//! Source of the fields: canboat, list of parameter groups (`pgn.h`).
 
 use serde_json::Value;
 
 use super::message::{Message, RankedReading};
 use crate::channel::Channel;
 
-/// Parameter group numbers that are read.
+/// Supported parameter group numbers.
 const RUDDER: u64 = 127_245;
 const HEADING: u64 = 127_250;
 const RATE_OF_TURN: u64 = 127_251;
 const SPEED: u64 = 128_259;
 const COURSE_AND_SPEED: u64 = 129_026;
 
-/// Whether a line is a message, in JSON or plain.
+/// `true` for a message, in JSON or plain.
 pub(super) fn is_message(line: &str) -> bool {
     let line = line.trim();
     (line.starts_with('{') && line.contains("\"pgn\"")) || plain(line).is_some()
 }
 
-/// What the lines read so far said of their units.
+/// Reader of canboat lines with the units stated so far.
 #[derive(Debug, Default)]
 pub(super) struct Canboat {
-    /// Whether angles are in radians, where a line says it.
+    /// `true` for angles in radians; `None` until a line states the units.
     pub is_si: Option<bool>,
 }
 
 impl Canboat {
-    /// The message of a line; `None` where it gives no quantity that is used.
+    /// Message of a line; `None` for a line without a quantity that is used.
     pub fn message<'a>(&mut self, line: &'a str) -> Option<Message<'a>> {
         if let Some((stamp, pgn, source, bytes)) = plain(line.trim()) {
             self.is_si = Some(true);
             let instance = u64::from(bytes[0]);
-            return with_readings(stamp, source_name(pgn, source, instance), of_bytes(pgn, &bytes));
+            return with_readings(stamp, source_name(pgn, source, instance), readings_of_bytes(pgn, &bytes));
         }
         let value: Value = serde_json::from_str(line).ok()?;
         if let Some(units) = value["units"].as_str() {
             self.is_si = Some(units == "si");
         }
-        // The line outlives what was parsed of it.
+        // The stamp is borrowed from the line, which outlives the parsed value.
         let stamp =
             value["timestamp"].as_str().and_then(|stamp| line.find(stamp).map(|at| &line[at..at + stamp.len()]))?;
         let (pgn, fields) = (value["pgn"].as_u64()?, &value["fields"]);
         let source = source_name(pgn, value["src"].as_u64()?, number(fields, "Instance").unwrap_or(0.0) as u64);
-        with_readings(stamp, source, of_fields(pgn, fields))
+        with_readings(stamp, source, readings_of_fields(pgn, fields))
     }
 }
 
@@ -51,19 +53,19 @@ fn with_readings(stamp: &str, source: String, readings: Vec<RankedReading>) -> O
     (!readings.is_empty()).then_some(Message { stamp, source, readings })
 }
 
-/// What a source is called; a device may send several rudders.
+/// Name of a source in messages; a device may send several rudders.
 fn source_name(pgn: u64, source: u64, instance: u64) -> String {
     let rudder = if pgn == RUDDER && instance > 0 { format!(", rudder {instance}") } else { String::new() };
     format!("the device at address {source}{rudder}")
 }
 
-/// A number of a message; with the option -nv of canboat it stands beside its name.
+/// A number of a message; the option -nv of canboat puts it into an object with its name.
 fn number(fields: &Value, name: &str) -> Option<f64> {
     fields[name].as_f64().or_else(|| fields[name]["value"].as_f64())
 }
 
-/// The readings in the fields of a message.
-fn of_fields(pgn: u64, fields: &Value) -> Vec<RankedReading> {
+/// Readings in the fields of a message.
+fn readings_of_fields(pgn: u64, fields: &Value) -> Vec<RankedReading> {
     let number = |name: &str| number(fields, name);
     let is_true =
         [&fields["Reference"], &fields["Reference"]["name"]].iter().any(|reference| reference.as_str() == Some("True"));
@@ -88,8 +90,8 @@ fn plain(line: &str) -> Option<(&str, u64, u64, Vec<u8>)> {
     stamp.contains(':').then_some((*stamp, pgn, source.parse().ok()?, bytes))
 }
 
-/// The readings in the bytes of a message, in radians and m/s; the two highest numbers of a field stand for none.
-fn of_bytes(pgn: u64, bytes: &[u8]) -> Vec<RankedReading> {
+/// Readings in the bytes of a message, in radians and m/s; the two highest numbers of a field mean "no reading".
+fn readings_of_bytes(pgn: u64, bytes: &[u8]) -> Vec<RankedReading> {
     let raw = |from: usize, length: usize| {
         let field = bytes.get(from..from + length)?;
         Some(field.iter().rev().fold(0_u64, |value, byte| value << 8 | u64::from(*byte)))

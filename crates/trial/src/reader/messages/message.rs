@@ -1,16 +1,16 @@
-//! A message: when, by whom, and what it says.
+//! A message of a log: stamp, source and readings.
 
 use crate::channel::Channel;
 
-/// A reading: its quantity, how good a quantity of its kind it is (the lower, the better), its value.
+/// A reading: channel, class (the lowest is the best quantity for the channel) and value.
 pub(super) type RankedReading = (Channel, u8, f64);
 
-/// One line of a log.
+/// A line of a log.
 pub(super) struct Message<'a> {
-    /// When it was sent, as it stands there.
+    /// Time stamp, as in the log.
     pub stamp: &'a str,
-    /// Who sent it.
+    /// Name of the sender.
     pub source: String,
-    /// What it says.
+    /// Readings of the line.
     pub readings: Vec<RankedReading>,
 }

@@ -1,4 +1,5 @@
-//! Long tables: a row holds one quantity by its path, such as `steering.rudderAngle` of Signal K, or by a column name.
+//! Long tables: a row holds a single quantity by its path, such as `steering.rudderAngle` of Signal K, or by a column
+//! name.
 
 use super::message::{Message, RankedReading};
 use crate::cells::{Separator, cell, recognise};
@@ -23,7 +24,7 @@ const PATHS: [(&str, Channel, u8); 6] = [
     ("navigation.speedoverground", Channel::Speed, 1),
 ];
 
-/// Where the columns of a long table are.
+/// Columns of a long table.
 #[derive(Debug, Clone)]
 pub(super) struct LongTable {
     separator: Separator,
@@ -36,20 +37,21 @@ pub(super) struct LongTable {
 impl LongTable {
     /// The table with this header; `None` for a table of another kind.
     pub fn of(header: &str) -> Option<Self> {
-        let is_of = |cell: &str, place: usize| COLUMNS[place].contains(&cell.to_lowercase().as_str());
-        let known = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|place| is_of(cell, place))).count();
-        let separator = recognise(header, known);
+        let is_name = |cell: &str, column: usize| COLUMNS[column].contains(&cell.to_lowercase().as_str());
+        let count_names =
+            |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|column| is_name(cell, column))).count();
+        let separator = recognise(header, count_names);
         let mut ranges = Vec::new();
         separator.split(header, &mut ranges);
-        let place = |which: usize| ranges.iter().position(|range| is_of(&header[range.clone()], which));
-        Some(Self { separator, time: place(0)?, path: place(1)?, value: place(2)?, source: place(3) })
+        let index = |column: usize| ranges.iter().position(|range| is_name(&header[range.clone()], column));
+        Some(Self { separator, time: index(0)?, path: index(1)?, value: index(2)?, source: index(3) })
     }
 
-    /// The message of a row; `None` where it gives no quantity that is used.
+    /// Message of a row; `None` for a row without a quantity that is used.
     pub fn message<'a>(&self, row: &'a str) -> Option<Message<'a>> {
         let mut ranges = Vec::new();
         self.separator.split(row, &mut ranges);
-        let text = |place: usize| ranges.get(place).map_or("", |range| &row[range.clone()]);
+        let text = |index: usize| ranges.get(index).map_or("", |range| &row[range.clone()]);
         let value = cell(text(self.value), self.separator).number()?;
         let readings = vec![reading(text(self.path), value)?];
         let source = self.source.map_or("the table", text);
@@ -57,14 +59,12 @@ impl LongTable {
     }
 }
 
-/// The reading of a path: one of Signal K, or a column name with its unit.
+/// Reading of a path of Signal K, or of a column name with its unit.
 fn reading(path: &str, value: f64) -> Option<RankedReading> {
     let small = path.to_lowercase();
-    let known = PATHS
-        .iter()
-        .find(|(known_path, ..)| small.ends_with(known_path))
-        .map(|(_, channel, class)| (*channel, *class, value));
-    known.or_else(|| match meaning(path)? {
+    let signal_k =
+        PATHS.iter().find(|(suffix, ..)| small.ends_with(suffix)).map(|(_, channel, class)| (*channel, *class, value));
+    signal_k.or_else(|| match meaning(path)? {
         ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.to_si())),
         ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.to_si())),
         _ => None,

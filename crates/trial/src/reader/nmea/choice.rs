@@ -1,6 +1,6 @@
-//! Which instrument gives which channel, and the channels made of them. One channel never mixes instruments: the better
-//! kind goes first (true heading before magnetic, speed through the water before speed over ground), then the one with
-//! the most readings, then the one that appeared first. What was chosen among several is said.
+//! Choice of an instrument for every channel. A channel never mixes instruments: the better kind goes first (true
+//! heading before magnetic, speed through the water before speed over ground), then the instrument with the most
+//! readings, then the first in the log. A choice among several is a warning.
 
 use document::{Code, Warning};
 use estimation::statistics::upper_median;
@@ -12,16 +12,16 @@ use super::sentence::{Slot, turned};
 use crate::channel::Channel;
 use crate::reader::position::plane;
 use crate::reader::source::Series;
-use crate::words::counted;
+use crate::wording::counted;
 
-/// An instrument that may give a channel.
+/// Candidate for a channel: an instrument with a quantity.
 #[derive(Clone, Copy)]
 struct Offer<'a> {
     instrument: &'a NmeaInstrument,
-    /// Its place among the instruments.
+    /// Index of the instrument.
     number: usize,
-    /// The place of the quantity among its columns.
-    place: usize,
+    /// Index of the quantity among the columns of the instrument.
+    column: usize,
     /// 0 is preferred to 1.
     class: usize,
     readings: usize,
@@ -33,41 +33,41 @@ impl<'a> Offer<'a> {
     }
 
     fn values(&self) -> &'a [f64] {
-        &self.instrument.columns[self.place]
+        &self.instrument.columns[self.column]
     }
 
-    /// The quantity beside this one of the same instrument.
-    fn beside(self, place: usize) -> Self {
-        Self { place, readings: self.instrument.readings(place), ..self }
+    /// Candidate with another quantity of the same instrument.
+    fn with_quantity(self, column: usize) -> Self {
+        Self { column, readings: self.instrument.readings(column), ..self }
     }
 
-    /// Whether it has far fewer readings than the fullest: then it is no candidate, of whatever class it is.
+    /// `true` for a candidate with less than 1 % of the readings of the best; it goes last, whatever its class.
     fn is_sparse(&self, most: usize) -> bool {
         const SPARSE: usize = 100;
         self.readings.saturating_mul(SPARSE) < most
     }
 }
 
-/// Rudders that differ by more than this (rms) are not one, degrees.
-const RUDDERS_APART_DEG: f64 = 2.0;
+/// Maximum difference of two rudders whose mean is used (rms), degrees.
+const MAX_RUDDER_DIFFERENCE_DEG: f64 = 2.0;
 
-/// Makes the channels of a log.
+/// Channels of a log with the warnings of their choice.
 pub(super) struct Choice<'a> {
     instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
-    /// What was decided between instruments, and what is odd of them.
+    /// Decisions between instruments, and implausible entries.
     pub warnings: Vec<Warning>,
 }
 
 impl<'a> Choice<'a> {
-    /// All channels that instruments give.
+    /// All channels of the instruments.
     pub fn of(instruments: &'a [NmeaInstrument]) -> Self {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
-        choice.one("rudder order", Slot::RudderOrder, Channel::RudderOrder, |_| true);
-        choice.one("yaw rate", Slot::YawRate, Channel::YawRate, |_| true);
-        choice.one("roll angle", Slot::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
+        choice.single("rudder order", Slot::RudderOrder, Channel::RudderOrder, |_| true);
+        choice.single("yaw rate", Slot::YawRate, Channel::YawRate, |_| true);
+        choice.single("roll angle", Slot::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
         choice.speed();
         choice.surge_and_sway();
         choice.position();
@@ -76,46 +76,47 @@ impl<'a> Choice<'a> {
         choice
     }
 
-    /// The instruments that give one of some quantities, each with the class of the quantity.
+    /// Candidates for some quantities, each with the class of its quantity.
     fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&NmeaInstrument) -> bool) -> Vec<Offer<'a>> {
         let mut offers = Vec::new();
         for &(slot, class) in slots {
-            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, own)| wanted(own)) {
-                let Some(place) = instrument.place(slot) else { continue };
-                let readings = instrument.readings(place);
+            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, instrument)| wanted(instrument))
+            {
+                let Some(column) = instrument.column(slot) else { continue };
+                let readings = instrument.readings(column);
                 if readings > 0 {
-                    offers.push(Offer { instrument, number, place, class, readings });
+                    offers.push(Offer { instrument, number, column, class, readings });
                 }
             }
         }
         offers
     }
 
-    /// The best offer; what was chosen among several is said, and always where `always`.
+    /// The best candidate, with a warning where there are several, or `always`.
     fn pick(&mut self, what: &str, offers: Vec<Offer<'a>>, always: bool) -> Option<Offer<'a>> {
         let most = offers.iter().map(|offer| offer.readings).max()?;
         let order = |offer: &&Offer| {
-            (offer.is_sparse(most), offer.class, usize::MAX - offer.readings, offer.number, offer.place)
+            (offer.is_sparse(most), offer.class, usize::MAX - offer.readings, offer.number, offer.column)
         };
         let chosen = *offers.iter().min_by_key(order)?;
-        let mut others: Vec<Offer> = Vec::new();
+        let mut unused: Vec<Offer> = Vec::new();
         for offer in offers {
-            if offer.number != chosen.number && others.iter().all(|other| other.number != offer.number) {
-                others.push(offer);
+            if offer.number != chosen.number && unused.iter().all(|earlier| earlier.number != offer.number) {
+                unused.push(offer);
             }
         }
-        if always || !others.is_empty() {
+        if always || !unused.is_empty() {
             let mut text = format!("{what} from {} ({})", chosen.name(), counted(chosen.readings, "reading"));
-            let unused: Vec<String> =
-                others.iter().map(|other| format!("{} ({})", other.name(), other.readings)).collect();
-            match unused.as_slice() {
+            let names: Vec<String> =
+                unused.iter().map(|offer| format!("{} ({})", offer.name(), offer.readings)).collect();
+            match names.as_slice() {
                 [] => {}
-                [one] => text.push_str(&format!("; {one} is not used")),
+                [name] => text.push_str(&format!("; {name} is not used")),
                 [first @ .., last] => text.push_str(&format!("; {} and {last} are not used", first.join(", "))),
             }
             self.warn(Code::Instrument, text);
         }
-        self.tell_odd(what, chosen);
+        self.warn_of_invalid(what, chosen);
         Some(chosen)
     }
 
@@ -123,10 +124,10 @@ impl<'a> Choice<'a> {
         self.warnings.push(code.warning(text));
     }
 
-    fn tell_odd(&mut self, what: &str, chosen: Offer) {
-        let odd = chosen.instrument.odd[chosen.place];
-        if odd > 0 {
-            let text = counted(odd, "entry").replace("entrys", "entries");
+    fn warn_of_invalid(&mut self, what: &str, chosen: Offer) {
+        let invalid = chosen.instrument.invalid[chosen.column];
+        if invalid > 0 {
+            let text = counted(invalid, "entry").replace("entrys", "entries");
             self.warn(Code::MissingValues, format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()));
         }
     }
@@ -137,7 +138,7 @@ impl<'a> Choice<'a> {
         let mut series = Series { channel, time: Vec::new(), values: Vec::new(), source };
         for (&time, value) in chosen.instrument.at.iter().zip(values) {
             let time = rounded(time);
-            // Two readings at one instant would be a step without time.
+            // Two readings at the same instant would be a step without duration.
             if series.time.last().is_none_or(|&last| time > last) {
                 series.time.push(time);
                 series.values.push(value);
@@ -150,17 +151,18 @@ impl<'a> Choice<'a> {
         self.push(channel, chosen, chosen.values().iter().copied());
     }
 
-    /// A channel that is one column of one instrument.
-    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&NmeaInstrument) -> bool) {
+    /// Adds a channel that is a column of an instrument.
+    fn single(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&NmeaInstrument) -> bool) {
         let offers = self.offers(&[(slot, 0)], wanted);
         if let Some(chosen) = self.pick(what, offers, false) {
             self.push_column(channel, chosen);
         }
     }
 
-    /// True before magnetic; a magnetic heading with variation is a true one.
+    /// Adds the heading: true before magnetic; a magnetic heading with variation counts as true.
     fn heading(&mut self) {
-        let variation = |offer: &Offer<'a>| offer.instrument.place(Slot::Variation).map(|place| offer.beside(place));
+        let variation =
+            |offer: &Offer<'a>| offer.instrument.column(Slot::Variation).map(|column| offer.with_quantity(column));
         let variation = |offer: &Offer<'a>| variation(offer).filter(|variation| variation.readings > 0);
         let mut offers = self.offers(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
         for offer in offers.iter_mut().filter(|offer| offer.class == 1) {
@@ -169,8 +171,8 @@ impl<'a> Choice<'a> {
         let Some(chosen) = self.pick("heading", offers, false) else { return };
         if chosen.class == 1 {
             self.warn(Code::OtherReference, format!(
-                "the heading of {} is magnetic, because no variation is given; changes of heading are right, the direction \
-                 of north is not",
+                "the heading of {} is magnetic, because no variation is given; changes of heading are correct, its zero is \
+                 not true north",
                 chosen.name()
             ));
         }
@@ -185,7 +187,7 @@ impl<'a> Choice<'a> {
         self.push(Channel::Heading, chosen, values);
     }
 
-    /// One rudder, or the mean of two that go together.
+    /// Adds the rudder: a single rudder, or the mean of two that agree.
     fn rudder(&mut self) {
         let mut offers = self.offers(&[(Slot::RudderStarboard, 0), (Slot::RudderPort, 0)], |_| true);
         offers.extend(self.offers(&[(Slot::Transducer, 1)], |instrument| instrument.part[0] == b'R'));
@@ -193,26 +195,26 @@ impl<'a> Choice<'a> {
         if !chosen.instrument.sends(b"RSA") {
             return self.push_column(Channel::Rudder, chosen);
         }
-        let [starboard, port] = [0, 1].map(|place| chosen.beside(place).values());
-        let pairs = || starboard.iter().zip(port).filter(|(one, other)| one.is_finite() && other.is_finite());
+        let [starboard, port] = [0, 1].map(|column| chosen.with_quantity(column).values());
+        let pairs = || starboard.iter().zip(port).filter(|(a, b)| a.is_finite() && b.is_finite());
         let number = pairs().count();
-        let side = ["starboard", "port"][chosen.place];
-        // A second rudder that speaks now and then is no second reading.
+        let side = ["starboard", "port"][chosen.column];
+        // A second rudder with few readings is not averaged.
         if 2 * number < chosen.readings {
-            let spoken = chosen.beside(1 - chosen.place).readings;
-            if chosen.place == 1 || spoken > 0 {
+            let second = chosen.with_quantity(1 - chosen.column).readings;
+            if chosen.column == 1 || second > 0 {
                 self.warn(
                     Code::Instrument,
                     format!(
-                        "the rudder angle is that of the {side} rudder; the other one has {}",
-                        counted(spoken, "reading")
+                        "the rudder angle is that of the {side} rudder; the other rudder has {}",
+                        counted(second, "reading")
                     ),
                 );
             }
             return self.push_column(Channel::Rudder, chosen);
         }
-        let rms_deg = to_deg((pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>() / number as f64).sqrt());
-        if rms_deg > RUDDERS_APART_DEG {
+        let rms_deg = to_deg((pairs().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / number as f64).sqrt());
+        if rms_deg > MAX_RUDDER_DIFFERENCE_DEG {
             self.warn(
                 Code::RuddersApart,
                 format!("the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"),
@@ -220,11 +222,11 @@ impl<'a> Choice<'a> {
             return self.push_column(Channel::Rudder, chosen);
         }
         self.warn(Code::Instrument, format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"));
-        let mean = starboard.iter().zip(port).map(|(one, other)| 0.5 * (one + other));
+        let mean = starboard.iter().zip(port).map(|(a, b)| 0.5 * (a + b));
         self.push(Channel::Rudder, chosen, mean);
     }
 
-    /// Through the water before over ground.
+    /// Adds the speed: through the water before over ground.
     fn speed(&mut self) {
         let slots = [(Slot::SpeedWater, 0), (Slot::SurgeWater, 0), (Slot::SpeedGround, 1), (Slot::SurgeGround, 1)];
         let offers = self.offers(&slots, |_| true);
@@ -237,11 +239,11 @@ impl<'a> Choice<'a> {
         }
         // A log with one axis gives no sway.
         let speed = |(u, v): (&f64, &f64)| if v.is_finite() { u.hypot(*v) } else { u.abs() };
-        let across = chosen.beside(chosen.place + 1).values();
+        let across = chosen.with_quantity(chosen.column + 1).values();
         self.push(Channel::Speed, chosen, chosen.values().iter().zip(across).map(speed));
     }
 
-    /// Both of one instrument and one reference.
+    /// Adds surge and sway of the same instrument and reference.
     fn surge_and_sway(&mut self) {
         let offers = self.offers(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
         let Some(surge) = self.pick("surge velocity", offers, false) else { return };
@@ -249,9 +251,9 @@ impl<'a> Choice<'a> {
             self.warn(Code::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
         }
         self.push_column(Channel::Surge, surge);
-        let sway = surge.beside(surge.place + 1);
+        let sway = surge.with_quantity(surge.column + 1);
         if sway.readings > 0 {
-            self.tell_odd("sway velocity", sway);
+            self.warn_of_invalid("sway velocity", sway);
             self.push_column(Channel::Sway, sway);
         }
     }
@@ -259,13 +261,14 @@ impl<'a> Choice<'a> {
     fn position(&mut self) {
         let offers = self.offers(&[(Slot::Latitude, 0)], |_| true);
         let Some(chosen) = self.pick("position", offers, false) else { return };
-        for (channel, values) in plane(chosen.values(), chosen.beside(chosen.place + 1).values()).into_iter().flatten()
+        for (channel, values) in
+            plane(chosen.values(), chosen.with_quantity(chosen.column + 1).values()).into_iter().flatten()
         {
             self.push(channel, chosen, values);
         }
     }
 
-    /// Shafts before engines; several shafts give their mean.
+    /// Adds the propeller rate: shafts before engines, the mean of several shafts.
     fn propeller(&mut self) {
         let mut offers = self.offers(&[(Slot::Revolutions, 0)], |_| true);
         let group = |offer: &Offer| (offer.instrument.address, offer.instrument.source, offer.instrument.part[0]);
@@ -280,7 +283,7 @@ impl<'a> Choice<'a> {
         }
         let Some(chosen) = self.pick("propeller rate", leaders, false) else { return };
         offers.retain(|shaft| group(shaft) == group(&chosen) && !shaft.is_sparse(chosen.readings));
-        // The sign tells how a shaft turns, seen from astern; outward turning ones have one of each.
+        // The sign is the sense of rotation seen from astern; outward turning shafts have opposite signs.
         let is_counter = |shaft: &&Offer| shaft.values().iter().filter(|value| value.is_finite()).sum::<f64>() < 0.0;
         let mut values = vec![0.0; chosen.instrument.at.len()];
         for shaft in &offers {
@@ -298,7 +301,7 @@ impl<'a> Choice<'a> {
             self.warn(
                 Code::TurnedSign,
                 format!(
-                    "{} turns counter-clockwise (below zero) in most readings; its rate is taken as positive",
+                    "{} turns counter-clockwise (negative) in most readings; its rate is taken as positive",
                     counter.join(" and ")
                 ),
             );
@@ -307,16 +310,16 @@ impl<'a> Choice<'a> {
     }
 
     fn wind(&mut self) {
-        let reference = |letter: u8| move |own: &NmeaInstrument| own.sends(b"MWV") && own.part[0] == letter;
+        let reference = |letter: u8| move |mwv: &NmeaInstrument| mwv.sends(b"MWV") && mwv.part[0] == letter;
         let relative = self.offers(&[(Slot::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
-            self.push_column(Channel::WindRelativeSpeed, chosen.beside(0));
+            self.push_column(Channel::WindRelativeSpeed, chosen.with_quantity(0));
             self.push_column(Channel::WindRelativeFrom, chosen);
         }
         let mut real = self.offers(&[(Slot::WindFrom, 0)], |instrument| instrument.sends(b"MWD"));
         real.extend(self.offers(&[(Slot::WindFrom, 1)], reference(b'T')));
         let Some(chosen) = self.pick("true wind", real, false) else { return };
-        self.push_column(Channel::WindTrueSpeed, chosen.beside(0));
+        self.push_column(Channel::WindTrueSpeed, chosen.with_quantity(0));
         if chosen.instrument.sends(b"MWD") {
             return self.push_column(Channel::WindTrueFrom, chosen);
         }
@@ -339,28 +342,28 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// Looks for the reading nearest in time, for times that do not go back.
+/// Search for the reading nearest in time, for times that do not go back.
 struct Nearest<'a> {
     time: &'a [f64],
     values: &'a [f64],
-    place: usize,
-    /// One farther away is none, s.
-    farthest: f64,
+    column: usize,
+    /// Maximum distance in time, s.
+    reach: f64,
 }
 
 impl<'a> Nearest<'a> {
     fn new(time: &'a [f64], values: &'a [f64]) -> Self {
         let usual = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(f64::INFINITY);
-        Self { time, values, place: 0, farthest: 3.0 * usual }
+        Self { time, values, column: 0, reach: 3.0 * usual }
     }
 
     fn at(&mut self, time: f64) -> f64 {
-        let distance = |place: usize| (self.time[place] - time).abs();
-        while self.place + 1 < self.time.len() && distance(self.place + 1) <= distance(self.place) {
-            self.place += 1;
+        let distance = |column: usize| (self.time[column] - time).abs();
+        while self.column + 1 < self.time.len() && distance(self.column + 1) <= distance(self.column) {
+            self.column += 1;
         }
-        match self.values.get(self.place) {
-            Some(&value) if (self.time[self.place] - time).abs() <= self.farthest => value,
+        match self.values.get(self.column) {
+            Some(&value) if (self.time[self.column] - time).abs() <= self.reach => value,
             _ => f64::NAN,
         }
     }

@@ -1,6 +1,6 @@
-//! When each sentence was sent. Sentences that carry UTC open epochs, or the stamps before sentences do; several
-//! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
-//! the others is filled at the usual pace, and the rest of it stays empty.
+//! Instants of sentences. Epochs begin at sentences with UTC, or at the stamps before sentences; several sentences of an
+//! instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the others is filled
+//! at the usual pace, and its end stays empty.
 
 use document::{Code, Warning};
 use estimation::statistics::upper_median;
@@ -9,26 +9,26 @@ use super::log::{NmeaInstrument, NmeaLog};
 use super::sentence::Slot;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
-use crate::words::counted;
+use crate::wording::counted;
 
-/// An epoch longer than the usual one by this factor is a gap.
-const GAP: f64 = 1.5;
+/// Length of a gap, usual epochs.
+const GAP_EPOCHS: f64 = 1.5;
 
-/// Rows of one instrument in one epoch.
+/// Rows of an instrument in an epoch.
 #[derive(Debug, Clone, Copy)]
 struct Group {
     begin: usize,
     end: usize,
-    /// Time of its begin, s.
+    /// Time of its beginning, s.
     time: f64,
-    /// Time to the next one, s.
+    /// Time to the next epoch, s.
     length: f64,
 }
 
-/// What the clock shows at time 0, and what was found remarkable of the instants.
+/// Clock at time 0, and warnings of the instants.
 type Timing = (Option<Clock>, Vec<Warning>);
 
-/// Gives every sentence its instant where the time is in stamps before the sentences.
+/// Instants of a log with stamps before the sentences.
 pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     let (mut spread, mut disordered) = (0, 0);
     for instrument in &mut log.instruments {
@@ -47,7 +47,7 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
     let mut warnings: Vec<Warning> = [
         (log.counts.strayed, format!("with a stamp far from {neighbours} neighbours")),
-        (disordered, "with an earlier stamp than the one before of the same instrument".to_owned()),
+        (disordered, "with an earlier stamp than the sentence before of the same instrument".to_owned()),
         (log.counts.unstamped, "without a time stamp".to_owned()),
     ]
     .into_iter()
@@ -56,14 +56,14 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     .map(|text| Code::LeftOut.warning(text))
     .collect();
     if spread > 0 {
-        let text = "several sentences of one instrument have the same time stamp; they are spread evenly over the time to \
+        let text = "several sentences of an instrument have the same time stamp; they are spread evenly over the time to \
                     the next stamp";
         warnings.push(Code::SharedStamps.warning(text));
     }
     (log.stamps.clock(), warnings)
 }
 
-/// Spreads sentences with the same stamp; whether there were such.
+/// Spreads sentences with the same stamp; `true` where there were any.
 fn spread_stamps(at: &mut [f64]) -> bool {
     if at.windows(2).all(|pair| pair[0] < pair[1]) {
         return false;
@@ -77,8 +77,8 @@ fn spread_stamps(at: &mut [f64]) -> bool {
     spread(at, &groups.collect::<Vec<_>>(), usual)
 }
 
-/// Times from each of some instants to the next, the last as long as the one before, and the usual one; `None` for
-/// fewer than two.
+/// Intervals from each of some instants to the next (the last interval is repeated), and their median; `None` for fewer
+/// than two instants.
 fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     lengths.push(*lengths.last()?);
@@ -86,20 +86,21 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((lengths, usual))
 }
 
-/// Gives every sentence its instant where the time is in some of the sentences.
+/// Instants of a log with the time in some of its sentences.
 ///
 /// Fails without at least two different times, and where they go back for more than one sentence.
 pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
-    let times = |own: &NmeaInstrument| own.place(Slot::Second).map_or(0, |place| own.readings(place));
-    let rank =
-        |own: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| own.sends(formatter));
-    let clocks = log.instruments.iter().filter(|own| times(own) > 0);
+    let times = |clock: &NmeaInstrument| clock.column(Slot::Second).map_or(0, |column| clock.readings(column));
+    let rank = |clock: &NmeaInstrument| {
+        [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| clock.sends(formatter))
+    };
+    let clocks = log.instruments.iter().filter(|instrument| times(instrument) > 0);
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
-    let driver = clocks.min_by_key(|own| (std::cmp::Reverse(times(own)), rank(own))).ok_or_else(|| none(0))?;
+    let driver = clocks.min_by_key(|clock| (std::cmp::Reverse(times(clock)), rank(clock))).ok_or_else(|| none(0))?;
     let (name, driven) = (driver.name.clone(), times(driver));
     let (epochs, mut clock, strayed) = epochs(driver)?;
-    let times_of_epochs: Vec<f64> = epochs.iter().map(|epoch| epoch.time).collect();
-    let (lengths, usual) = lengths(&times_of_epochs).ok_or_else(|| none(epochs.len()))?;
+    let epoch_times: Vec<f64> = epochs.iter().map(|epoch| epoch.time).collect();
+    let (lengths, usual) = lengths(&epoch_times).ok_or_else(|| none(epochs.len()))?;
     if clock.day.is_none() {
         clock.day = log.instruments.iter().find_map(|instrument| first_day(instrument, &epochs, clock.second));
     }
@@ -122,9 +123,9 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
         drop_rows(instrument);
     }
     let mut warnings = vec![Code::Clock.warning(format!(
-        "the time is that of {name} ({driven} times, every {usual:.1} s): a sentence has the time before it, and heading and \
-         rudder may be apart by that much{}",
-        if several { ", and sentences between two of them are spread evenly over the time between" } else { "" }
+        "the clock is {name} ({driven} times, every {usual:.1} s): each sentence gets the time before it, so heading and \
+         rudder may be off by that much{}",
+        if several { "; sentences between two times are spread evenly" } else { "" }
     ))];
     if before > 0 {
         let text = format!("{} before the first time {} left out", counted(before, "sentence"), are(before));
@@ -137,22 +138,22 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     Ok((Some(clock), warnings))
 }
 
-/// One time of the clock.
+/// A time of the clock with its line.
 #[derive(Debug, Clone, Copy)]
 struct Epoch {
     line: f64,
     time: f64,
 }
 
-/// The times of one instrument, strictly increasing, what the clock shows at time 0, and times that were left out.
+/// Strictly increasing times of an instrument, the clock at time 0, and the number of times left out.
 fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
-    let second = &instrument.columns[instrument.place(Slot::Second).expect("only instruments with times are asked")];
-    let days = instrument.place(Slot::Day).map(|place| &instrument.columns[place]);
-    // Dates that are there at times only would be mixed with times of day alone.
+    let second = &instrument.columns[instrument.column(Slot::Second).expect("only instruments with times are asked")];
+    let days = instrument.column(Slot::Day).map(|column| &instrument.columns[column]);
+    // Dates are used only where every time has one.
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
     let mut stamps = Stamps::default();
     let read = |row: usize| {
-        let stamp = Stamp::of(dated.map(|days| days[row] as i64), second[row]);
+        let stamp = Stamp::new(dated.map(|days| days[row] as i64), second[row]);
         stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.at[row], time: rounded(time) })
     };
     let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
@@ -175,9 +176,9 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
             let ahead = kept.len() == 1 || epoch.time >= kept[kept.len() - 2].time;
             if !ahead || next.is_some_and(|next| next.time < epoch.time) {
                 let line = epoch.line as usize;
-                return Err(Problem::ClockBack { line, before: clock.at(last.time), found: clock.at(epoch.time) });
+                return Err(Problem::ClockBack { line, before: clock.at(last.time), after: clock.at(epoch.time) });
             }
-            // The one before was ahead of its time.
+            // The time before was too late.
             kept.pop();
             if kept.last().is_none_or(|last| last.time < epoch.time) {
                 kept.push(epoch);
@@ -187,9 +188,9 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
     Ok((kept, clock, strayed))
 }
 
-/// The day at time 0, from the first date of an instrument; `second` is what the clock shows then.
+/// Day at time 0, from the first date of an instrument; `second` is the second of the day at time 0.
 fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Option<i64> {
-    let (seconds, days) = (instrument.place(Slot::Second)?, instrument.place(Slot::Day)?);
+    let (seconds, days) = (instrument.column(Slot::Second)?, instrument.column(Slot::Day)?);
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
     let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.at[row]).saturating_sub(1);
@@ -197,20 +198,19 @@ fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Opti
     Some(days[row] as i64 - passed.round() as i64)
 }
 
-/// Spreads the rows of every group over it; whether a group had several.
+/// Spreads the rows of every group over its epoch; `true` where a group has several rows.
 ///
-/// The k-th of n rows comes k/n of the time to the next group after its begin, and in a group longer than usual no
-/// slower than in the others.
+/// The k-th of n rows is k/n of the epoch after its beginning; in a gap the rows follow at the usual pace.
 fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
-    let normal = groups.iter().filter(|group| group.length <= GAP * usual);
+    let normal = groups.iter().filter(|group| group.length <= GAP_EPOCHS * usual);
     let (time, rows) =
         normal.fold((0.0, 0), |(time, rows), group| (time + group.length, rows + group.end - group.begin));
     let pace = if rows > 0 { time / rows as f64 } else { f64::INFINITY };
     let mut several = false;
     for group in groups {
         let rows = group.end - group.begin;
-        let own = group.length / rows as f64;
-        let step = if group.length <= GAP * usual { own } else { own.min(pace) };
+        let even = group.length / rows as f64;
+        let step = if group.length <= GAP_EPOCHS * usual { even } else { even.min(pace) };
         for (k, at) in at[group.begin..group.end].iter_mut().enumerate() {
             *at = group.time + k as f64 * step;
         }
@@ -219,7 +219,7 @@ fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
     several
 }
 
-/// Takes the rows without an instant out of the table of an instrument.
+/// Removes the rows without an instant from the table of an instrument.
 fn drop_rows(instrument: &mut NmeaInstrument) {
     if instrument.at.iter().all(|at| at.is_finite()) {
         return;
@@ -231,7 +231,7 @@ fn drop_rows(instrument: &mut NmeaInstrument) {
     instrument.at.retain(|at| at.is_finite());
 }
 
-/// Seconds to the microsecond: finer than any clock here, and without what subtracting large numbers leaves.
+/// Seconds rounded to the microsecond: finer than the clocks, and without the rounding errors of large numbers.
 pub(super) fn rounded(time: f64) -> f64 {
     (time * 1e6).round() / 1e6
 }

@@ -1,19 +1,21 @@
-//! One line of a log and what it is: a sentence with its checksum verified, or why it is none. It knows the frame of
-//! NMEA 0183 (start, address, fields, checksum) and plain numbers, and nothing of what a sentence says. It allocates
-//! nothing.
+//! Frame of a line of a log: a sentence with a verified checksum, or another kind of line. The frame of NMEA 0183
+//! (start, address, fields, checksum) and plain numbers are read here, without allocation; sentences are decoded in
+//! [`super::sentence`].
+//!
+//! Source: NMEA 0183 version 4.11, IEC 61162-1.
 
-/// What a line is.
+/// Kind of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Line<'a> {
     /// A sentence of the standard.
     Sentence(Frame<'a>),
-    /// A sentence that is not read: of AIS (`!`), of one maker (`$P`), or with an address that is not of the standard.
+    /// A sentence that is not read: AIS (`!`), proprietary (`$P`), or with an address outside the standard.
     Foreign,
     /// Empty, or a comment.
     Blank,
     /// Text without a sentence.
     Text,
-    /// A sentence whose checksum is not its own.
+    /// A sentence with a wrong checksum.
     WrongSum,
     /// Not text, or cut short.
     Damaged,
@@ -22,48 +24,48 @@ pub(super) enum Line<'a> {
 /// A sentence of the standard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame<'a> {
-    /// What stands before it in the line.
+    /// Text before the sentence.
     pub before: &'a str,
     /// Talker (two characters) and sentence (three).
     pub address: [u8; 5],
-    /// All between the comma after the address and the checksum.
+    /// Bytes between the comma after the address and the checksum.
     pub body: &'a [u8],
-    /// Whether it has a checksum.
+    /// `true` for a sentence with a checksum.
     pub summed: bool,
 }
 
-/// Longest line with a sentence, bytes: 82 of the standard, and room for what loggers write around it.
-const LONGEST: usize = 4096;
+/// Maximum length of a line with a sentence, bytes: 82 of the standard, and room for the text of a logger.
+const MAX_LINE_BYTES: usize = 4096;
 
-/// Tells what a line is.
+/// Frame of a line.
 pub(super) fn frame(line: &[u8]) -> Line<'_> {
-    if line.len() > LONGEST {
+    if line.len() > MAX_LINE_BYTES {
         return Line::Damaged;
     }
     let Some(start) = line.iter().position(|&byte| byte == b'$') else { return without_start(line) };
-    let (before, rest) = (&line[..start], &line[start + 1..]);
+    let (before, sentence) = (&line[..start], &line[start + 1..]);
     let Some(before) = text(before) else { return Line::Damaged };
     if before.trim_start().starts_with('#') {
         return Line::Blank;
     }
     // The star stands third from the end of most lines.
-    let star = match rest.len().checked_sub(3) {
-        Some(place) if rest[place] == b'*' => Some(place),
-        _ => rest.iter().position(|&byte| byte == b'*'),
+    let star = match sentence.len().checked_sub(3) {
+        Some(place) if sentence[place] == b'*' => Some(place),
+        _ => sentence.iter().position(|&byte| byte == b'*'),
     };
     let (body, summed) = match star {
         Some(star) => {
-            let digits = rest.get(star + 1).zip(rest.get(star + 2)).map(|(&high, &low)| (hex(high), hex(low)));
+            let digits = sentence.get(star + 1).zip(sentence.get(star + 2)).map(|(&high, &low)| (hex(high), hex(low)));
             let Some((Some(high), Some(low))) = digits else { return Line::Damaged };
-            if sum(&rest[..star]) != 16 * high + low {
+            if sum(&sentence[..star]) != 16 * high + low {
                 return Line::WrongSum;
             }
-            (&rest[..star], true)
+            (&sentence[..star], true)
         }
         None => {
-            let end = rest.iter().position(|byte| matches!(byte, b'"' | b'\r')).unwrap_or(rest.len());
-            let body = rest[..end].trim_ascii_end();
-            // Where there is a right checksum, there is nothing else to see to.
+            let end = sentence.iter().position(|byte| matches!(byte, b'"' | b'\r')).unwrap_or(sentence.len());
+            let body = sentence[..end].trim_ascii_end();
+            // Without a checksum the body itself is checked.
             if body.contains(&b'$') || text(body).is_none() {
                 return Line::Damaged;
             }
@@ -83,7 +85,7 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
     }
 }
 
-/// Bytes that are text, which has no zero byte.
+/// Bytes as text; `None` for invalid UTF-8 and for a zero byte.
 fn text(bytes: &[u8]) -> Option<&str> {
     if bytes.is_empty() {
         return Some("");
@@ -91,13 +93,13 @@ fn text(bytes: &[u8]) -> Option<&str> {
     std::str::from_utf8(bytes).ok().filter(|_| !bytes.contains(&0))
 }
 
-/// What a line without the start of a sentence is.
+/// Kind of a line without the start of a sentence.
 fn without_start(line: &[u8]) -> Line<'_> {
     let Some(text) = text(line) else { return Line::Damaged };
     let text = text.trim();
     if text.is_empty() || text.starts_with('#') {
         Line::Blank
-    } else if text.split_once('!').is_some_and(|(_, rest)| rest.as_bytes().get(5) == Some(&b',')) {
+    } else if text.split_once('!').is_some_and(|(_, ais)| ais.as_bytes().get(5) == Some(&b',')) {
         Line::Foreign
     } else {
         Line::Text
@@ -108,29 +110,29 @@ fn hex(digit: u8) -> Option<u8> {
     char::from(digit).to_digit(16).map(|value| value as u8)
 }
 
-/// The checksum of the standard: exclusive or of all bytes.
+/// Checksum of the standard: exclusive or of all bytes.
 pub(super) fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Most fields that are looked at: the ninth of RMC is its date.
-pub(super) const MOST_FIELDS: usize = 9;
+/// Maximum number of fields that are read: the ninth of RMC is its date.
+pub(super) const MAX_FIELDS: usize = 9;
 
-/// The fields of a sentence, as many as are looked at; those that are not there are empty.
+/// Fields of a sentence, up to [`MAX_FIELDS`]; missing fields are empty.
 pub(super) struct Fields<'a> {
-    fields: [&'a [u8]; MOST_FIELDS],
+    fields: [&'a [u8]; MAX_FIELDS],
 }
 
 impl<'a> Fields<'a> {
     /// The first fields of `body`.
     pub fn new(body: &'a [u8]) -> Self {
-        let mut fields = [&body[..0]; MOST_FIELDS];
+        let mut fields = [&body[..0]; MAX_FIELDS];
         let (mut begin, mut place) = (0, 0);
         for (end, byte) in body.iter().enumerate() {
             if *byte == b',' {
                 fields[place] = &body[begin..end];
                 (begin, place) = (end + 1, place + 1);
-                if place == MOST_FIELDS {
+                if place == MAX_FIELDS {
                     return Self { fields };
                 }
             }
@@ -139,31 +141,31 @@ impl<'a> Fields<'a> {
         Self { fields }
     }
 
-    /// The field with number `place`, from 1 as the standard counts them after the address.
-    pub fn at(&self, place: usize) -> &'a [u8] {
-        self.fields[place - 1]
+    /// The field with a number, from 1 as the standard counts them after the address.
+    pub fn at(&self, field: usize) -> &'a [u8] {
+        self.fields[field - 1]
     }
 
-    /// Whether a field is one capital letter.
-    pub fn is(&self, place: usize, letter: u8) -> bool {
-        self.at(place) == [letter]
+    /// `true` for a field with a single given letter.
+    pub fn is(&self, field: usize, letter: u8) -> bool {
+        self.at(field) == [letter]
     }
 
     /// The number in a field.
-    pub fn number(&self, place: usize) -> Number {
-        number(self.at(place))
+    pub fn number(&self, field: usize) -> Number {
+        number(self.at(field))
     }
 }
 
-/// What stands where a number is expected.
+/// Content of a field of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
-    /// Nothing: the instrument has no reading.
+    /// An empty field: the instrument has no reading.
     Empty,
     /// A number.
-    Of(f64),
-    /// Something else.
-    Not,
+    Value(f64),
+    /// Another text.
+    Invalid,
 }
 
 /// Reads a plain decimal number.
@@ -174,5 +176,7 @@ pub(super) fn number(field: &[u8]) -> Number {
     }
     let is_plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
     let text = std::str::from_utf8(field).ok().filter(|_| field.iter().all(is_plain));
-    text.and_then(|text| text.parse().ok()).filter(|value: &f64| value.is_finite()).map_or(Number::Not, Number::Of)
+    text.and_then(|text| text.parse().ok())
+        .filter(|value: &f64| value.is_finite())
+        .map_or(Number::Invalid, Number::Value)
 }

@@ -1,60 +1,60 @@
-//! What was read from a log so far: one table for each instrument, as long as its sentences are many, and counts of
-//! all that was left out. Which instruments are used is not decided before the end of the log.
+//! Content of a log so far: a table for each instrument, with a row per sentence, and counts of the lines left out. The
+//! instruments are chosen at the end of the log.
 
 use super::frame::{Fields, Frame, Line, frame};
-use super::sentence::{MOST_SLOTS, Row, Slot, XDR, sentence, transducers};
+use super::sentence::{MAX_SLOTS, Row, Slot, XDR, sentence, transducers};
 use super::stamp::Leading;
 use crate::clock::Stamps;
 use crate::reader::error::Problem;
 use crate::reader::limits::MAX_CELLS;
-use crate::words::shortened;
+use crate::wording::shortened;
 
-/// The sentences of one instrument.
+/// Sentences of an instrument.
 #[derive(Debug)]
 pub(super) struct NmeaInstrument {
-    /// What it is called in messages: `$HEHDT`, `$HEHDT of GYRO1`.
+    /// Name in messages: `$HEHDT`, `$HEHDT of GYRO1`.
     pub name: String,
     /// Talker and sentence.
     pub address: [u8; 5],
-    /// Its quantities.
+    /// Quantities of the sentence.
     slots: &'static [Slot],
     /// As in [`Row::part`].
     pub part: [u8; 2],
     /// Number of its source as in [`Leading`].
     pub source: u8,
-    /// When each sentence was sent: the number of its line until the clock is known, then s; NaN where left out.
+    /// Instant of each sentence: its line number until the clock is settled, then s; NaN for a sentence left out.
     pub at: Vec<f64>,
-    /// The quantities, one number a sentence.
+    /// Values of each quantity, one per sentence.
     pub columns: Vec<Vec<f64>>,
-    /// Numbers that cannot be, by quantity.
-    pub odd: [usize; MOST_SLOTS],
-    /// Whether a checksum was seen.
+    /// Number of invalid entries of each quantity.
+    pub invalid: [usize; MAX_SLOTS],
+    /// `true` once a sentence had a checksum.
     summed: bool,
 }
 
 impl NmeaInstrument {
-    /// Whether it sends sentences with this formatter.
+    /// `true` for an instrument whose sentences have a formatter.
     pub fn sends(&self, formatter: &[u8; 3]) -> bool {
         self.address[2..] == *formatter
     }
 
-    /// The place of a quantity among its columns.
-    pub fn place(&self, slot: Slot) -> Option<usize> {
-        self.slots.iter().position(|&own| own == slot)
+    /// Column of a quantity.
+    pub fn column(&self, slot: Slot) -> Option<usize> {
+        self.slots.iter().position(|&quantity| quantity == slot)
     }
 
-    /// Readings of a quantity.
-    pub fn readings(&self, place: usize) -> usize {
-        self.columns[place].iter().filter(|value| value.is_finite()).count()
+    /// Number of readings in a column.
+    pub fn readings(&self, column: usize) -> usize {
+        self.columns[column].iter().filter(|value| value.is_finite()).count()
     }
 }
 
-/// Most instruments that are told apart; what noise makes of addresses is not kept beyond that.
-const MOST_INSTRUMENTS: usize = 256;
-/// Stamps of two ports may be a little out of order, s.
-const DISORDER: f64 = 1.0;
+/// Maximum number of instruments; addresses garbled by noise are dropped beyond it.
+const MAX_INSTRUMENTS: usize = 256;
+/// Tolerance of the order of stamps from two ports, s.
+const MAX_DISORDER_S: f64 = 1.0;
 
-/// What was counted on the way.
+/// Counts of lines.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counts {
     pub blank: usize,
@@ -69,30 +69,30 @@ pub(super) struct Counts {
     pub unsummed: usize,
     /// Sentences without a stamp where others have one.
     pub unstamped: usize,
-    /// Stamps that are far from their neighbours.
+    /// Stamps far from their neighbours.
     pub strayed: usize,
 }
 
-/// What a log gave so far.
+/// Content of a log so far.
 #[derive(Debug)]
 pub(super) struct NmeaLog {
     pub instruments: Vec<NmeaInstrument>,
-    /// What tells them apart, in the same order: apart from the tables, because every sentence looks through it.
+    /// Keys of the instruments, in the same order; kept apart from the tables because every sentence searches them.
     keys: Vec<u64>,
     pub counts: Counts,
     pub leading: Leading,
     pub stamps: Stamps,
-    /// Whether the time is in stamps before the sentences.
+    /// `true` for a log with stamps before its sentences.
     pub stamped: bool,
-    /// The latest stamp, the one before it, and the lines with the latest one, s.
+    /// The latest stamp and the stamp before it, s, and the number of lines with the latest stamp.
     latest: (f64, f64, usize),
-    /// Line and time of the stamp read last, where it lies before the latest one.
+    /// Line and time of the last stamp, where it is before the latest stamp.
     late: Option<(usize, f64)>,
     numbers: usize,
 }
 
 impl NmeaLog {
-    /// A log whose time is in stamps before its sentences, or in some of the sentences.
+    /// An empty log; `stamped` for stamps before the sentences.
     pub fn new(stamped: bool) -> Self {
         Self {
             instruments: Vec::new(),
@@ -107,7 +107,7 @@ impl NmeaLog {
         }
     }
 
-    /// Takes one line.
+    /// Adds a line.
     pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), Problem> {
         match frame(line) {
             Line::Sentence(frame) => return self.sentence(&frame, number),
@@ -160,22 +160,22 @@ impl NmeaLog {
         Ok(())
     }
 
-    /// Counts a sentence that is accepted.
+    /// Counts an accepted sentence.
     fn count(&mut self, frame: &Frame) {
         self.counts.sentences += 1;
         self.counts.unsummed += usize::from(!frame.summed);
     }
 
-    /// Adds what a sentence says to the table of its instrument.
+    /// Adds the readings of a sentence to the table of its instrument.
     ///
-    /// `false` where an instrument that writes checksums wrote none: the end of the sentence is lost, and with it maybe
-    /// a digit.
+    /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, perhaps with a
+    /// digit.
     fn add(&mut self, slots: &'static [Slot], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
         let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);
-        let place = match self.keys.iter().position(|&own| own == key) {
-            Some(place) => place,
-            None if self.instruments.len() < MOST_INSTRUMENTS => {
+        let number = match self.keys.iter().position(|&earlier| earlier == key) {
+            Some(number) => number,
+            None if self.instruments.len() < MAX_INSTRUMENTS => {
                 self.keys.push(key);
                 self.instruments.push(NmeaInstrument {
                     name: self.name(frame.address, row.part, source),
@@ -185,14 +185,14 @@ impl NmeaLog {
                     source,
                     at: Vec::new(),
                     columns: vec![Vec::new(); slots.len()],
-                    odd: [0; MOST_SLOTS],
+                    invalid: [0; MAX_SLOTS],
                     summed: false,
                 });
                 self.instruments.len() - 1
             }
             None => return true,
         };
-        let instrument = &mut self.instruments[place];
+        let instrument = &mut self.instruments[number];
         if instrument.summed && !frame.summed {
             return false;
         }
@@ -201,24 +201,24 @@ impl NmeaLog {
         for (column, value) in instrument.columns.iter_mut().zip(row.values) {
             column.push(value);
         }
-        for (count, odd) in instrument.odd.iter_mut().zip(row.odd) {
-            *count += usize::from(odd);
+        for (count, invalid) in instrument.invalid.iter_mut().zip(row.invalid) {
+            *count += usize::from(invalid);
         }
         self.numbers += 1 + instrument.columns.len();
         true
     }
 
-    /// Whether a stamp fits in with those before. A single one that does not is left out; where time starts anew, the
-    /// log is two.
+    /// `true` for a stamp that follows those before. A single stamp that does not is left out; fails where time starts
+    /// again, as in two joined logs.
     fn follows(&mut self, at: f64, number: usize) -> Result<bool, Problem> {
         let (latest, before, lines) = self.latest;
-        if at >= latest - DISORDER {
+        if at >= latest - MAX_DISORDER_S {
             self.late = None;
             self.latest = if at > latest { (at, latest, 1) } else { (latest, before, lines + 1) };
             return Ok(true);
         }
-        if lines == 1 && at >= before - DISORDER && before.is_finite() {
-            // The one before was ahead of its time.
+        if lines == 1 && at >= before - MAX_DISORDER_S && before.is_finite() {
+            // The stamp before was too late.
             for instrument in &mut self.instruments {
                 if let Some(last) = instrument.at.last_mut().filter(|last| **last == latest) {
                     *last = f64::NAN;
@@ -228,17 +228,17 @@ impl NmeaLog {
             self.latest = (at.max(before), before, 2);
             return Ok(true);
         }
-        if let Some((line, found)) = self.late {
+        if let Some((line, after)) = self.late {
             let clock = self.stamps.clock();
             let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.at(at));
-            return Err(Problem::ClockBack { line, before: shown(latest), found: shown(found) });
+            return Err(Problem::ClockBack { line, before: shown(latest), after: shown(after) });
         }
         self.counts.strayed += 1;
         self.late = Some((number, at));
         Ok(false)
     }
 
-    /// The name of an instrument, for messages.
+    /// Name of an instrument in messages.
     fn name(&self, address: [u8; 5], [first, second]: [u8; 2], source: u8) -> String {
         let mut name: String = std::iter::once('$').chain(address.map(char::from)).collect();
         match &address[2..] {

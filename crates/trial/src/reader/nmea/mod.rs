@@ -1,8 +1,10 @@
-//! A log of NMEA 0183 sentences becomes [`Series`]: every quantity that is used at the instants its instrument
-//! sent it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
-//! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
-//! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
-//! heading and rudder are enough for a record is not decided here: they may lie in two files.
+//! Reader of NMEA 0183 logs: every channel becomes a [`Series`] at the instants of its instrument. Headings, rudder
+//! angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and proprietary sentences are skipped.
+//! Time comes from stamps before the sentences, or from the sentences of a GPS or clock. Damaged lines are left out and
+//! counted; a course over ground is never used as a heading. Heading and rudder may be in two files, so their presence
+//! is checked later.
+//!
+//! Source: NMEA 0183 version 4.11, IEC 61162-1.
 
 mod choice;
 mod epochs;
@@ -26,46 +28,48 @@ use super::error::Problem;
 use super::lines::Lines;
 use super::source::{Log, Series};
 use crate::clock::{Clock, DAY};
-use crate::words::counted;
+use crate::wording::counted;
 
-/// Sentences that show whether a log has stamps.
-const LOOKED_AT: usize = 64;
-/// Lines among which they are looked for.
-const FIRST_LINES: usize = 1024;
+/// Number of sentences that show whether a log has stamps.
+const PROBED_SENTENCES: usize = 64;
+/// Maximum number of lines searched for these sentences.
+const MAX_PROBED_LINES: usize = 1024;
 
-/// Whether a line is a sentence, or carries one behind a leading stamp.
+/// `true` for a sentence, with or without a leading stamp.
 pub(super) fn is_sentence(line: &str) -> bool {
-    let address = |rest: &[u8], letters: usize| {
-        rest.get(letters) == Some(&b',')
-            && rest[..letters].iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit())
+    let has_address = |sentence: &[u8], letters: usize| {
+        sentence.get(letters) == Some(&b',')
+            && sentence[..letters].iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit())
     };
     let bytes = line.as_bytes();
     let Some(start) = bytes.iter().position(|&byte| matches!(byte, b'$' | b'!')) else { return false };
-    let rest = &bytes[start + 1..];
-    let of_maker = bytes[start] == b'$' && rest.first() == Some(&b'P') && (4..10).any(|letters| address(rest, letters));
-    !line.trim_start().starts_with('#') && (address(rest, 5) || of_maker)
+    let sentence = &bytes[start + 1..];
+    let is_proprietary = bytes[start] == b'$'
+        && sentence.first() == Some(&b'P')
+        && (4..10).any(|letters| has_address(sentence, letters));
+    !line.trim_start().starts_with('#') && (has_address(sentence, 5) || is_proprietary)
 }
 
-/// Reads the whole log: one series for each channel, and a log that has no columns yet.
+/// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails where more than half of its lines are damaged, where there is no time or it goes back, where dates may be read
-/// in two ways, and where no sentence gives a quantity that is used.
+/// Fails where more than half of the lines are damaged, where time is absent or goes back, where a date has two
+/// readings, and where no sentence holds a quantity that is used.
 pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), Problem> {
     let (mut begin, mut sentences) = (Vec::new(), 0);
-    while sentences < LOOKED_AT
-        && begin.len() < FIRST_LINES
+    while sentences < PROBED_SENTENCES
+        && begin.len() < MAX_PROBED_LINES
         && let Some(line) = lines.next_bytes()?
     {
         sentences += usize::from(matches!(frame(line), Line::Sentence(_)));
         begin.push(line.to_vec());
     }
     let mut log = NmeaLog::new(is_stamped(&begin));
-    for (place, line) in begin.iter().enumerate() {
-        log.take(line, place + 1)?;
+    for (index, line) in begin.iter().enumerate() {
+        log.take(line, index + 1)?;
     }
     drop(begin);
     loop {
-        // The line borrows its source: hence the detour over `number`.
+        // The number is taken before the line is read, because the line borrows the source.
         let number = lines.number() + 1;
         let Some(line) = lines.next_bytes()? else { break };
         log.take(line, number)?;
@@ -74,7 +78,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), P
     finish(log, number, lines.sha256())
 }
 
-/// Whether at least half of the sentences have a stamp before them.
+/// `true` where at least half of the sentences have a stamp before them.
 fn is_stamped(lines: &[Vec<u8>]) -> bool {
     let mut leading = Leading::default();
     let (mut sentences, mut stamps) = (0, 0);
@@ -87,7 +91,7 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
     stamps > 0 && 2 * stamps >= sentences
 }
 
-/// Makes channels of all that was read.
+/// Channels of a log that was read to its end.
 fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, Log), Problem> {
     let counts = log.counts;
     let written = lines - counts.blank;
@@ -103,7 +107,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
         });
     }
     let (clock, timing) = if log.stamped { from_stamps(&mut log) } else { from_sentences(&mut log)? };
-    let mut warnings = of_counts(&counts, lines);
+    let mut warnings = count_warnings(&counts, lines);
     warnings.extend(timing);
     let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
     warnings.extend(choices);
@@ -114,7 +118,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
     Ok((series, Log { clock, warnings, rows: lines, sha256, ..Log::default() }))
 }
 
-/// Makes the first instant time 0.
+/// Shifts times so that the first instant is 0.
 fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     let first = series.iter().filter_map(|series| series.time.first()).copied().fold(f64::INFINITY, f64::min);
     for series in series {
@@ -126,22 +130,22 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, zone: clock.zone })
 }
 
-/// What was left out.
-fn of_counts(counts: &Counts, lines: usize) -> Vec<Warning> {
+/// Warnings of the lines left out and of sentences without checksum.
+fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
     let hold = if counts.text == 1 { "holds" } else { "hold" };
     let faults = [
         (counts.wrong, format!("had a wrong checksum and {} left out", are(counts.wrong))),
         (counts.broken, format!("{} cut short or not text, and left out", are(counts.broken))),
         (counts.text, format!("{hold} no sentence and {} left out", are(counts.text))),
     ];
-    let found = faults.into_iter().filter(|(number, _)| *number > 0);
-    let told = found.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));
-    let mut warnings: Vec<Warning> = told.map(|text| Code::LeftOut.warning(text)).collect();
+    let faults = faults.into_iter().filter(|(number, _)| *number > 0);
+    let texts = faults.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));
+    let mut warnings: Vec<Warning> = texts.map(|text| Code::LeftOut.warning(text)).collect();
     if counts.unsummed > 0 {
         let number = counts.unsummed;
         let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };
         let sentences = counted(number, "sentence");
-        let text = format!("{sentences} {have} no checksum, so damage to {them} would not be seen");
+        let text = format!("{sentences} {have} no checksum; damage to {them} cannot be detected");
         warnings.push(Code::NoChecksum.warning(text));
     }
     warnings

@@ -1,5 +1,7 @@
-//! What each sentence says, field by field (NMEA 0183 version 4.11, IEC 61162-1), in SI units and radians. It looks at
-//! one sentence at a time; which of them is used is decided in [`super::choice`].
+//! Decoder of sentences, field by field, in SI units and radians. It reads a single sentence at a time; the instruments
+//! are chosen in [`super::choice`].
+//!
+//! Source: NMEA 0183 version 4.11, IEC 61162-1.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -56,10 +58,10 @@ pub(super) enum Slot {
     WindFrom,
 }
 
-/// Most quantities of one sentence.
-pub(super) const MOST_SLOTS: usize = 5;
+/// Maximum number of quantities of a sentence.
+pub(super) const MAX_SLOTS: usize = 5;
 
-/// A sentence that is read: its formatter, its quantities in the order of [`Row::values`], and how it is read.
+/// A supported sentence: its formatter, its quantities in the order of [`Row::values`], and its decoder.
 type Sentence = (&'static [u8; 3], &'static [Slot], fn(&mut Row, &Fields));
 
 const SENTENCES: [Sentence; 19] = {
@@ -68,7 +70,7 @@ const SENTENCES: [Sentence; 19] = {
         (b"HDT", &[HeadingTrue], |row, fields| row.take_heading(fields, b"T")),
         (b"HDM", &[HeadingMagnetic], |row, fields| row.take_heading(fields, b"M")),
         (b"THS", &[HeadingTrue], |row, fields| {
-            // A: autonomous, E: estimated; manual, simulated and invalid headings are none of this ship.
+            // A: autonomous, E: estimated; manual, simulated and invalid headings are not those of the ship.
             if matches!(fields.at(2), b"A" | b"E") {
                 row.take_direction(0, fields.number(1));
             }
@@ -95,21 +97,21 @@ const SENTENCES: [Sentence; 19] = {
         (b"VTG", &[SpeedGround], |row, fields| {
             if !fields.is(9, b'N') && fields.is(6, b'N') {
                 let kmh = (fields.number(7), 0.0..=185.0, KILOMETRE_PER_HOUR);
-                row.take_either(0, (fields.number(5), 0.0..=FASTEST, KNOT), kmh);
+                row.take_either(0, (fields.number(5), 0.0..=MAX_SPEED_KN, KNOT), kmh);
             }
         }),
         (b"RMC", &[Second, Day, Latitude, Longitude, SpeedGround], |row, fields| {
             if fields.is(2, b'A') {
                 row.take_second(0, fields.at(1));
                 let day = date(fields.at(9));
-                row.odd[1] = day.is_none() && !fields.at(9).is_empty();
+                row.invalid[1] = day.is_none() && !fields.at(9).is_empty();
                 row.values[1] = day.unwrap_or(f64::NAN);
                 row.take_position(2, fields, 3);
-                row.take(4, fields.number(7), 0.0..=FASTEST, KNOT);
+                row.take(4, fields.number(7), 0.0..=MAX_SPEED_KN, KNOT);
             }
         }),
         (b"GGA", &[Second, Latitude, Longitude], |row, fields| {
-            // The quality is 0 where there is no position, 6 to 8 where it is reckoned, entered or simulated.
+            // The quality is 0 without a position, and 6 to 8 for a position that is reckoned, entered or simulated.
             if matches!(fields.at(6), b"1" | b"2" | b"3" | b"4" | b"5" | b"9") {
                 row.take_second(0, fields.at(1));
                 row.take_position(1, fields, 2);
@@ -123,7 +125,7 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"ZDA", &[Second, Day], |row, fields| {
             row.take_second(0, fields.at(1));
-            row.values[1] = day([2, 3, 4].map(|place| fields.number(place))).unwrap_or(f64::NAN);
+            row.values[1] = day([2, 3, 4].map(|slot| fields.number(slot))).unwrap_or(f64::NAN);
         }),
         (b"RPM", &[Revolutions], |row, fields| {
             let shaft = fields.at(2).first().copied().unwrap_or(b'0');
@@ -142,50 +144,50 @@ const SENTENCES: [Sentence; 19] = {
     ]
 };
 
-/// The formatter of transducers.
+/// Formatter of transducers.
 pub(super) const XDR: &[u8; 3] = b"XDR";
 
-/// The sentence with this formatter.
+/// The sentence with a formatter.
 pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
-    SENTENCES.iter().find(|(own, ..)| *own == formatter)
+    SENTENCES.iter().find(|(known, ..)| *known == formatter)
 }
 
 /// A number with its bounds, and its factor to SI units and radians.
 type Bounded = (Number, RangeInclusive<f64>, f64);
 
-/// What one sentence says.
+/// Readings of a sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
-    /// In the order of the quantities of the sentence; NaN where nothing was read.
-    pub values: [f64; MOST_SLOTS],
-    /// Places with something that cannot be.
-    pub odd: [bool; MOST_SLOTS],
-    /// What tells instruments behind one sentence apart: the shaft of RPM with S or E, the reference of MWV, R for the
-    /// rudder and O for roll of XDR; 0 otherwise.
+    /// Values in the order of the quantities of the sentence; NaN for no reading.
+    pub values: [f64; MAX_SLOTS],
+    /// `true` for a quantity with an invalid entry.
+    pub invalid: [bool; MAX_SLOTS],
+    /// Mark of the instrument behind a sentence with several: the shaft of RPM with S or E, the reference of MWV, R for
+    /// the rudder and O for roll of XDR; 0 otherwise.
     pub part: [u8; 2],
 }
 
 impl Row {
     pub fn empty() -> Self {
-        Self { values: [f64::NAN; MOST_SLOTS], odd: [false; MOST_SLOTS], part: [0; 2] }
+        Self { values: [f64::NAN; MAX_SLOTS], invalid: [false; MAX_SLOTS], part: [0; 2] }
     }
 
-    /// Takes a number within bounds, times a factor.
-    fn take(&mut self, place: usize, number: Number, bounds: RangeInclusive<f64>, factor: f64) {
+    /// Stores a number within bounds, times a factor.
+    fn take(&mut self, slot: usize, number: Number, bounds: RangeInclusive<f64>, factor: f64) {
         match number {
-            Number::Of(value) if bounds.contains(&value) => self.values[place] = value * factor,
+            Number::Value(value) if bounds.contains(&value) => self.values[slot] = value * factor,
             Number::Empty => {}
-            Number::Of(_) | Number::Not => self.odd[place] = true,
+            Number::Value(_) | Number::Invalid => self.invalid[slot] = true,
         }
     }
 
-    /// Takes the first of two numbers, each with its bounds and factor, or the second where there is none.
-    fn take_either(&mut self, place: usize, one: Bounded, other: Bounded) {
-        let (number, bounds, factor) = if one.0 == Number::Empty { other } else { one };
-        self.take(place, number, bounds, factor);
+    /// Stores the first of two numbers, each with its bounds and factor, or the second where the first is empty.
+    fn take_either(&mut self, slot: usize, first: Bounded, second: Bounded) {
+        let (number, bounds, factor) = if first.0 == Number::Empty { second } else { first };
+        self.take(slot, number, bounds, factor);
     }
 
-    /// Takes numbers, each with its place, where a field says that they are valid.
+    /// Stores numbers, each with its slot, where the status field is valid.
     fn take_valid(
         &mut self,
         fields: &Fields,
@@ -195,28 +197,28 @@ impl Row {
         factor: f64,
     ) {
         if fields.is(status, b'A') {
-            places.iter().for_each(|&(place, field)| self.take(place, fields.number(field), bounds.clone(), factor));
+            places.iter().for_each(|&(slot, field)| self.take(slot, fields.number(field), bounds.clone(), factor));
         }
     }
 
-    /// Takes the heading of a sentence that has nothing else, with the letter of its reference.
+    /// Stores the heading of HDT or HDM, with the letter of its reference.
     fn take_heading(&mut self, fields: &Fields, reference: &[u8]) {
         if fields.at(2) == reference || fields.at(2).is_empty() {
             self.take_direction(0, fields.number(1));
         }
     }
 
-    /// Takes an angle of [0°, 360°].
-    fn take_direction(&mut self, place: usize, number: Number) {
-        self.take(place, number, HEADING, DEGREE);
-        self.values[place] = turned(self.values[place]);
+    /// Stores an angle of [0°, 360°].
+    fn take_direction(&mut self, slot: usize, number: Number) {
+        self.take(slot, number, HEADING, DEGREE);
+        self.values[slot] = turned(self.values[slot]);
     }
 
-    /// Takes latitude and longitude from four fields; both or none.
-    fn take_position(&mut self, place: usize, fields: &Fields, first: usize) {
+    /// Stores latitude and longitude from four fields; both or none.
+    fn take_position(&mut self, slot: usize, fields: &Fields, first: usize) {
         let mut read = |offset: usize, at: usize, limit: f64, [positive, negative]: [u8; 2]| {
-            let Number::Of(value) = fields.number(at) else {
-                self.odd[place + offset] |= fields.number(at) == Number::Not;
+            let Number::Value(value) = fields.number(at) else {
+                self.invalid[slot + offset] |= fields.number(at) == Number::Invalid;
                 return f64::NAN;
             };
             let degrees = (value / 100.0).floor();
@@ -228,20 +230,20 @@ impl Row {
                 _ => f64::NAN,
             };
             let valid = value >= 0.0 && minutes < 60.0 && angle <= limit && sign.is_finite();
-            self.odd[place + offset] |= !valid;
+            self.invalid[slot + offset] |= !valid;
             if valid { sign * angle * DEGREE } else { f64::NAN }
         };
         let (latitude, longitude) = (read(0, first, 90.0, *b"NS"), read(1, first + 2, 180.0, *b"EW"));
         if latitude.is_finite() && longitude.is_finite() {
-            (self.values[place], self.values[place + 1]) = (latitude, longitude);
+            (self.values[slot], self.values[slot + 1]) = (latitude, longitude);
         }
     }
 
-    fn take_second(&mut self, place: usize, field: &[u8]) {
+    fn take_second(&mut self, slot: usize, field: &[u8]) {
         let field = field.trim_ascii();
         let second = second_of_day(field);
-        self.odd[place] = second.is_none() && !field.is_empty();
-        self.values[place] = second.unwrap_or(f64::NAN);
+        self.invalid[slot] = second.is_none() && !field.is_empty();
+        self.values[slot] = second.unwrap_or(f64::NAN);
     }
 }
 
@@ -252,29 +254,31 @@ pub(super) fn turned(angle: f64) -> f64 {
     if within >= TAU { 0.0 } else { within }
 }
 
+/// Bounds of a heading, deg.
 const HEADING: RangeInclusive<f64> = 0.0..=360.0;
-/// Knots; nothing that steers is faster, and instruments write 999 for no reading.
-const FASTEST: f64 = 100.0;
-const SPEED: RangeInclusive<f64> = -FASTEST..=FASTEST;
-/// m/s.
+/// Maximum speed of a ship, kn; instruments write 999 for no reading.
+const MAX_SPEED_KN: f64 = 100.0;
+/// Bounds of a speed, kn.
+const SPEED: RangeInclusive<f64> = -MAX_SPEED_KN..=MAX_SPEED_KN;
+/// One kilometre per hour, m/s.
 const KILOMETRE_PER_HOUR: f64 = 1.0 / 3.6;
 
-/// HTC, HTD: the ordered rudder with its side.
+/// Decoder of HTC and HTD: the ordered rudder with its side.
 fn read_order(row: &mut Row, fields: &Fields) {
     match fields.at(3) {
         b"R" => row.take(0, fields.number(2), 0.0..=90.0, DEGREE),
         b"L" => row.take(0, fields.number(2), 0.0..=90.0, -DEGREE),
         // Midships has no side.
-        _ if fields.number(2) == Number::Of(0.0) => row.values[0] = 0.0,
-        _ => row.odd[0] = fields.number(2) != Number::Empty,
+        _ if fields.number(2) == Number::Value(0.0) => row.values[0] = 0.0,
+        _ => row.invalid[0] = fields.number(2) != Number::Empty,
     }
 }
 
-/// HDG: sensor, deviation and variation. What the compass shows and the deviation make the magnetic heading.
+/// Decoder of HDG: sensor, deviation and variation. Sensor and deviation add up to the magnetic heading.
 fn read_hdg(row: &mut Row, fields: &Fields) {
     let signed = |at: usize| match (fields.number(at), fields.at(at + 1)) {
-        (Number::Of(value), b"E") if (0.0..=180.0).contains(&value) => Ok(value * DEGREE),
-        (Number::Of(value), b"W") if (0.0..=180.0).contains(&value) => Ok(-value * DEGREE),
+        (Number::Value(value), b"E") if (0.0..=180.0).contains(&value) => Ok(value * DEGREE),
+        (Number::Value(value), b"W") if (0.0..=180.0).contains(&value) => Ok(-value * DEGREE),
         (Number::Empty, _) => Ok(f64::NAN),
         _ => Err(()),
     };
@@ -282,15 +286,15 @@ fn read_hdg(row: &mut Row, fields: &Fields) {
     match signed(2) {
         Ok(deviation) if deviation.is_finite() => row.values[0] = turned(row.values[0] + deviation),
         Ok(_) => row.values[0] = turned(row.values[0]),
-        Err(()) => (row.values[0], row.odd[0]) = (f64::NAN, true),
+        Err(()) => (row.values[0], row.invalid[0]) = (f64::NAN, true),
     }
     match signed(4) {
         Ok(variation) => row.values[1] = variation,
-        Err(()) => row.odd[1] = true,
+        Err(()) => row.invalid[1] = true,
     }
 }
 
-/// MWV: both directions are clockwise from the bow, the one of the true wind too.
+/// Decoder of MWV: directions are clockwise from the bow, also for the true wind.
 fn read_mwv(row: &mut Row, fields: &Fields) {
     row.part = [fields.at(2).first().copied().unwrap_or(0), 0];
     let factor = match fields.at(4) {
@@ -310,10 +314,10 @@ fn read_mwv(row: &mut Row, fields: &Fields) {
     }
 }
 
-/// The angle transducers of XDR for the rudder and for roll, one row each.
+/// Angle transducers of XDR for the rudder and for roll, one row each.
 pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     let mut fields = body.split(|&byte| byte == b',');
-    while let (Some(of), Some(value), Some(unit), Some(name)) =
+    while let (Some(kind), Some(value), Some(unit), Some(name)) =
         (fields.next(), fields.next(), fields.next(), fields.next())
     {
         let part = match name.to_ascii_lowercase().as_slice() {
@@ -321,7 +325,7 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
             b"roll" => b'O',
             _ => continue,
         };
-        if of == b"A" && unit == b"D" {
+        if kind == b"A" && unit == b"D" {
             let mut row = Row { part: [part, 0], ..Row::empty() };
             row.take(0, super::frame::number(value), -90.0..=90.0, DEGREE);
             each(row);
@@ -329,15 +333,15 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     }
 }
 
-/// The day of `ddmmyy`.
+/// Day since 1970-01-01 from `ddmmyy`.
 fn date(field: &[u8]) -> Option<f64> {
     let is_date = field.len() == 6 && field.iter().all(u8::is_ascii_digit);
     let digits: u32 = std::str::from_utf8(field).ok().filter(|_| is_date)?.parse().ok()?;
     Some(days(full_year(digits % 100, 2)?, digits / 100 % 100, digits / 10_000)? as f64)
 }
 
-/// The day of day, month and year.
+/// Day since 1970-01-01 from day, month and year.
 fn day(date: [Number; 3]) -> Option<f64> {
-    let [Number::Of(day), Number::Of(month), Number::Of(year)] = date else { return None };
+    let [Number::Value(day), Number::Value(month), Number::Value(year)] = date else { return None };
     (day >= 0.0 && month >= 0.0).then(|| days(year as i32, month as u32, day as u32))?.map(|day| day as f64)
 }

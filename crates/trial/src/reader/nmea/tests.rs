@@ -15,7 +15,7 @@ fn summed(body: &str) -> String {
     format!("${body}*{:02X}", sum(body.as_bytes()))
 }
 
-/// What a log of sentences holds.
+/// Content of a log of sentences.
 type Sentences = (Vec<Series>, Log);
 
 fn read_bytes(bytes: &[u8]) -> Result<Sentences, Problem> {
@@ -42,7 +42,7 @@ fn degrees(series: &Series) -> Vec<f64> {
     series.values.iter().map(|value| (value.to_degrees() * 1e9).round() / 1e9).collect()
 }
 
-fn told(source: &Sentences, text: &str) -> bool {
+fn has_warning(source: &Sentences, text: &str) -> bool {
     source.1.warnings.iter().any(|warning| warning.text.contains(text))
 }
 
@@ -148,7 +148,7 @@ fn what_is_not_valid_is_not_read() {
     let heading = series(&mended, Channel::Heading);
     assert_eq!(heading.time.len(), 4);
     assert_eq!(heading.values.iter().filter(|value| value.is_nan()).count(), 2);
-    assert!(told(&mended, "1 entry of $HEHDT cannot be a heading"), "{:?}", mended.1.warnings);
+    assert!(has_warning(&mended, "1 entry of $HEHDT cannot be a heading"), "{:?}", mended.1.warnings);
 }
 
 #[test]
@@ -169,13 +169,13 @@ fn checksums_are_counted_and_wrong_ones_left_out() {
     lines.push(String::from("recording goes on"));
     let source = source(&lines);
     assert_eq!(degrees(series(&source, Channel::Heading)), [1.0, 4.0]);
-    assert!(told(&source, "1 of 8 lines had a wrong checksum and is left out"), "{:?}", source.1.warnings);
-    assert!(told(&source, "1 of 8 lines is cut short"), "{:?}", source.1.warnings);
-    assert!(told(&source, "1 of 8 lines holds no sentence"), "{:?}", source.1.warnings);
+    assert!(has_warning(&source, "1 of 8 lines had a wrong checksum and is left out"), "{:?}", source.1.warnings);
+    assert!(has_warning(&source, "1 of 8 lines is cut short"), "{:?}", source.1.warnings);
+    assert!(has_warning(&source, "1 of 8 lines holds no sentence"), "{:?}", source.1.warnings);
     let bare: Vec<String> = (0..5).map(|k| format!("14:00:0{k} $HEHDT,{k}.5,T")).collect();
     let bare = self::source(&bare);
     assert_eq!(degrees(series(&bare, Channel::Heading)), [0.5, 1.5, 2.5, 3.5, 4.5]);
-    assert!(told(&bare, "5 sentences have no checksum"), "{:?}", bare.1.warnings);
+    assert!(has_warning(&bare, "5 sentences have no checksum"), "{:?}", bare.1.warnings);
 }
 
 #[test]
@@ -195,9 +195,9 @@ fn one_channel_is_one_instrument_and_the_choice_is_said() {
     let source = source(&lines);
     assert!(degrees(series(&source, Channel::Heading)).iter().all(|&heading| heading == 51.0));
     let expected = "heading from $GPHDT (60 readings); $HEHDT (60), $HCHDM (60) and $HCHDG (30) are not used";
-    assert!(source.1.warnings.iter().any(|told| told.text == expected), "{:?}", source.1.warnings);
+    assert!(source.1.warnings.iter().any(|warning| warning.text == expected), "{:?}", source.1.warnings);
     let speed = "speed through the water from $VWVHW (60 readings); $GPVTG (60) is not used";
-    assert!(source.1.warnings.iter().any(|told| told.text == speed), "{:?}", source.1.warnings);
+    assert!(source.1.warnings.iter().any(|warning| warning.text == speed), "{:?}", source.1.warnings);
     // The same sentence of two ports.
     let ports: Vec<String> = (0..20)
         .flat_map(|k| {
@@ -211,16 +211,16 @@ fn one_channel_is_one_instrument_and_the_choice_is_said() {
         .collect();
     let ports = self::source(&ports);
     assert!(degrees(series(&ports, Channel::Heading)).iter().all(|&heading| heading == 2.0));
-    assert!(told(&ports, "heading from $HEHDT of GYRO2 (40 readings); $HEHDT of GYRO1 (20) is not used"));
+    assert!(has_warning(&ports, "heading from $HEHDT of GYRO2 (40 readings); $HEHDT of GYRO1 (20) is not used"));
 }
 
 #[test]
 fn a_magnetic_heading_is_said_and_a_variation_makes_it_true() {
     let magnetic = source(&stamped(&["HCHDG,101.1,,,,", "HCHDG,102.1,,,,"]));
-    assert!(told(&magnetic, "the heading of $HCHDG is magnetic"), "{:?}", magnetic.1.warnings);
+    assert!(has_warning(&magnetic, "the heading of $HCHDG is magnetic"), "{:?}", magnetic.1.warnings);
     let held = source(&stamped(&["HCHDG,101.1,,,,", "HCHDG,102.1,,,2.0,E", "HCHDG,359.0,,,,"]));
     assert_eq!(degrees(series(&held, Channel::Heading)), [103.1, 104.1, 1.0]);
-    assert!(!told(&held, "magnetic"));
+    assert!(!has_warning(&held, "magnetic"));
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn damaged_lines_are_counted_and_read_past() {
     let source = read_bytes(&bytes).expect("most lines are sound");
     assert_eq!(series(&source, Channel::Heading).time.len(), 20);
     assert_eq!(source.1.rows, 31);
-    assert!(told(&source, "9 of 31 lines are cut short or not text"), "{:?}", source.1.warnings);
+    assert!(has_warning(&source, "9 of 31 lines are cut short or not text"), "{:?}", source.1.warnings);
 }
 
 #[test]
@@ -253,9 +253,9 @@ fn a_log_that_is_none_is_refused_with_the_numbers() {
     let timeless: Vec<String> = (0..9).map(|k| summed(&format!("HEHDT,{k}.0,T"))).collect();
     assert_eq!(
         read_log(&timeless).expect_err("no time").to_string(),
-        "the log has no time: found no time stamp before its 9 sentences and 0 valid times in ZDA, RMC, GGA or GLL, \
-         expected the one or at least two of the other; record it with time stamps, or with the sentences of a GPS \
-         (`time-step-s` is not possible for sentences)"
+        "the log has no time: there is no time stamp before its 9 sentences, and 0 valid times in ZDA, RMC, GGA or GLL \
+         (at least two are needed); record it with time stamps, or with the sentences of a GPS (`time-step-s` is not \
+         possible for sentences)"
     );
     let one = [rmc("140300"), timeless[0].clone()];
     assert!(matches!(read_log(&one), Err(Problem::NoClock { sentences: 2, clocks: 1 })));
@@ -272,17 +272,20 @@ fn two_rudders_are_one_where_they_go_together() {
         let source = source(&stamped(bodies));
         (degrees(series(&source, Channel::Rudder)), source.1.warnings)
     };
-    let (mean, told) = rudder(&["IIRSA,10.0,A,11.0,A", "IIRSA,12.0,A,12.0,A"]);
+    let (mean, warnings) = rudder(&["IIRSA,10.0,A,11.0,A", "IIRSA,12.0,A,12.0,A"]);
     assert_eq!(mean, [10.5, 12.0]);
-    assert!(told[0].text.contains("mean of two rudders, 0.7° apart"), "{told:?}");
-    let (one, told) = rudder(&["IIRSA,10.0,A,-11.0,A", "IIRSA,12.0,A,-12.0,A"]);
-    assert_eq!(one, [10.0, 12.0]);
-    assert!(told[0].text.contains("differ by 22.5° (rms)") && told[0].text.contains("starboard"), "{told:?}");
-    let (port, told) = rudder(&["IIRSA,,V,-11.0,A", "IIRSA,,V,-12.0,A"]);
+    assert!(warnings[0].text.contains("mean of two rudders, 0.7° apart"), "{warnings:?}");
+    let (first, warnings) = rudder(&["IIRSA,10.0,A,-11.0,A", "IIRSA,12.0,A,-12.0,A"]);
+    assert_eq!(first, [10.0, 12.0]);
+    assert!(
+        warnings[0].text.contains("differ by 22.5° (rms)") && warnings[0].text.contains("starboard"),
+        "{warnings:?}"
+    );
+    let (port, warnings) = rudder(&["IIRSA,,V,-11.0,A", "IIRSA,,V,-12.0,A"]);
     assert_eq!(port, [-11.0, -12.0]);
-    assert!(told[0].text.contains("port rudder; the other one has 0 readings"), "{told:?}");
-    let (single, told) = rudder(&["IIRSA,1.0,A,,V", "IIRSA,2.0,A,,V"]);
-    assert_eq!((single, told.len()), (vec![1.0, 2.0], 0));
+    assert!(warnings[0].text.contains("port rudder; the other rudder has 0 readings"), "{warnings:?}");
+    let (single, warnings) = rudder(&["IIRSA,1.0,A,,V", "IIRSA,2.0,A,,V"]);
+    assert_eq!((single, warnings.len()), (vec![1.0, 2.0], 0));
 }
 
 #[test]
@@ -294,7 +297,7 @@ fn shafts_give_their_mean_whatever_way_they_turn() {
     let rate = series(&source, Channel::PropellerRate);
     assert_eq!(rate.values.len(), 10);
     assert_abs_diff_eq!(rate.values[4], 123.0 / 60.0, epsilon = 1e-12);
-    assert!(told(&source, "mean of 2 shafts") && told(&source, "$ERRPM S2 turns counter-clockwise"));
+    assert!(has_warning(&source, "mean of 2 shafts") && has_warning(&source, "$ERRPM S2 turns counter-clockwise"));
 }
 
 #[test]
@@ -303,7 +306,7 @@ fn true_wind_from_the_bow_becomes_one_from_north() {
     assert_eq!(degrees(series(&with, Channel::WindTrueFrom)), [30.0, 30.0]);
     let without = source(&stamped(&["IIMWV,90.0,T,10.0,M,A"; 2]));
     assert!(has(&without, Channel::WindTrueSpeed) && !has(&without, Channel::WindTrueFrom));
-    assert!(told(&without, "without a heading its direction is left out"));
+    assert!(has_warning(&without, "without a heading its direction is left out"));
 }
 
 /// A degree of latitude has 111 132.954 m - 1.175 m at 45° by the series of the meridian arc, and a minute of

@@ -28,8 +28,8 @@ fn check([delta_deg, psi_deg, rate_deg_s]: [f64; 3], step: f64) {
     let plant = Plant::new(delta_deg, psi_deg, rate_deg_s);
     let zigzag = of_plant(plant, 900.0, step);
     let label = format!("{delta_deg}/{psi_deg} at {rate_deg_s} deg/s every {step} s");
-    let within = |tolerance: f64, name: &str, found: f64, expected: f64| {
-        assert!((found - expected).abs() < tolerance, "{label}: {name} is {found:.6}, expected {expected:.6}");
+    let within = |tolerance: f64, name: &str, measured: f64, expected: f64| {
+        assert!((measured - expected).abs() < tolerance, "{label}: {name} is {measured:.6}, expected {expected:.6}");
     };
     assert!(zigzag.pair.expect("has a pair").is_deg(delta_deg, psi_deg), "{label}");
     assert_eq!(zigzag.side, Some(Side::Starboard));
@@ -37,8 +37,11 @@ fn check([delta_deg, psi_deg, rate_deg_s]: [f64; 3], step: f64) {
     let executes: Vec<f64> = zigzag.executes.iter().map(|execute| execute.time.value).collect();
     let expected = plant.execute_times(900.0);
     assert!(executes.len() > 6 && executes.len() <= expected.len(), "{label}");
-    let [of_execute, of_overshoot] = if rate_deg_s.is_finite() { [1e-6, 2e-3] } else { [0.02, 0.02] };
-    executes.iter().zip(expected).for_each(|(&found, expected)| within(of_execute, "execute", found, expected));
+    let [execute_tolerance, overshoot_tolerance] = if rate_deg_s.is_finite() { [1e-6, 2e-3] } else { [0.02, 0.02] };
+    executes
+        .iter()
+        .zip(expected)
+        .for_each(|(&measured, expected)| within(execute_tolerance, "execute", measured, expected));
     within(0.02, "t_a", zigzag.initial_turning_time.expect("has a first execute").value, executes[1]);
     let cycles: Vec<f64> = executes[2..].windows(3).map(|three| three[2] - three[0]).collect();
     let mean = cycles.iter().sum::<f64>() / cycles.len() as f64;
@@ -46,15 +49,15 @@ fn check([delta_deg, psi_deg, rate_deg_s]: [f64; 3], step: f64) {
     for overshoot in &zigzag.overshoots {
         let near: Vec<f64> = (-3000..=3000).map(|k| overshoot.peak_time.value + 1e-3 * f64::from(k)).collect();
         let peak = plant.sampled(&near).0.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
-        within(of_overshoot, "overshoot", to_deg(overshoot.angle.value), to_deg(peak) - psi_deg);
+        within(overshoot_tolerance, "overshoot", to_deg(overshoot.angle.value), to_deg(peak) - psi_deg);
     }
     let rate = |time: f64| {
         let heading = plant.sampled(&[time - 1e-4, time + 1e-4]).0;
         to_deg((heading[1] - heading[0]) / 2e-4).abs()
     };
     for execute in &zigzag.executes[1..] {
-        let found = to_deg(execute.yaw_rate.expect("has headings").value.abs());
-        within(0.01, "yaw rate", found, rate(execute.time.value));
+        let measured = to_deg(execute.yaw_rate.expect("has headings").value.abs());
+        within(0.01, "yaw rate", measured, rate(execute.time.value));
     }
     match zigzag.rudder_rate {
         Some(rate) => within(1e-6, "rudder rate", to_deg(rate), rate_deg_s),

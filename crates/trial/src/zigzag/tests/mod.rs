@@ -155,8 +155,8 @@ fn a_record_that_begins_within_the_first_movement_has_no_times_from_it() {
         let zigzag = ZigZag::of(&trial(cut(time), cut(heading), cut(rudder))).expect("a zig-zag");
         assert_eq!((zigzag.initial_turning_time, zigzag.reach, zigzag.complete_cycle_time), (None, None, None));
         assert_eq!(zigzag.side, Some(Side::Starboard));
-        let [own, of_whole] = [&zigzag, &whole].map(|zigzag| zigzag.nth_overshoot(1).expect("seen").angle.value);
-        assert_relative_eq!(own, of_whole, epsilon = 1e-3);
+        let [cut, uncut] = [&zigzag, &whole].map(|zigzag| zigzag.nth_overshoot(1).expect("seen").angle.value);
+        assert_relative_eq!(cut, uncut, epsilon = 1e-3);
     }
 }
 
@@ -261,7 +261,7 @@ fn other_records_are_refused() {
     assert!(matches!(of(zero.clone(), autopilot), ZigZagError::NotHeld { .. }));
 
     let circle: Vec<f64> = time.iter().map(|t| if *t < 20.0 { 0.02 } else { -0.6 }).collect();
-    assert_eq!(of(zero.clone(), circle), ZigZagError::TooFewReversals { found: 0, needed: 2 });
+    assert_eq!(of(zero.clone(), circle), ZigZagError::TooFewReversals { reversals: 0, needed: 2 });
 
     let (_, heading, rudder) = Plant::default().record(299.0, 1.0);
     let flipped: Vec<f64> = rudder.iter().map(|delta| -delta).collect();

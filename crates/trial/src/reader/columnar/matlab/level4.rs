@@ -1,15 +1,15 @@
-//! MATLAB files of level 4, which begin with no name of their format: one variable behind the other, each with a head
-//! of five numbers.
+//! MATLAB files of level 4, which have no name of their format: a sequence of variables, each with a head of five
+//! numbers.
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 2 (level 4 MAT-files).
 
 use super::variable::{OtherVariable, Scan, Variable, Variables, class_name, contradiction, damaged, size};
 use crate::reader::error::Problem;
 
-/// Longest name of a variable with its end, bytes.
-const MAX_NAME: u32 = 64;
+/// Maximum length of the name of a variable with its terminator, bytes.
+const MAX_NAME_BYTES: u32 = 64;
 
-/// Kinds of the numbers in level 5 by their digit in level 4.
+/// Kinds of numbers of level 5 by their digit in level 4.
 const KINDS: [u32; 6] = [9, 7, 5, 3, 4, 2];
 
 /// The head of a variable.
@@ -25,12 +25,12 @@ struct VariableHead {
 }
 
 impl VariableHead {
-    /// The head in front; `None` where there is none.
+    /// Head at the front of some bytes; `None` where they are not a head.
     fn read(scan: &mut Scan) -> Option<Self> {
         let digits = scan.word()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
         let [rows, columns, complex, length] = [scan.word()?, scan.word()?, scan.word()?, scan.word()?];
         let (class, kind) = (digits % 10, *KINDS.get((digits / 10) as usize)?);
-        let name = scan.take(length.min(MAX_NAME) as usize)?.strip_suffix(&[0])?;
+        let name = scan.take(length.min(MAX_NAME_BYTES) as usize)?.strip_suffix(&[0])?;
         let is_letter = |letter: &u8| *letter == b'_' || letter.is_ascii_alphanumeric();
         let is_head = class <= 2 && complex <= 1 && !name.is_empty() && name.iter().all(is_letter);
         let (rows, columns) = (usize::try_from(rows).ok()?, usize::try_from(columns).ok()?);
@@ -38,33 +38,33 @@ impl VariableHead {
         is_head.then_some(Self { kind, class, rows, columns, complex: complex == 1, name })
     }
 
-    /// Bytes of the numbers behind it.
+    /// Length of the numbers behind the head, bytes.
     fn length(&self) -> Option<usize> {
         let parts = if self.complex { 2 } else { 1 };
         self.rows.checked_mul(self.columns)?.checked_mul(parts * size(self.kind)?)
     }
 }
 
-/// Whether a file begins with a variable.
-pub fn starts(bytes: &[u8]) -> bool {
-    [false, true].into_iter().any(|big_endian| VariableHead::read(&mut Scan { rest: bytes, big_endian }).is_some())
+/// `true` for a file that begins with a variable of level 4.
+pub fn is_level4(bytes: &[u8]) -> bool {
+    [false, true].into_iter().any(|big_endian| VariableHead::read(&mut Scan { tail: bytes, big_endian }).is_some())
 }
 
-/// The variables of a file; all are in the order of bytes of the first.
+/// Variables of a file; all have the byte order of the first.
 pub fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     let (mut numeric, mut left_out) = (Vec::new(), Vec::new());
-    let big_endian = VariableHead::read(&mut Scan { rest: bytes, big_endian: false }).is_none();
-    let mut scan = Scan { rest: bytes, big_endian };
-    while !scan.rest.is_empty() {
+    let big_endian = VariableHead::read(&mut Scan { tail: bytes, big_endian: false }).is_none();
+    let mut scan = Scan { tail: bytes, big_endian };
+    while !scan.tail.is_empty() {
         let head = VariableHead::read(&mut scan).ok_or_else(contradiction)?;
         let data = head.length().and_then(|length| scan.take(length));
         let data = data.ok_or_else(|| damaged("its last variable is incomplete"))?;
         let VariableHead { kind, class, rows, columns, complex, name } = head;
         match class {
             0 if !complex => numeric.push(Variable::new(name, [rows, columns], kind, data, big_endian)),
-            0 => left_out.push(OtherVariable { name, what: format!("{rows}x{columns}") }),
+            0 => left_out.push(OtherVariable { name, kind: format!("{rows}x{columns}") }),
             // Text is class 4 of level 5, a sparse matrix class 5.
-            _ => left_out.push(OtherVariable { name, what: class_name(3 + class).to_owned() }),
+            _ => left_out.push(OtherVariable { name, kind: class_name(3 + class).to_owned() }),
         }
     }
     Ok((numeric, left_out))

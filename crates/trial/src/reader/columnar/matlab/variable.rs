@@ -6,7 +6,7 @@ use crate::reader::error::Problem;
 /// Kind of a data element that holds a packed one.
 pub const COMPRESSED: u32 = 15;
 
-/// Bytes of a number of a kind of data element; `None` for what is no number.
+/// Bytes of a number by the kind of its data element; `None` for a kind without numbers.
 pub fn size(kind: u32) -> Option<usize> {
     Some(match kind {
         1 | 2 => 1,
@@ -29,19 +29,19 @@ pub struct Variable {
     big_endian: bool,
 }
 
-/// A variable that is no column: its name, and what it is.
+/// A variable that is not a column, with its kind for messages.
 pub struct OtherVariable {
     pub name: String,
-    pub what: String,
+    pub kind: String,
 }
 
-/// A file's variables that are columns, and those that are none.
+/// Variables of a file that are columns, and all others.
 pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
 
-/// What a cell array is.
+/// Name of a cell array in messages.
 pub const CELL: &str = "a cell array";
 
-/// What a class without numbers is.
+/// Name of a class without numbers in messages.
 pub fn class_name(class: u32) -> &'static str {
     match class {
         1 => CELL,
@@ -52,16 +52,16 @@ pub fn class_name(class: u32) -> &'static str {
     }
 }
 
-/// Bytes that are read from the front.
+/// Cursor over bytes, read from the front.
 pub struct Scan<'a> {
-    pub rest: &'a [u8],
+    pub tail: &'a [u8],
     pub big_endian: bool,
 }
 
 impl<'a> Scan<'a> {
     pub fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(length)?;
-        self.rest = rest;
+        let (taken, tail) = self.tail.split_at_checked(length)?;
+        self.tail = tail;
         Some(taken)
     }
 
@@ -70,7 +70,7 @@ impl<'a> Scan<'a> {
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
-    /// The next data element: its kind and its bytes. What fills it up to eight bytes is passed over.
+    /// The next data element: its kind and its bytes. Padding to eight bytes is skipped.
     pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
         let tag = self.word()?;
         if tag >> 16 != 0 {
@@ -82,32 +82,34 @@ impl<'a> Scan<'a> {
         let data = self.take(length)?;
         if tag != COMPRESSED {
             let filling = (8 - length % 8) % 8;
-            self.rest = self.rest.get(filling..).unwrap_or_default();
+            self.tail = self.tail.get(filling..).unwrap_or_default();
         }
         Some((tag, data))
     }
 }
 
-pub fn damaged(found: &str) -> Problem {
-    Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
+/// Problem of a damaged MATLAB file.
+pub fn damaged(damage: &str) -> Problem {
+    Problem::Damaged { format: "a MATLAB file", damage: damage.to_owned() }
 }
 
+/// Problem of a variable whose stated sizes disagree.
 pub fn contradiction() -> Problem {
     damaged("a variable of it contradicts itself")
 }
 
 impl Variable {
-    /// A variable of so many rows and columns; a row is as good as a column.
+    /// A variable of a size (rows, columns); a single row becomes a column.
     pub fn new(name: String, size: [usize; 2], kind: u32, numbers: &[u8], big_endian: bool) -> Self {
         let [rows, columns] = if size[0] == 1 { [size[1], 1] } else { size };
         Self { name, rows, columns, kind, bytes: numbers.to_vec(), big_endian }
     }
 
-    /// Writes a number by its place.
-    pub fn write(&self, text: &mut String, place: usize) {
+    /// Writes a number by its index.
+    pub fn write(&self, text: &mut String, index: usize) {
         let size = size(self.kind).unwrap_or(0);
         let mut bytes = [0; 8];
-        let Some(stored) = self.bytes.get(place * size..(place + 1) * size) else { return };
+        let Some(stored) = self.bytes.get(index * size..(index + 1) * size) else { return };
         bytes[..size].copy_from_slice(stored);
         if self.big_endian {
             bytes[..size].reverse();

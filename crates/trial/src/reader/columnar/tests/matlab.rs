@@ -75,8 +75,8 @@ fn other_variables_are_left_out() {
     variables.extend(plain(240, false));
     assert_plain(&[head(false), variables.concat()].concat());
     let nothing = [head(false), variables[..3].concat(), doubles("cube", [1, 1], &[2.0], false)].concat();
-    let told = ["a MATLAB file without a table", "mass (1x1)", "cube (1x1)", "ship (text)"];
-    assert_told(parse(&nothing), &told);
+    let parts = ["a MATLAB file without a table", "mass (1x1)", "cube (1x1)", "ship (text)"];
+    assert_refused(parse(&nothing), &parts);
 }
 
 /// What is in a cell array is no column: the name of a channel is refused, one beside the same channel is left out.
@@ -86,12 +86,12 @@ fn cell_arrays_are_named() {
     let [time, heading, rudder] = &plain(240, false)[..] else { panic!("three variables") };
     for cell in [cell("rudder_deg"), compressed(&cell("rudder_deg"))] {
         let file = [&head(false), time, heading, &cell].map(Vec::as_slice).concat();
-        assert_told(parse(&file), &["column rudder_deg is a cell array", "cell2mat(rudder_deg)"]);
+        assert_refused(parse(&file), &["column rudder_deg is a cell array", "cell2mat(rudder_deg)"]);
     }
     let (head, other, note) = (head(false), cell("heading_rad"), cell("note"));
     let beside = [&head, time, &other, heading, &note, rudder];
     assert_plain(&beside.map(Vec::as_slice).concat());
-    assert_told(parse([head, note].concat().as_slice()), &["without a table", "note (a cell array)"]);
+    assert_refused(parse([head, note].concat().as_slice()), &["without a table", "note (a cell array)"]);
 }
 
 /// A variable of level 4: its digits, size, whether it is complex, and its numbers.
@@ -123,8 +123,8 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
         .concat();
         assert_plain(&file);
     }
-    assert_told(parse(&file[..file.len() - 9]), &["a MATLAB file", "last variable is incomplete"]);
-    assert_told(parse([file, vec![1; 40]].concat().as_slice()), &["a MATLAB file", "contradicts itself"]);
+    assert_refused(parse(&file[..file.len() - 9]), &["a MATLAB file", "last variable is incomplete"]);
+    assert_refused(parse([file, vec![1; 40]].concat().as_slice()), &["a MATLAB file", "contradicts itself"]);
     let small = [
         variable4("a", 20, [2, 1], false, &[0xff, 0xff, 0xff, 0xff, 1, 0, 0, 0], false),
         variable4("b", 10, [1, 2], false, &[0.1_f32, f32::NAN].map(f32::to_le_bytes).concat(), false),
@@ -135,11 +135,11 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
     kind.text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
     assert_eq!(text, "a\tb\tc\n-1\t0.1\t3\n1\t\t255\n");
     let small = small.concat();
-    for place in 0..small.len() {
-        for change in [0xff, 1 << (place % 8)] {
+    for index in 0..small.len() {
+        for change in [0xff, 1 << (index % 8)] {
             let mut bytes = small.clone();
-            bytes[place] ^= change;
-            let _ = (parse(&bytes), parse(&small[..place]));
+            bytes[index] ^= change;
+            let _ = (parse(&bytes), parse(&small[..index]));
         }
     }
     // What is no head is no such file: a text, UTF-16, other numbers.
@@ -180,17 +180,17 @@ fn damaged_files_are_told() {
     let packed: Vec<u8> = plain.iter().flat_map(|variable| compressed(variable)).collect();
     for file in [[head(false), plain.concat()].concat(), [head(false), packed].concat()] {
         let mut bytes = file.clone();
-        for place in 0..file.len() {
-            for change in [0xff, 1 << (place % 8)] {
-                bytes[place] ^= change;
+        for index in 0..file.len() {
+            for change in [0xff, 1 << (index % 8)] {
+                bytes[index] ^= change;
                 let _ = parse(&bytes);
-                bytes[place] = file[place];
+                bytes[index] = file[index];
             }
         }
         for end in (10..file.len()).step_by(7) {
             let _ = parse(&file[..end]).expect_err("it is cut short");
         }
-        assert_told(parse(&file[..file.len() - 9]), &["a MATLAB file", "damaged"]);
-        assert_told(parse(&file[..100]), &["a MATLAB file", "head is incomplete"]);
+        assert_refused(parse(&file[..file.len() - 9]), &["a MATLAB file", "damaged"]);
+        assert_refused(parse(&file[..100]), &["a MATLAB file", "head is incomplete"]);
     }
 }

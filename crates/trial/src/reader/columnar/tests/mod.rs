@@ -15,7 +15,7 @@ use crate::record::Origin;
 
 /// Time, heading and rudder of the rows of the plainest table.
 fn columns() -> [Vec<f64>; 3] {
-    [0, 1, 2].map(|place| rows().iter().map(|row| row[place]).collect())
+    [0, 1, 2].map(|column| rows().iter().map(|row| row[column]).collect())
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -23,11 +23,11 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Sees that two readings hold the same record.
-fn assert_same(one: &ReadRecord, other: &ReadRecord) {
-    let (one, other) = (&one.trial, &other.trial);
-    assert_eq!(bits(one.time()), bits(other.time()));
-    assert_eq!(bits(one.heading()), bits(other.heading()));
-    assert_eq!(bits(one.rudder()), bits(other.rudder()));
+fn assert_same(first: &ReadRecord, second: &ReadRecord) {
+    let (first, second) = (&first.trial, &second.trial);
+    assert_eq!(bits(first.time()), bits(second.time()));
+    assert_eq!(bits(first.heading()), bits(second.heading()));
+    assert_eq!(bits(first.rudder()), bits(second.rudder()));
 }
 
 /// Sees that a file holds the plainest record and has the hash of its bytes.
@@ -50,7 +50,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// Sees that a message has these parts.
-fn assert_told(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
+fn assert_refused(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
     let message = result.expect_err("the file is wrong").to_string();
     for part in parts {
         assert!(message.contains(part), "`{part}` is not in: {message}");
@@ -60,14 +60,14 @@ fn assert_told(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
 /// Cuts a file short and changes its bytes one by one: what is read then is a record or a message about `format`.
 fn assert_sound(file: &[u8], format: &str) {
     for end in (16..file.len()).step_by(7) {
-        assert_told(parse(&file[..end]), &[format]);
+        assert_refused(parse(&file[..end]), &[format]);
     }
     let mut bytes = file.to_vec();
-    for place in 0..file.len() {
-        for change in [0xff, 1 << (place % 8)] {
-            bytes[place] ^= change;
+    for index in 0..file.len() {
+        for change in [0xff, 1 << (index % 8)] {
+            bytes[index] ^= change;
             let _ = parse(&bytes);
-            bytes[place] = file[place];
+            bytes[index] = file[index];
         }
     }
 }
@@ -89,17 +89,20 @@ fn the_hash_is_that_of_the_bytes_on_the_disk() {
 
 #[test]
 fn what_is_not_read_is_named_with_a_cure() {
-    assert_told(parse(b"MATLAB 7.3 MAT-file, Platform: GLNXA64"), &["HDF5", "-v7"]);
+    assert_refused(parse(b"MATLAB 7.3 MAT-file, Platform: GLNXA64"), &["HDF5", "-v7"]);
     let candump = "(1436509052.249713) can0 09F1120A#FF1027FF7FFF7FFD\n".repeat(9);
     let table = format!("Time,ID,DLC,Data\n{}", "0.01,0x9F1120A,8,FF 10 27 FF 7F FF 7F FD\n".repeat(9));
     for frames in [candump, table] {
-        assert_told(parse(frames.as_bytes()), &["CAN frames in hexadecimal", "`candump2analyzer`", "`analyzer -json`"]);
+        assert_refused(
+            parse(frames.as_bytes()),
+            &["CAN frames in hexadecimal", "`candump2analyzer`", "`analyzer -json`"],
+        );
     }
-    assert_told(parse(b"PARE and more"), &["encrypted"]);
+    assert_refused(parse(b"PARE and more"), &["encrypted"]);
     #[cfg(not(feature = "parquet"))]
-    assert_told(parse(b"PAR1 and more"), &["export it as CSV", "feature `parquet`"]);
+    assert_refused(parse(b"PAR1 and more"), &["export it as CSV", "feature `parquet`"]);
     #[cfg(not(feature = "spreadsheets"))]
-    assert_told(parse(b"PK\x03\x04 and more"), &["export it as CSV", "feature `spreadsheets`"]);
+    assert_refused(parse(b"PK\x03\x04 and more"), &["export it as CSV", "feature `spreadsheets`"]);
 }
 
 #[test]

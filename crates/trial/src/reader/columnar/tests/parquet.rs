@@ -66,12 +66,12 @@ fn file(schema: &str, columns: &[Values], compression: Compression, rows: usize)
 
 const SCHEMA: &str = "optional double t_s; optional double heading_deg; optional double rudder_deg;";
 
-fn of(columns: [&[f64]; 3], compression: Compression, rows: usize) -> Vec<u8> {
+fn table(columns: [&[f64]; 3], compression: Compression, rows: usize) -> Vec<u8> {
     file(SCHEMA, &columns.map(|values| Values::Doubles(some(values))), compression, rows)
 }
 
 pub fn plain(time: &[f64], heading: &[f64], rudder: &[f64]) -> Vec<u8> {
-    of([time, heading, rudder], Compression::SNAPPY, 1000)
+    table([time, heading, rudder], Compression::SNAPPY, 1000)
 }
 
 /// The text of a file.
@@ -92,11 +92,11 @@ fn a_file_gives_the_record_of_its_csv_however_it_is_packed() {
         Compression::LZ4_RAW,
     ];
     for (compression, rows) in packings.into_iter().zip([1000, 100, 1, 240, 7]) {
-        assert_plain(&of([&time, &heading, &rudder], compression, rows));
+        assert_plain(&table([&time, &heading, &rudder], compression, rows));
     }
     // More rows than are decoded at a time.
     let long: Vec<f64> = (0..10_000).map(f64::from).collect();
-    let written = text(of([&long, &long, &long], Compression::SNAPPY, 9000));
+    let written = text(table([&long, &long, &long], Compression::SNAPPY, 9000));
     let expected = long.iter().map(|value| format!("{value:?}\t{value:?}\t{value:?}"));
     assert!(written.lines().skip(1).eq(expected));
 }
@@ -105,7 +105,7 @@ fn a_file_gives_the_record_of_its_csv_however_it_is_packed() {
 fn stamps_of_every_unit_are_those_of_the_csv() {
     let [time, heading, rudder] = columns();
     let begin = 1_795_183_385; // 2026-11-20T14:03:05Z
-    let rest = || vec![Values::Doubles(some(&heading)), Values::Doubles(some(&rudder))];
+    let angles = || vec![Values::Doubles(some(&heading)), Values::Doubles(some(&rudder))];
     let csv: String = std::iter::once("time,heading_deg,rudder_deg\n".to_owned())
         .chain(rows().iter().map(|[t, psi, delta]| {
             let second = 3 * 60 + 5 + (t / 10.0) as u32;
@@ -121,7 +121,7 @@ fn stamps_of_every_unit_are_those_of_the_csv() {
                 "optional int64 time (TIMESTAMP({unit},{utc})); optional double heading_deg; \
                  optional double rudder_deg;"
             );
-            let columns: Vec<Values> = std::iter::once(Values::Longs(stamps)).chain(rest()).collect();
+            let columns: Vec<Values> = std::iter::once(Values::Longs(stamps)).chain(angles()).collect();
             let bytes = file(&schema, &columns, Compression::SNAPPY, 100);
             assert_same(&parse(&bytes).unwrap_or_else(|error| panic!("{error}")), &csv);
             let text = text(bytes);
@@ -140,7 +140,7 @@ fn stamps_of_every_unit_are_those_of_the_csv() {
         Some(stamp)
     });
     let old = Values::Days(old.collect());
-    let [heading, rudder] = <[Values; 2]>::try_from(rest()).ok().expect("two");
+    let [heading, rudder] = <[Values; 2]>::try_from(angles()).ok().expect("two");
     let schema = "optional double heading_deg; optional double rudder_deg; optional int96 time;";
     let bytes = file(schema, &[heading, rudder, old], Compression::SNAPPY, 100);
     assert_same(&parse(&bytes).expect("stamps of 96 bits"), &csv);
@@ -170,7 +170,7 @@ fn values_of_every_type_are_written_as_text() {
     assert_eq!(text(file(schema, &columns, Compression::SNAPPY, 10)), expected);
     let nested = "optional group inner { optional double x; }";
     let bytes = file(nested, &[Values::Doubles(vec![Some(1.0)])], Compression::SNAPPY, 10);
-    assert_told(parse(&bytes), &["a Parquet file", "flat columns", "inner.x"]);
+    assert_refused(parse(&bytes), &["a Parquet file", "flat columns", "inner.x"]);
 }
 
 #[test]
@@ -203,20 +203,20 @@ fn missing_values_are_missing_and_sidecars_name_columns() {
 fn damaged_files_and_other_packings_are_told() {
     let [time, heading, rudder] = columns().map(|values| values[..40].to_vec());
     assert_sound(&plain(&time, &heading, &rudder), "Parquet");
-    assert_sound(&of([&time, &heading, &rudder], Compression::GZIP(GzipLevel::default()), 20), "Parquet");
+    assert_sound(&table([&time, &heading, &rudder], Compression::GZIP(GzipLevel::default()), 20), "Parquet");
     // What the writer cannot pack is made by hand: the codec stands once for each column, after its path.
     let bytes = plain(&time, &heading, &rudder);
     for (codec, word) in [(6_u8, "zstd"), (4, "brotli"), (3, "LZO")] {
         let mut changed = bytes.clone();
         let at = codec_place(&changed, b"rudder_deg");
         changed[at] = 2 * codec;
-        assert_told(parse(&changed), &[word, "snappy"]);
+        assert_refused(parse(&changed), &[word, "snappy"]);
     }
 }
 
 /// The place of the codec of the column of this name: behind the path, as the next field of a Thrift struct.
 fn codec_place(bytes: &[u8], name: &[u8]) -> usize {
     let ends = bytes.windows(name.len() + 1).enumerate();
-    let found = ends.filter(|(_, window)| window.starts_with(name) && window[name.len()] == 0x15);
-    found.map(|(place, _)| place + name.len() + 1).find(|&place| bytes[place] == 2).expect("snappy is there")
+    let matches = ends.filter(|(_, window)| window.starts_with(name) && window[name.len()] == 0x15);
+    matches.map(|(at, _)| at + name.len() + 1).find(|&at| bytes[at] == 2).expect("snappy is there")
 }

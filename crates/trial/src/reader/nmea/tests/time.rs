@@ -16,7 +16,7 @@ fn whole_seconds_are_spread_and_a_gap_stays() {
     for (time, value) in heading.time.iter().zip(degrees(heading)) {
         assert_abs_diff_eq!(*time, value, epsilon = 1e-6);
     }
-    assert!(told(&source, "spread evenly"));
+    assert!(has_warning(&source, "spread evenly"));
 }
 
 /// Heading in tenths of a degree shows the true time: ten sentences a second, and one clock sentence.
@@ -42,10 +42,10 @@ fn ten_headings_a_second_under_a_clock_of_one() {
         assert_abs_diff_eq!(*time + 5.0, value, epsilon = 1e-6);
     }
     assert_eq!(series(&source, Channel::Speed).time, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-    let expected = "the time is that of $GPRMC (6 times, every 1.0 s): a sentence has the time before it, and heading and \
-                    rudder may be apart by that much, and sentences between two of them are spread evenly over the time between";
-    assert!(told(&source, expected), "{:?}", source.1.warnings);
-    assert!(told(&source, "1 sentence before the first time is left out"));
+    let expected = "the clock is $GPRMC (6 times, every 1.0 s): each sentence gets the time before it, so heading and rudder \
+                    may be off by that much; sentences between two times are spread evenly";
+    assert!(has_warning(&source, expected), "{:?}", source.1.warnings);
+    assert!(has_warning(&source, "1 sentence before the first time is left out"));
     let clock = source.1.clock.expect("RMC has one");
     assert_eq!((clock.date_at(0.0), clock.at(0.0)), (Some("2026-11-20".into()), "14:03:05".into()));
 }
@@ -75,12 +75,12 @@ fn missing_seconds_stay_a_gap() {
 fn midnight_is_passed_with_and_without_dates() {
     let expected = [0.0, 1.0, 2.0, 3.0];
     let times = ["235958", "235959", "000000", "000001"];
-    let of_day = |k: usize| if k < 2 { "201126" } else { "211126" };
+    let date = |k: usize| if k < 2 { "201126" } else { "211126" };
     let clocks: [&dyn Fn(usize) -> String; 4] = [
-        &|k| summed(&format!("GPRMC,{},A,5400.0,N,01000.0,E,10.0,90.0,{},,", times[k], of_day(k))),
+        &|k| summed(&format!("GPRMC,{},A,5400.0,N,01000.0,E,10.0,90.0,{},,", times[k], date(k))),
         &|k| summed(&format!("GPGGA,{},5400.0,N,01000.0,E,1,08,0.9,545.4,M,46.9,M,,", times[k])),
         &|k| summed(&format!("GPGLL,5400.0,N,01000.0,E,{},A,A", times[k])),
-        &|k| summed(&format!("GPZDA,{}.00,{},11,2026,00,00", times[k], &of_day(k)[..2])),
+        &|k| summed(&format!("GPZDA,{}.00,{},11,2026,00,00", times[k], &date(k)[..2])),
     ];
     for clock in clocks {
         let lines: Vec<String> = (0..4).flat_map(|k| [clock(k), summed("HEHDT,10.0,T")]).collect();
@@ -110,14 +110,18 @@ fn a_clock_that_strays_once_is_left_out_and_one_that_starts_anew_is_refused() {
         for (time, value) in heading.time.iter().zip(degrees(heading)) {
             assert_abs_diff_eq!(*time, value, epsilon = 1e-5);
         }
-        assert!(told(&source, "1 time of $GPRMC far from its neighbours left out"), "{stray}: {:?}", source.1.warnings);
+        assert!(
+            has_warning(&source, "1 time of $GPRMC far from its neighbours left out"),
+            "{stray}: {:?}",
+            source.1.warnings
+        );
     }
     let again = ten_to_one(&[10, 11, 12, 13, 1, 2, 3], |_, _| true);
     let problem = read_log(&again).expect_err("time starts anew");
     assert_eq!(
         problem.to_string(),
-        "line 46: the clock of the log goes back from 14:03:13 to 14:03:01, expected one recording; cut the log there and \
-         give the parts one by one"
+        "line 46: the clock of the log goes back from 14:03:13 to 14:03:01, expected a single recording; cut the log \
+         there and use the parts one by one"
     );
 }
 
@@ -130,7 +134,7 @@ fn a_stamp_that_strays_once_is_left_out_and_a_log_that_starts_anew_is_refused() 
         let source = source(&write(&seconds));
         assert_eq!(series(&source, Channel::Heading).time, kept);
         assert!(
-            told(&source, "1 sentence with a stamp far from its neighbours is left out"),
+            has_warning(&source, "1 sentence with a stamp far from its neighbours is left out"),
             "{:?}",
             source.1.warnings
         );

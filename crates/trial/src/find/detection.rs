@@ -1,5 +1,5 @@
-//! What a search gives: a manoeuvre with the part of the log that is to be analysed, and how good the log is there:
-//! facts that a person wants before that. Nothing is refused for them.
+//! Result of a search: a manoeuvre with its part of the log, and the quality of the log there. The quality is for the
+//! reader of a list; no manoeuvre is refused for it.
 
 use ship::angle::to_deg;
 
@@ -7,50 +7,50 @@ use super::pattern::Prepared;
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::holds::conventional_deg;
 
-/// Share of missing headings worth a remark.
-const MISSING: f64 = 0.01;
+/// Maximum share of missing headings without a remark.
+const MAX_MISSING_SHARE: f64 = 0.01;
 
-/// Rows without a heading, in usual steps, that make a gap.
-const GAP: f64 = 10.0;
+/// Minimum length of a gap, usual time steps.
+const GAP_STEPS: f64 = 10.0;
 
-/// Difference between holds to one side worth a remark, degrees.
-const SPREAD_DEG: f64 = 1.5;
+/// Maximum difference between holds to one side without a remark, degrees.
+const MAX_SPREAD_DEG: f64 = 1.5;
 
-/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 %
-/// over all of it.
+/// Maximum change of speed and revolutions in a steady approach, as a share, from its first third to its last: 5 % over
+/// its full length.
 pub(crate) const STEADY_SPEED: f64 = 0.033;
 
-/// How a manoeuvre was approached.
+/// Approach of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Approach {
-    /// On a steady course at a steady speed; the part begins with the end of it.
+    /// Steady course and speed; the part begins with the end of the approach.
     Steady,
-    /// By hand, turning, or at a changing speed; the part begins with the first execute.
+    /// Hand steering, a turn or a changing speed; the part begins with the first execute.
     Unsteady,
     /// The log begins in the manoeuvre.
     Absent,
 }
 
-/// How good a log is where a manoeuvre was found.
+/// Quality of a log in the part of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
     /// Share of the rows without a heading, 0 to 1.
     pub missing_headings: f64,
-    /// Longest time without a heading, s; `None` where it is not much longer than usual.
+    /// Longest gap of the heading, s; `None` where it is not much longer than the usual time step.
     pub longest_gap: Option<f64>,
     /// Largest difference between the rudder angles held to one side of a zig-zag, rad.
     pub rudder_spread: f64,
-    /// How it was approached; `None` for a pull-out and a straight piece.
+    /// Approach; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
     /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
-    /// larger; positive where it grew; `None` where it is not known.
+    /// larger; positive where it grew; `None` where no speed was recorded.
     pub speed_change: Option<f64>,
 }
 
 impl Quality {
-    /// What the rows of a part tell by themselves.
+    /// Quality of the rows of a part, without its approach and holds.
     pub(crate) fn of(record: &Prepared, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
@@ -61,32 +61,32 @@ impl Quality {
         }
         Self {
             missing_headings: f64::from(missing) / time.len() as f64,
-            longest_gap: (longest > GAP * record.rest.step).then_some(longest),
+            longest_gap: (longest > GAP_STEPS * record.rudder.step).then_some(longest),
             rudder_spread: 0.0,
             approach: None,
             speed_change: None,
         }
     }
 
-    /// What is worth knowing, in sentences; empty where there is nothing.
+    /// Remarks on the quality, one sentence each; empty for a good log.
     pub fn remarks(&self) -> Vec<String> {
         let approach = match self.approach {
             Some(Approach::Unsteady) => {
-                Some("The approach was not steady: the part begins at the first execute.".into())
+                Some("The approach was not steady; the part begins at the first execute.".into())
             }
-            Some(Approach::Absent) => Some("The log begins in the manoeuvre: there is no approach.".into()),
+            Some(Approach::Absent) => Some("The log begins within the manoeuvre, without an approach.".into()),
             Some(Approach::Steady) | None => None,
         };
         let speed = self.speed_change.filter(|change| change.abs() > STEADY_SPEED).map(|change| {
             let verb = if change > 0.0 { "grew" } else { "fell" };
-            format!("The speed still {verb} by {:.0} % in the approach.", 100.0 * change.abs())
+            format!("The speed {verb} by {:.0} % during the approach.", 100.0 * change.abs())
         });
-        let missing = (self.missing_headings > MISSING)
+        let missing = (self.missing_headings > MAX_MISSING_SHARE)
             .then(|| format!("{:.0} % of the headings are missing.", 100.0 * self.missing_headings));
-        let gap = self.longest_gap.map(|gap| format!("There is no heading for {gap:.1} s."));
+        let gap = self.longest_gap.map(|gap| format!("The longest gap of the heading is {gap:.1} s."));
         let spread = to_deg(self.rudder_spread);
-        let spread =
-            (spread > SPREAD_DEG).then(|| format!("The rudder angles held to one side differ by up to {spread:.1}°."));
+        let spread = (spread > MAX_SPREAD_DEG)
+            .then(|| format!("The rudder angles held to one side differ by up to {spread:.1}°."));
         [approach, speed, missing, gap, spread].into_iter().flatten().collect()
     }
 }
@@ -94,35 +94,35 @@ impl Quality {
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundManoeuvre {
-    /// What it is, with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds to
-    /// each side, its heading the median over the executes; `None` where the ship keeps her course.
+    /// Kind of manoeuvre with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds
+    /// to each side, its heading the median over the executes; `None` where the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
     /// First row of the part to analyse, s: the first execute, or before it where the approach was steady.
     pub from: f64,
-    /// Last row of that part, s: the rudder is still held in it, and the propeller turns.
+    /// Last row of the part, s: the rudder is still held and the propeller turns.
     pub until: f64,
     /// Time of the first row in which the rudder moves for this manoeuvre, s; of a straight piece its first row.
     pub start: f64,
     /// Number of executes: a turn has one, a straight piece none.
     pub executes: usize,
-    /// How good the log is there.
+    /// Quality of the log in the part.
     pub quality: Quality,
 }
 
 impl FoundManoeuvre {
-    /// A name for lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out",
-    /// "spiral", "straight".
+    /// Name in lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out", "spiral",
+    /// "straight".
     pub fn name(&self) -> String {
         let Some(manoeuvre) = &self.manoeuvre else { return String::from("straight") };
         let rudder = conventional(manoeuvre.rudder(), 0.08, 0.08);
         match manoeuvre {
             Manoeuvre::ZigZag { heading, .. } => format!("zig-zag {rudder}/{}", conventional(*heading, 0.05, 0.25)),
             Manoeuvre::TurningCircle { side, .. } => format!("turning circle {rudder} to {side}"),
-            other => other.name().to_owned(),
+            _ => manoeuvre.name().to_owned(),
         }
     }
 
-    /// Rudder and change of heading that it is known by, rad, positive to starboard; those of a zig-zag have no sign.
+    /// Nominal rudder and change of heading, rad, positive to starboard; those of a zig-zag have no sign.
     pub fn angles(&self) -> [Option<f64>; 2] {
         let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
         let (rudder, sign) = (manoeuvre.rudder(), manoeuvre.side().sign());
@@ -136,7 +136,7 @@ impl FoundManoeuvre {
     }
 }
 
-/// The conventional angle near a measured one, for a name; see [`conventional_deg`].
+/// Conventional angle near a measured angle (rad), for a name; see [`conventional_deg`].
 fn conventional(angle: f64, below: f64, above: f64) -> String {
     let degrees = to_deg(angle);
     conventional_deg(degrees, below, above, 0.0).map_or_else(|| format!("{degrees:.1}"), |angle| format!("{angle:.0}"))

@@ -1,45 +1,45 @@
-//! Where the rudder of a log rests: holds of rows about one angle, whatever the noise, the rounding and the spikes
-//! of the channel. Which of them belong to a manoeuvre is not decided here.
+//! Holds of the rudder in a log: rows about one angle, robust against noise, rounding and spikes of the channel. The
+//! patterns of holds that make a manoeuvre are in the modules beside this one.
 
 use std::ops::RangeInclusive;
 
 use super::course::{middle, thinned};
 use estimation::statistics::median;
 
-/// Narrowest band about a level in which the rudder rests, rad: orders and feedback agree to about half a degree.
-const NARROWEST_BAND: f64 = 0.5_f64.to_radians();
+/// Minimum half-width of the band of a hold, rad: orders and feedback agree to about half a degree.
+const MIN_BAND: f64 = 0.5_f64.to_radians();
 
-/// Widest such band that noise and rounding may ask for, rad: steering by an autopilot is no noise.
-const WIDEST_BAND: f64 = 1.5_f64.to_radians();
+/// Maximum half-width for noise and rounding, rad: steering by an autopilot is not noise.
+const MAX_BAND: f64 = 1.5_f64.to_radians();
 
 /// Half-width of the band as a share of its level.
-const BAND: f64 = 0.11;
+const BAND_SHARE: f64 = 0.11;
 
-/// Differences that no rudder angle is read to, rad.
+/// Resolution of a rudder angle, rad.
 const RESOLUTION: f64 = 0.05_f64.to_radians();
 
-/// Largest rudder angle that may keep a straight course, rad.
-const LARGEST_NEUTRAL: f64 = 2.5_f64.to_radians();
+/// Maximum neutral rudder angle of a straight course, rad.
+const MAX_NEUTRAL: f64 = 2.5_f64.to_radians();
 
-/// Difference of neighbouring holds that are taken together, as a share of the larger level.
-const SAME_LEVEL: f64 = 0.15;
+/// Maximum difference between the levels of merged holds, as a share of the larger level.
+const MAX_LEVEL_DIFFERENCE: f64 = 0.15;
 
-/// Pause between such holds as a share of their time together.
-const SHORT_PAUSE: f64 = 0.5;
+/// Maximum pause between merged holds as a share of their total duration.
+const MAX_PAUSE_SHARE: f64 = 0.5;
 
-/// A rest shorter than this share of another is no hold beside it.
-const SHORT: f64 = 0.2;
+/// Minimum duration of a hold as a share of its neighbours.
+const MIN_DURATION_SHARE: f64 = 0.2;
 
-/// Rows off the level that do not end a hold.
-const STRAY_ROWS: usize = 2;
+/// Maximum number of rows off the level within a hold.
+const MAX_STRAY_ROWS: usize = 2;
 
-/// Fewest rows of a hold.
-const FEWEST_ROWS: usize = 3;
+/// Minimum number of rows of a hold.
+const MIN_ROWS: usize = 3;
 
-/// A step between rows of so many usual ones ends a hold: nobody knows what the rudder did meanwhile.
-const GAP: f64 = 30.0;
+/// Length of a gap that ends a hold, usual time steps.
+const GAP_STEPS: f64 = 30.0;
 
-/// A hold of rows with the rudder at rest.
+/// A hold: rows with the rudder at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// First row.
@@ -50,7 +50,7 @@ pub(crate) struct Hold {
     pub from: f64,
     /// Time of the last row, s.
     pub until: f64,
-    /// Middle of its rudder angles, rad.
+    /// Median rudder angle, rad.
     pub level: f64,
 }
 
@@ -60,16 +60,16 @@ impl Hold {
         self.until - self.from
     }
 
-    /// Both and what is between them; the level is that of the longer.
+    /// Both holds and the rows between them; the level is that of the longer hold.
     pub fn joined(self, later: Self) -> Self {
         let level = if later.duration() > self.duration() { later.level } else { self.level };
         Self { last: later.last, until: later.until, level, ..self }
     }
 }
 
-/// The rudder of a log and where it rests.
+/// Rudder of a log with its holds.
 #[derive(Debug)]
-pub(crate) struct Rest {
+pub(crate) struct RudderHolds {
     /// Rudder angle without spikes of one row, rad.
     pub angle: Vec<f64>,
     /// Standard deviation of the rudder noise, rad.
@@ -78,32 +78,32 @@ pub(crate) struct Rest {
     pub floor: f64,
     /// Usual time between rows, s; 0 for less than two rows.
     pub step: f64,
-    /// Rudder angle of a straight course, rad: what the rudder has mostly, or 0 where that is no small angle.
+    /// Neutral rudder angle, rad: the median of the log, or 0 where the median is not small.
     pub neutral: f64,
     /// Every hold, in order.
     pub holds: Vec<Hold>,
-    /// The same with neighbours of nearly the same level taken together.
+    /// Holds with neighbours of nearly the same level merged.
     pub merged: Vec<Hold>,
 }
 
-impl Rest {
-    /// Fails never; a log of less than three rows has no holds.
+impl RudderHolds {
+    /// Holds of a rudder (rad) over time (s); a log of less than three rows has none.
     pub fn of(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
         let step = usual(time.windows(2).map(|pair| pair[1] - pair[0]));
         // Second differences see noise and no movement; those of white noise have six times its variance.
         let noise = 1.4826 / 6.0_f64.sqrt() * usual(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
-        let quantum = smallest_steps(rudder);
-        let floor = (3.0 * noise).max(1.1 * quantum).clamp(NARROWEST_BAND, WIDEST_BAND);
-        let most = usual(angle.iter().copied());
-        let neutral = if most.abs() <= LARGEST_NEUTRAL { most } else { 0.0 };
-        let mut rest = Self { angle, noise, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
-        rest.holds = rest.cut(time);
-        rest.merged = rest.merged();
-        rest
+        let quantum = smallest_step(rudder);
+        let floor = (3.0 * noise).max(1.1 * quantum).clamp(MIN_BAND, MAX_BAND);
+        let median = usual(angle.iter().copied());
+        let neutral = if median.abs() <= MAX_NEUTRAL { median } else { 0.0 };
+        let mut rudder = Self { angle, noise, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
+        rudder.holds = rudder.cut(time);
+        rudder.merged = rudder.merged();
+        rudder
     }
 
-    /// Whether the rudder of a hold is that of a straight course.
+    /// `true` where the rudder of a hold is amidships or neutral.
     pub fn is_amidships(&self, hold: &Hold) -> bool {
         hold.level.abs().min((hold.level - self.neutral).abs()) < self.floor
     }
@@ -113,11 +113,11 @@ impl Rest {
         let mut holds = Vec::new();
         let (mut first, mut last, mut sum, mut count) = (0, 0, 0.0, 0.0);
         for row in 0..self.angle.len() {
-            let gap = row > 0 && time[row] - time[row - 1] > GAP * self.step;
+            let gap = row > 0 && time[row] - time[row - 1] > GAP_STEPS * self.step;
             let level: f64 = sum / count;
-            let band = self.floor.max(BAND * level.abs());
+            let band = self.floor.max(BAND_SHARE * level.abs());
             let inside = |row: usize| self.angle.get(row).is_some_and(|x| (x - level).abs() <= band);
-            if count > 0.0 && !gap && !inside(row) && (row + 1..=row + STRAY_ROWS).any(inside) {
+            if count > 0.0 && !gap && !inside(row) && (row + 1..=row + MAX_STRAY_ROWS).any(inside) {
                 continue;
             }
             if count > 0.0 && (gap || !inside(row)) {
@@ -127,20 +127,20 @@ impl Rest {
             (sum, count, last) = (sum + self.angle[row], count + 1.0, row);
         }
         if count > 0.0 {
-            let band = self.floor.max(BAND * (sum / count).abs());
+            let band = self.floor.max(BAND_SHARE * (sum / count).abs());
             holds.extend(self.hold(time, first, last, band));
         }
         holds
     }
 
-    /// The holds with neighbours of nearly the same level taken together, and what little is between them.
+    /// The holds with neighbours of nearly the same level merged, short rests between them included.
     fn merged(&self) -> Vec<Hold> {
         let mut merged: Vec<Hold> = Vec::new();
         for &next in &self.holds {
-            // What is short beside both is a pause or the end of a movement; beside hours on a straight course
-            // everything is short.
+            // A rest much shorter than both neighbours is a pause or the end of a movement. Beside hours on a straight
+            // course every rest is short.
             if let [.., before, between] = merged.as_slice()
-                && between.duration() < SHORT * before.duration().min(next.duration())
+                && between.duration() < MIN_DURATION_SHARE * before.duration().min(next.duration())
                 && !self.is_amidships(before)
                 && is_same(before, &next, self.floor)
             {
@@ -154,9 +154,9 @@ impl Rest {
         merged
     }
 
-    /// The rows of a cut without the ends of the movements about them; `None` where the rudder moved all the time.
+    /// The rows of a cut without the ends of the adjacent movements; `None` where the rudder moved all the time.
     fn hold(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Hold> {
-        if last + 1 - first < FEWEST_ROWS {
+        if last + 1 - first < MIN_ROWS {
             return None;
         }
         let half = (last + 1 - first) / 2;
@@ -170,7 +170,7 @@ impl Rest {
         let (early, late) = (self.settled(early, band)?, self.settled(late, band)?);
         let begin = (first..=last).find(|&row| early.contains(&self.angle[row]))?;
         let end = (begin..=last).rev().find(|&row| late.contains(&self.angle[row]))?;
-        (end + 1 - begin >= FEWEST_ROWS).then_some(Hold {
+        (end + 1 - begin >= MIN_ROWS).then_some(Hold {
             first: begin,
             last: end,
             from: time[begin],
@@ -179,26 +179,30 @@ impl Rest {
         })
     }
 
-    /// Angles that most of these values have: what is beyond them has begun to move.
+    /// Range of the settled rudder: values beyond it belong to a movement.
     fn settled(&self, values: &[f64], band: f64) -> Option<RangeInclusive<f64>> {
         let level = middle(values)?;
         let mut off: Vec<f64> = thinned(values).iter().map(|x| (x - level).abs()).collect();
         off.sort_unstable_by(f64::total_cmp);
-        let most = 1.3 * off[(off.len() - 1) * 9 / 10];
-        let reach = most.max(2.5 * self.noise).max(0.01 * level.abs()).max(RESOLUTION).min(band);
+        let scatter = 1.3 * off[(off.len() - 1) * 9 / 10];
+        let reach = scatter.max(2.5 * self.noise).max(0.01 * level.abs()).max(RESOLUTION).min(band);
         Some(level - reach..=level + reach)
     }
 }
 
+/// `true` where two neighbouring holds belong to the same hold: similar level, short pause.
 fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
     // The end of a movement is near the level, too.
-    let tolerance =
-        if shorter < SHORT * longer { 0.5 * floor } else { floor.max(SAME_LEVEL * a.level.abs().max(b.level.abs())) };
-    (a.level - b.level).abs() <= tolerance && b.from - a.until <= SHORT_PAUSE * (a.duration() + b.duration())
+    let tolerance = if shorter < MIN_DURATION_SHARE * longer {
+        0.5 * floor
+    } else {
+        floor.max(MAX_LEVEL_DIFFERENCE * a.level.abs().max(b.level.abs()))
+    };
+    (a.level - b.level).abs() <= tolerance && b.from - a.until <= MAX_PAUSE_SHARE * (a.duration() + b.duration())
 }
 
-/// Every value with its two neighbours, the middle of the three.
+/// Running median of three; the first and last value stay.
 fn without_spikes(values: &[f64]) -> Vec<f64> {
     let mut calm = values.to_vec();
     for (row, x) in values.windows(3).enumerate() {
@@ -212,9 +216,9 @@ pub(crate) fn usual(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
-/// Step of a rounded rudder that flickers, rad: one of the smallest differences between rows; 0 where the rudder seldom
-/// changes at all.
-fn smallest_steps(rudder: &[f64]) -> f64 {
+/// Step of a rounded rudder that flickers, rad: the 5th percentile of the differences between rows; 0 where the rudder
+/// seldom changes.
+fn smallest_step(rudder: &[f64]) -> f64 {
     let steps = rudder.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     // Values that differ by rounding of the arithmetic are the same.
     let mut steps: Vec<f64> = steps.filter(|step| *step > 1e-9).collect();
@@ -247,10 +251,10 @@ mod tests {
         let time: Vec<f64> = (0..degrees.len()).map(|row| row as f64).collect();
         for sign in [1.0, -1.0] {
             let rudder: Vec<f64> = degrees.iter().map(|x| sign * from_deg(*x)).collect();
-            let rest = Rest::of(&time, &rudder);
-            let found: Vec<(usize, usize)> = rest.merged.iter().map(|hold| (hold.first, hold.last)).collect();
-            assert_eq!(found, rows);
-            assert_eq!(rest.merged[2].level, -sign * from_deg(20.0));
+            let rudder_holds = RudderHolds::of(&time, &rudder);
+            let holds: Vec<(usize, usize)> = rudder_holds.merged.iter().map(|hold| (hold.first, hold.last)).collect();
+            assert_eq!(holds, rows);
+            assert_eq!(rudder_holds.merged[2].level, -sign * from_deg(20.0));
         }
     }
 }
