@@ -10,7 +10,7 @@ const FEW_SAMPLES: usize = 10;
 
 fn main() {
     let mut criterion = Criterion::default().configure_from_args();
-    let is_measured = std::env::args().any(|own| own == "--bench");
+    let is_measured = std::env::args().any(|argument| argument == "--bench");
     for group in works::all() {
         let works = group.rows.into_iter().map(|row| row.work);
         for work in works.filter(|work| is_measured || !work.is_slow) {

@@ -32,22 +32,22 @@ fn indices(theta: &[f64]) -> [f64; 2] {
 pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f64) -> Option<[f64; 2]> {
     let prefilter = Prefilter::new(1, CUTOFF).ok()?;
     let start = Initialization::StateVariableFilter(bandwidth);
-    let found = identify_with_prefilter(rudder, heading, period, 1, 0, &prefilter, &start, &options()).ok()?;
-    Some(indices(found.parameter.as_slice()))
+    let fit = identify_with_prefilter(rudder, heading, period, 1, 0, &prefilter, &start, &options()).ok()?;
+    Some(indices(fit.parameter.as_slice()))
 }
 
 /// SRIVC of K/(1 + T s) from yaw rate and rudder, as in [`srivc_heading`], from a start at [`BANDWIDTH`].
 pub fn srivc_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<[f64; 2]> {
     let start = Initialization::StateVariableFilter(BANDWIDTH);
-    let found = identify(rudder, yaw_rate, period, 1, 0, &start, &options()).ok()?;
-    Some(indices(found.parameter.as_slice()))
+    let fit = identify(rudder, yaw_rate, period, 1, 0, &start, &options()).ok()?;
+    Some(indices(fit.parameter.as_slice()))
 }
 
 /// Output error of rₖ = f rₖ₋₁ + b₀ δₖ + b₁ δₖ₋₁ from yaw rate and rudder; T = −period/ln f, K = (b₀ + b₁)/(1 − f).
 pub fn output_error_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<[f64; 2]> {
     let start = oe::Initialization::Sriv(SRIV_ITERATIONS);
-    let found = oe::identify(rudder, yaw_rate, &Arx::new(1, 1), &start, &oe::OeOptions::default()).ok()?;
-    let [f, b0, b1] = found.model.parameter.as_slice() else { return None };
+    let fit = oe::identify(rudder, yaw_rate, &Arx::new(1, 1), &start, &oe::OeOptions::default()).ok()?;
+    let [f, b0, b1] = fit.model.parameter.as_slice() else { return None };
     Some([(b0 + b1) / (1.0 - f), -period / f.ln()])
 }
 
@@ -92,12 +92,12 @@ mod tests {
     #[test]
     fn rivals_find_the_ship() {
         let [rudder, heading, yaw_rate] = zig_zag();
-        for (name, found, within) in [
+        for (name, fit, within) in [
             ("SRIVC, heading", srivc_heading(&rudder, &heading, PERIOD, BANDWIDTH), 0.01),
             ("SRIVC, gyro", srivc_gyro(&rudder, &yaw_rate, PERIOD), 0.01),
             ("output error, gyro", output_error_gyro(&rudder, &yaw_rate, PERIOD), 0.01),
         ] {
-            let [k, t] = found.expect(name);
+            let [k, t] = fit.expect(name);
             assert!((k / K - 1.0).abs() < within && (t / T - 1.0).abs() < within, "{name}: K {k} 1/s, T {t} s");
         }
     }

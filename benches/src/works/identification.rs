@@ -8,15 +8,14 @@ use trial::Trial;
 use crate::records::{ROWS, first_order_zig_zag, record};
 use crate::work::{Reach, Work, WorkGroup};
 
-/// What everything is held against.
+/// Reference of the comparison.
 const RIVAL: &str = "dsmc SRIVC, heading";
 
-/// Triples of the published method where it takes many, and its name then.
+/// Triples of the published method in its second variant, and the name of that variant.
 const TRIPLES: usize = 200;
 const MANY_TRIPLES: &str = "fourier-published, 200 triples";
 
-/// Largest error of K and T, as a share, that is let pass. The published Fourier method is 14 to 20 % low in T by
-/// itself.
+/// Largest accepted relative error of K and T. The published Fourier method is 14 to 20 % low in T even without noise.
 fn tolerance(method: &str) -> f64 {
     match method {
         "fourier-published" => 0.6,
@@ -25,7 +24,7 @@ fn tolerance(method: &str) -> f64 {
     }
 }
 
-/// Time it may take, as a share of that of the rival.
+/// Largest time, relative to that of the rival.
 fn reach(method: &str) -> Option<Reach> {
     let share = match method {
         "output-error" => 0.5,

@@ -12,8 +12,8 @@ use crate::work::{Work, WorkGroup};
 /// Ships of a prediction.
 const DRAWS: usize = 1000;
 
-/// What a good 10/10 tells of a ship of 75 m at 6 m/s.
-fn known(effect: Option<&dyn Effect>, moment: RandomMoment) -> IdentifiedShip {
+/// Model of a ship of 75 m at 6 m/s, with the covariance of a good 10/10.
+fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> IdentifiedShip {
     let damping = effect.map(|effect| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
@@ -54,17 +54,17 @@ pub fn prediction() -> WorkGroup {
          of the heading.",
     );
     let kind: Manoeuvre = "zig-zag:20/20".parse().expect("a manoeuvre");
-    let mut add = |name: &str, known: IdentifiedShip| {
-        let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("a ship");
+    let mut add = |name: &str, identified_ship: IdentifiedShip| {
+        let mixture = ShipMixture::new(vec![(identified_ship, 1.0)]).expect("a ship");
         let kind = kind.clone();
         let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
         group.alone(work, None);
     };
     let size = from_deg(0.5);
     let gusts = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s: 10.0 };
-    add("first order, calm", known(None, RandomMoment::None));
-    add("first order, gusts", known(None, gusts));
-    add("first order, white moment", known(None, RandomMoment::White { rudder_rad_root_s: size }));
-    add("cubic damping, calm", known(Some(listed("nonlinear_damping", "r³").as_ref()), RandomMoment::None));
+    add("first order, calm", identified_ship(None, RandomMoment::None));
+    add("first order, gusts", identified_ship(None, gusts));
+    add("first order, white moment", identified_ship(None, RandomMoment::White { rudder_rad_root_s: size }));
+    add("cubic damping, calm", identified_ship(Some(listed("nonlinear_damping", "r³").as_ref()), RandomMoment::None));
     group
 }

@@ -54,17 +54,17 @@ pub fn studies() -> WorkGroup {
         "Trials are those of benches/throughput.toml: 271 samples, seven methods, rows kept in memory. The figure is a zig-zag of \
          1201 rows with its characteristic points, 1800 pixels across (twice the pixels of a screen page).",
     );
-    let one = group.alone(Work::new("256 trials, one core", trials()).of_units(TRIALS as usize).slow(), None);
+    let single = group.alone(Work::new("256 trials, one core", trials()).of_units(TRIALS as usize).slow(), None);
     let all = Work::new("256 trials, all cores", trials()).of_units(TRIALS as usize).slow().on_all_cores();
-    group.beside(all, &one, Some(Reach::Scaling(SHARE)));
+    group.beside(all, &single, Some(Reach::Scaling(SHARE)));
     let files = scenarios();
     let resolve = move || files.iter().filter(|file| Scenario::read(file, None).is_ok()).count();
     group.alone(Work::new("resolve every scenario", resolve), None);
     let figure = Arc::new(drawing());
     let drawn = Arc::clone(&figure);
-    let one = group.alone(Work::new("one PNG at 2x", move || drawn.png().expect("a small figure")).slow(), None);
+    let single = group.alone(Work::new("one PNG at 2x", move || drawn.png().expect("a small figure")).slow(), None);
     let many = move || (0..FIGURES).into_par_iter().map(|_| figure.png().expect("a small figure").len()).sum::<usize>();
     let many = Work::new("eight PNGs at 2x, all cores, each", many).of_units(FIGURES).slow().on_all_cores();
-    group.beside(many, &one, None);
+    group.beside(many, &single, None);
     group
 }

@@ -20,14 +20,14 @@ const HSVA: [&str; 8] = [
     "zigzag_05_01",
 ];
 
-/// What all eight, each left out in turn, may take of the time of one.
-const MOST_OF_EIGHT: f64 = 13.0;
+/// Largest time for all eight records, each left out in turn, relative to that of a single record.
+const MAX_TIME_OF_EIGHT: f64 = 13.0;
 
 /// How many of them are fitted together while the others are held out.
 const TOGETHER: usize = 3;
 
-/// The measured records of a folder, which are not part of the project; `None`, and one line on standard error, when
-/// one is not there. They are looked for in the folder named by the environment variable `KEMPF_DATA`, or else in the
+/// The measured records of a folder, which are not part of the project; `None`, and one line on standard error, when a
+/// record is missing. They are read from the folder named by the environment variable `KEMPF_DATA`, or else in the
 /// shared folder beside the project.
 ///
 /// # Panics
@@ -70,12 +70,12 @@ pub fn tracing() -> WorkGroup {
     }
     if let Some(all) = measured("kvlcc2_hsva", &HSVA) {
         let (fitted, others) = all.split_at(TOGETHER);
-        let one = vec![fitted[0].clone()];
-        let one = group.alone(whole("one record, HSVA, 1901 rows", one, Vec::new()), None);
+        let single = vec![fitted[0].clone()];
+        let single = group.alone(whole("one record, HSVA, 1901 rows", single, Vec::new()), None);
         let three = whole("three records, HSVA, five held out", fitted.to_vec(), others.to_vec());
-        group.beside(three, &one, None);
+        group.beside(three, &single, None);
         let eight = whole("eight records, HSVA, each left out in turn", all, Vec::new());
-        group.beside(eight, &one, Some(Reach::Ratio(MOST_OF_EIGHT)));
+        group.beside(eight, &single, Some(Reach::Ratio(MAX_TIME_OF_EIGHT)));
     }
     group
 }

@@ -3,15 +3,16 @@
 //!
 //! T [r(t) − r(s)] + ψ(t) − ψ(s) = K [∫δ + δ_r (t − s)] from s to t. Between two extrema r = 0 and T drops out, which
 //! leaves K and K δ_r; from an extremum to a passage r is large, which gives T. Peaks are not parabolas and the slope
-//! is taken from few rows, so the method is biased by about half a percent and tires quickly in noise; it is here as
-//! the field's own standard of comparison.
+//! comes from few rows, so the method is biased by about half a percent and degrades quickly with noise; it is here as
+//! the field's standard of comparison.
 //!
-//! Source: Nomoto (1960) for the method; the equations are derived anew.
+//! Source of the method: Nomoto (1960), Analysis of Kempf's standard maneuver test and proposed steering quality
+//! indices, First Symposium on Ship Maneuverability, DTMB Report 1461. The equations are derived anew.
 
 mod classic;
 mod equation_8;
-mod found;
 mod points;
+mod points_fit;
 
 use document::{Code, Warning};
 use nalgebra::Matrix3;
@@ -25,8 +26,8 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
-use found::Analysed;
 use points::{BaseHeadingOrigin, Points};
+use points_fit::AnalysedTrial;
 
 /// Which points are used, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -35,19 +36,18 @@ pub enum Variant {
     /// All extrema, a start at rest and all passages, by least squares.
     #[default]
     LeastSquares,
-    /// Three successive extrema and the two passages between them, as in an analysis by hand. Says nothing of its
-    /// error.
+    /// Three successive extrema and the two passages between them, as in an analysis by hand. Gives no uncertainty.
     ThreePeaks,
     /// The integrated equation at instants one window apart, with heading and yaw rate from local cubics.
     #[serde(rename = "equation-8")]
     Equation8,
     /// The same equation at the extrema, referred to the first row, as Ge, Hu, Yin and Sun print it but with the sign
-    /// of r(0) mended. There T stands in it with r(0) alone: it cannot be found from a start at rest.
+    /// of r(0) corrected. T multiplies r(0) alone, so a start at rest does not determine it.
     #[serde(rename = "equation-8-vertices")]
     Equation8Vertices,
 }
 
-/// Settings of CharacteristicPoints.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
@@ -57,7 +57,7 @@ pub struct Settings {
     pub half_width_s: Option<f64>,
     /// Base course, deg; without it the mean heading before the first execute.
     pub base_course_deg: Option<f64>,
-    /// Whether a start at rest counts as an instant with r = 0. It is one only if the ship kept a straight course.
+    /// Whether a start at rest counts as an instant with r = 0; true only if the ship kept a straight course.
     pub start_at_rest: bool,
     /// Rudder bias δ_r, deg, where it is known; without it δ_r is identified.
     pub rudder_bias_deg: Option<f64>,
@@ -96,11 +96,11 @@ impl Settings {
 
 /// The traditional method in several variants.
 ///
-/// The covariance comes from the residuals of few equations, with Student's t for its intervals, and counts no bias.
-/// Diagnostics give K and T of the swings to either side apart, which shows a ship that is not symmetric.
+/// The covariance comes from the residuals of few equations, with Student's t for its intervals, and excludes bias.
+/// Diagnostics give K and T by side, which shows an asymmetric ship.
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when the record does not hold three instants with r = 0 and a passage of
-/// the base course, with [`IdentifyError::Singular`] when T or δ_r cannot be told from the chosen points, and with
+/// the base course, with [`IdentifyError::Singular`] when the chosen points do not determine T or δ_r, and with
 /// [`IdentifyError::NotAShip`] when K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CharacteristicPoints {
@@ -129,32 +129,32 @@ impl Identifier for CharacteristicPoints {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let base = self.settings.base_course_deg.map(from_deg);
-        let analysed: Vec<Analysed> = Samples::of_all(trials, Trial::FEWEST_ROWS)?
+        let analysed: Vec<AnalysedTrial> = Samples::from_trials(trials, Trial::FEWEST_ROWS)?
             .into_iter()
             .map(|samples| {
                 let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
                 if !self.settings.start_at_rest {
-                    points.forget_rest();
+                    points.drop_rest();
                 }
-                Analysed { samples, points }
+                AnalysedTrial { samples, points }
             })
             .collect();
         let bias = self.settings.rudder_bias_deg.map(from_deg);
         let limit = self.settings.condition_limit;
-        let found = match self.settings.variant {
+        let fit = match self.settings.variant {
             Variant::LeastSquares => classic::identify(&analysed, bias, limit, false),
             Variant::ThreePeaks => classic::identify(&analysed, bias, limit, true),
             Variant::Equation8 => equation_8::identify_spread(&analysed, bias, limit),
             Variant::Equation8Vertices => equation_8::identify_at_vertices(&analysed, bias, limit),
         }?;
-        let [gain, gain_bias, time] = found.parameters;
+        let [gain, gain_bias, time] = fit.parameters;
         let response = FirstOrder { inverse_T: 1.0 / time, K_over_T: gain / time, rudder_bias: gain_bias / gain };
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite()) {
             return Err(IdentifyError::NotAShip { inverse_time: response.inverse_T, gain: response.K_over_T });
         }
-        let uncertainty = match found.covariance {
+        let uncertainty = match fit.covariance {
             Ok((matrix, freedom)) => {
-                let to_base = to_base(found.parameters);
+                let to_base = to_base(fit.parameters);
                 Uncertainty::Covariance(Covariance {
                     matrix: to_base * matrix * to_base.transpose(),
                     degrees_of_freedom: Some(freedom),
@@ -162,8 +162,8 @@ impl Identifier for CharacteristicPoints {
             }
             Err(reason) => Uncertainty::None { reason },
         };
-        let mut diagnostics = found.diagnostics;
-        let count = |of: fn(&Points) -> usize| analysed.iter().map(|trial| of(&trial.points) as f64).sum();
+        let mut diagnostics = fit.diagnostics;
+        let count = |number: fn(&Points) -> usize| analysed.iter().map(|trial| number(&trial.points) as f64).sum();
         diagnostics.push(("instants_without_yaw_rate", count(|points| points.still.len())));
         diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
         diagnostics.push(("half_width_s", analysed[0].points.half_width));
@@ -186,19 +186,19 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
     Matrix3::new(0.0, 0.0, -1.0 / square, 1.0 / time, 0.0, -gain / square, -gain_bias / (gain * gain), 1.0 / gain, 0.0)
 }
 
-fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<Warning> {
-    let told = |(trial, analysed): (&Trial, &Analysed)| {
-        let taken = match analysed.points.base_from {
+fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
+    let base_course_warning = |(trial, analysed): (&Trial, &AnalysedTrial)| {
+        let assumed = match analysed.points.base_from {
             BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
             BaseHeadingOrigin::Zero => "heading 0",
             BaseHeadingOrigin::Middle => "the middle of its headings",
         };
         Some(Code::Method.warning(format!(
-            "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",
+            "{} has no straight approach: {assumed} was taken for the base course; set base-course-deg if you know it",
             trial.title()
         )))
     };
-    trials.iter().zip(analysed).filter_map(told).collect()
+    trials.iter().zip(analysed).filter_map(base_course_warning).collect()
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Why a method cannot give an estimate; every variant carries the numbers a reader needs.
+//! Reasons why a method gives no estimate; every variant carries the numbers a reader needs.
 
 use std::borrow::Cow;
 
@@ -11,7 +11,7 @@ pub enum IdentifyError {
     /// No trial was given.
     #[error("no trial was given")]
     NoTrial,
-    /// The ship was not steered: nothing can be learnt from the record.
+    /// The ship was hardly steered: the record does not determine the parameters.
     #[error(
         "not excited: the rudder of {trial} moves over {rudder_deg:.2} deg and the heading over {heading_deg:.2} deg; \
          give a record in which the rudder is put to both sides"
@@ -26,8 +26,8 @@ pub enum IdentifyError {
     },
     /// Times or angles beyond any manoeuvre, whose powers overflow.
     #[error(
-        "{trial} is no manoeuvre: it lasts {duration_s:.1e} s and its angles reach {angle_rad:.1e} rad; look at the units \
-         of its columns"
+        "{trial} is not a manoeuvre: it lasts {duration_s:.1e} s and its angles reach {angle_rad:.1e} rad; check the units \
+        of its columns"
     )]
     OutOfRange {
         /// Name of the trial.
@@ -38,24 +38,24 @@ pub enum IdentifyError {
         angle_rad: f64,
     },
     /// Fewer samples than the method needs.
-    #[error("needs at least {needed} samples, {trial} has {found}")]
+    #[error("needs at least {needed} samples, {trial} has {count}")]
     TooFewSamples {
         /// Name of the trial.
         trial: String,
         /// Samples needed.
         needed: usize,
-        /// Samples found.
-        found: usize,
+        /// Samples in the record.
+        count: usize,
     },
     /// Fewer points of a kind than the method needs.
-    #[error("needs at least {needed} {what}, found {found}")]
+    #[error("needs at least {needed} {what}, found {count}")]
     TooFewPoints {
         /// What is counted, e.g. "heading extrema".
         what: &'static str,
         /// Points needed.
         needed: usize,
-        /// Points found.
-        found: usize,
+        /// Points in the records.
+        count: usize,
     },
     /// The method needs a channel that the record does not have.
     #[error("{trial} has no {channel}")]
@@ -81,7 +81,7 @@ pub enum IdentifyError {
         /// Last relative step.
         step: f64,
     },
-    /// The record does not show that the rudder acts, as in a steady turn in which K and δ_r cannot be told apart.
+    /// The record does not show that the rudder acts, as in a steady turn, which does not separate K from δ_r.
     #[error(
         "the record does not show an effect of the rudder: K/T = {gain:.1e} ± {sd:.1e} 1/s²; give a record in which the \
          rudder is put to both sides"
@@ -92,9 +92,9 @@ pub enum IdentifyError {
         /// Its standard deviation, 1/s².
         sd: f64,
     },
-    /// The answer is not a ship: K/T ≤ 0 or not finite.
+    /// The estimate is not a ship: K/T ≤ 0 or not finite.
     #[error(
-        "the answer is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
+        "the estimate is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
          units of rudder and heading"
     )]
     NotAShip {
@@ -103,8 +103,7 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
-    /// An outside estimator gave no answer, and why, on one line that can be printed; made by
-    /// [`IdentifyError::outside`].
+    /// Reason why an outside estimator gave no estimate, on one printable line; made by [`IdentifyError::outside`].
     #[error("outside: {0}")]
     Outside(String),
 }
@@ -112,31 +111,31 @@ pub enum IdentifyError {
 impl From<Unsolvable> for IdentifyError {
     fn from(unsolvable: Unsolvable) -> Self {
         match unsolvable {
-            Unsolvable::TooFewRows { needed, found } => Self::TooFewPoints { what: "equations", needed, found },
+            Unsolvable::TooFewRows { needed, found } => Self::TooFewPoints { what: "equations", needed, count: found },
             Unsolvable::Singular { condition, limit } => Self::Singular { condition, limit },
         }
     }
 }
 
-/// Most characters of the reason of an outside estimator.
-const LONGEST_REASON: usize = 80;
+/// Characters of the reason of an outside estimator.
+const MAX_REASON_CHARS: usize = 80;
 
 impl IdentifyError {
-    /// A failure of an outside estimator in its words, on one line of at most 80 characters. Blanks of any kind become
-    /// one, and what cannot be seen is shown as an escape.
-    pub fn outside(words: &str) -> Self {
-        let one_line = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    /// Failure of an outside estimator with its message, on one line of at most 80 characters. Runs of blanks become a
+    /// single blank, and invisible characters are shown as escapes.
+    pub fn outside(message: &str) -> Self {
+        let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
         let shown = |c: char| match c {
             ' '..='~' => c.to_string(),
             // Behind a letter, which an accent needs.
             c => ['a', c].iter().collect::<String>().escape_debug().skip(1).collect(),
         };
         let mut reason = String::new();
-        let mut left = LONGEST_REASON;
+        let mut room = MAX_REASON_CHARS;
         for piece in one_line.chars().map(shown) {
-            match left.checked_sub(piece.chars().count()) {
+            match room.checked_sub(piece.chars().count()) {
                 // Room for the sign that something is left out.
-                Some(rest) if rest > 0 => (left, reason) = (rest, reason + &piece),
+                Some(remaining) if remaining > 0 => (room, reason) = (remaining, reason + &piece),
                 _ => {
                     reason.push('…');
                     break;
@@ -146,7 +145,7 @@ impl IdentifyError {
         Self::Outside(if reason.is_empty() { "no reason given".to_owned() } else { reason })
     }
 
-    /// A short word for tables and rows.
+    /// Short name for tables and rows.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::NoTrial => "no-trial",
@@ -163,11 +162,11 @@ impl IdentifyError {
         }
     }
 
-    /// What a row says: the same word, and behind `outside` the reason that was given.
+    /// Text in a row: the short name, and behind `outside` the reason that was given.
     pub fn in_a_row(&self) -> Cow<'static, str> {
         match self {
             Self::Outside(_) => self.to_string().into(),
-            own => own.kind().into(),
+            error => error.kind().into(),
         }
     }
 }
@@ -177,13 +176,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_another_program_says_is_one_short_line() {
-        let said = |words: &str| IdentifyError::outside(words).in_a_row().into_owned();
-        assert_eq!(said(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
-        assert_eq!(said("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
-        assert_eq!(said(" \n"), "outside: no reason given");
-        let long = said(&"é\u{7}".repeat(100_000));
-        assert!(long.chars().count() <= "outside: ".len() + LONGEST_REASON && long.ends_with('…'), "{long}");
+    fn an_outside_message_is_a_single_short_line() {
+        let row = |message: &str| IdentifyError::outside(message).in_a_row().into_owned();
+        assert_eq!(row(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
+        assert_eq!(row("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
+        assert_eq!(row(" \n"), "outside: no reason given");
+        let long_text = row(&"é\u{7}".repeat(100_000));
+        assert!(
+            long_text.chars().count() <= "outside: ".len() + MAX_REASON_CHARS && long_text.ends_with('…'),
+            "{long_text}"
+        );
         assert_eq!(IdentifyError::NoTrial.in_a_row(), "no-trial");
     }
 }

@@ -1,4 +1,4 @@
-//! What a method returns: the response, how sure it is, and how it got there.
+//! Result of a method: the response, its uncertainty, and how the method stopped.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::cell::Cell;
@@ -9,7 +9,7 @@ use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use trial::Quantity;
 
-/// Why a method stopped; of two reasons the less welcome is the greater.
+/// Why a method stopped, in order from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopReason {
     /// The answer comes from a closed formula.
@@ -20,7 +20,7 @@ pub enum StopReason {
     IterationLimit,
     /// The best point lies at the end of the searched range.
     RangeLimit,
-    /// Another program gave the answer and does not say.
+    /// An outside estimator, which reports no reason.
     Outside,
 }
 
@@ -28,7 +28,7 @@ impl StopReason {
     /// All reasons.
     pub const ALL: [Self; 5] = [Self::Direct, Self::Converged, Self::IterationLimit, Self::RangeLimit, Self::Outside];
 
-    /// The word used in tables and JSON.
+    /// Name used in tables and JSON.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Direct => "direct",
@@ -49,7 +49,7 @@ pub struct Covariance {
     pub degrees_of_freedom: Option<f64>,
 }
 
-/// What a method knows of its own error.
+/// Uncertainty of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Uncertainty {
     /// A covariance of the parameters.
@@ -62,12 +62,12 @@ pub enum Uncertainty {
         T: [f64; 2],
         /// 95 % interval of δ_r, rad.
         rudder_bias: [f64; 2],
-        /// What the intervals cover, in words.
+        /// What the intervals cover, as text.
         meaning: &'static str,
     },
-    /// None, and why.
+    /// No uncertainty.
     None {
-        /// The reason, in words.
+        /// The reason, as text.
         reason: &'static str,
     },
 }
@@ -97,9 +97,9 @@ pub enum Uncertainty {
 pub struct Estimate {
     /// The first-order response.
     pub response: FirstOrder,
-    /// What is known of its error, if the residual is white.
+    /// Its uncertainty, valid if the residual is white.
     pub uncertainty: Uncertainty,
-    /// Covariance that also holds when the residual is coloured, where the method has one.
+    /// Covariance that is also valid for a coloured residual, where the method has it.
     pub robust: Option<Covariance>,
     /// Why the method stopped.
     pub stop: StopReason,
@@ -109,21 +109,21 @@ pub struct Estimate {
     pub noise: Option<HeadingNoise>,
     /// Named figures for a reader: fit R², condition numbers, counts; the unit is in the name.
     pub diagnostics: Vec<(&'static str, f64)>,
-    /// What a reader should see beside the numbers, without the name that the method goes by.
+    /// Warnings shown beside the numbers; they do not name the method.
     pub warnings: Vec<Warning>,
 }
 
 impl Estimate {
     /// The diagnostic of this name, where the method has it.
     pub fn diagnostic(&self, name: &str) -> Option<f64> {
-        self.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
+        self.diagnostics.iter().find(|(label, _)| *label == name).map(|(_, value)| *value)
     }
 
     /// K with its error, 1/s.
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
-            Uncertainty::Intervals { K, .. } => known(self.response.K(), None, Some(*K)),
+            Uncertainty::Intervals { K, .. } => with_error(self.response.K(), None, Some(*K)),
             Uncertainty::None { .. } => Quantity::bare(self.response.K()),
         }
     }
@@ -132,7 +132,7 @@ impl Estimate {
     pub fn T(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
-            Uncertainty::Intervals { T, .. } => known(self.response.T(), None, Some(*T)),
+            Uncertainty::Intervals { T, .. } => with_error(self.response.T(), None, Some(*T)),
             Uncertainty::None { .. } => Quantity::bare(self.response.T()),
         }
     }
@@ -142,7 +142,7 @@ impl Estimate {
         let value = self.response.rudder_bias;
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => bias(&self.response, covariance),
-            Uncertainty::Intervals { rudder_bias, .. } => known(value, None, Some(*rudder_bias)),
+            Uncertainty::Intervals { rudder_bias, .. } => with_error(value, None, Some(*rudder_bias)),
             Uncertainty::None { .. } => Quantity::bare(value),
         }
     }
@@ -154,9 +154,9 @@ impl Covariance {
         (index_K(response, self), index_T(response, self))
     }
 
-    /// Two-sided 95 % quantile: Student's t for an estimated variance, normal for a known one.
+    /// Two-sided 95 % quantile: Student's t for an estimated noise variance, normal for a given variance.
     pub fn quantile95(&self) -> f64 {
-        // Every quantity of an estimate asks for the same one.
+        // All quantities of an estimate share this quantile.
         thread_local!(static LAST: Cell<Option<(Option<f64>, f64)>> = const { Cell::new(None) });
         match LAST.get() {
             Some((freedom, quantile)) if freedom == self.degrees_of_freedom => quantile,
@@ -168,18 +168,18 @@ impl Covariance {
         }
     }
 
-    /// Outline of the region that holds K (1/s) and T (s) together with 95 %, closed: the image of the ellipse of 1/T
-    /// and K/T, which bends where they are not well known.
+    /// Outline of the joint 95 % region of K (1/s) and T (s), closed: the image of the ellipse of 1/T and K/T, which
+    /// bends where the uncertainty is large.
     ///
-    /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and
-    /// q = ν (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a known variance. `None` where the region of
-    /// 1/T holds zero, and with it an endless T, and where there is no covariance.
+    /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and q = ν
+    /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` where the region of 1/T holds
+    /// zero, so that T is unbounded, and without a covariance.
     pub fn outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
         const CORNERS: usize = 120;
-        let miss: f64 = 0.05;
+        let exceedance: f64 = 0.05;
         let q = match self.degrees_of_freedom {
-            Some(freedom) => freedom * (miss.powf(-2.0 / freedom) - 1.0),
-            None => -2.0 * miss.ln(),
+            Some(freedom) => freedom * (exceedance.powf(-2.0 / freedom) - 1.0),
+            None => -2.0 * exceedance.ln(),
         };
         let m = &self.matrix;
         let l11 = m[(0, 0)].sqrt();
@@ -208,8 +208,8 @@ fn quantile95(degrees_of_freedom: Option<f64>) -> f64 {
     }
 }
 
-/// A value with as much of its error as is bounded.
-fn known(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
+/// Quantity with its standard deviation and interval; unbounded parts are dropped.
+fn with_error(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
     let ci95 = ci95.filter(|ends| ends.iter().all(|end| end.is_finite()));
     Quantity { value, sd: sd.filter(|sd| sd.is_finite()), ci95 }
 }
@@ -227,7 +227,7 @@ fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (p, q, c) = (a * a - z2 * m[(0, 0)], a * b - z2 * m[(0, 1)], b * b - z2 * m[(1, 1)]);
     let root = (q * q - p * c).max(0.0).sqrt();
     let ci95 = (p > 0.0 && value.is_finite()).then(|| [(q - root) / p, (q + root) / p]);
-    known(value, Some(sd), ci95)
+    with_error(value, Some(sd), ci95)
 }
 
 /// T = 1/a with the delta-method standard deviation and the reciprocal of the interval of a.
@@ -237,11 +237,11 @@ fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let reach = covariance.quantile95() * sd_a;
     let ci95 = (reach < a.abs()).then(|| [1.0 / (a + reach), 1.0 / (a - reach)]);
     let sd = sd_a / (a * a);
-    known(response.T(), Some(sd), ci95)
+    with_error(response.T(), Some(sd), ci95)
 }
 
-/// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of
-/// b = K/T holds zero: a rudder that does not act has no bias. Without a variance nothing is known of its error.
+/// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of b =
+/// K/T holds zero: a rudder that does not act has no bias. A variance of zero gives a bare value.
 fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (b, value) = (response.K_over_T, response.rudder_bias);
     let m = &covariance.matrix;
@@ -254,7 +254,7 @@ fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let root = (q * q - p * c).max(0.0).sqrt();
     let ci95 = (p > 0.0 && value.is_finite()).then(|| [value + (q - root) / p, value + (q + root) / p]);
     let sd = m[(2, 2)].max(0.0).sqrt();
-    known(value, Some(sd), ci95)
+    with_error(value, Some(sd), ci95)
 }
 
 #[cfg(test)]
@@ -289,10 +289,11 @@ mod tests {
         let small = covariance(1e-5, 1e-6);
         let outline = small.outline(&response).expect("bounded");
         let half = |part: usize| {
-            let of = || outline.iter().map(|place| place[part]);
-            0.5 * (of().fold(f64::MIN, f64::max) - of().fold(f64::MAX, f64::min))
+            let coordinates = || outline.iter().map(|place| place[part]);
+            0.5 * (coordinates().fold(f64::MIN, f64::max) - coordinates().fold(f64::MAX, f64::min))
         };
-        let sd = [index_K(&response, &small), index_T(&response, &small)].map(|one| one.sd.expect("a covariance"));
+        let sd =
+            [index_K(&response, &small), index_T(&response, &small)].map(|quantity| quantity.sd.expect("a covariance"));
         for (part, sd) in sd.into_iter().enumerate() {
             assert_relative_eq!(half(part), 5.991465f64.sqrt() * sd, max_relative = 2e-3);
         }
@@ -307,15 +308,15 @@ mod tests {
     /// Both ends of the interval of δ_r solve the equation of Fieller (1954) for the ratio of b δ_r to b, and there are
     /// none when b may be zero.
     #[test]
-    fn the_bias_of_a_rudder_that_hardly_acts_is_not_known() {
+    fn the_bias_of_a_rudder_that_hardly_acts_is_unbounded() {
         let response = FirstOrder { inverse_T: 0.06, K_over_T: 6e-3, rudder_bias: 0.02 };
-        let known_to = |sd_b: f64| {
+        let with_rudder_sd = |sd_b: f64| {
             let mut covariance = covariance(1e-3, sd_b);
             let cross = -0.3 * sd_b * covariance.matrix[(2, 2)].sqrt();
             (covariance.matrix[(1, 2)], covariance.matrix[(2, 1)]) = (cross, cross);
             covariance
         };
-        let hardly = known_to(2e-3);
+        let hardly = with_rudder_sd(2e-3);
         let b = response.K_over_T;
         let Quantity { value, ci95, .. } = bias(&response, &hardly);
         let m = &hardly.matrix;
@@ -324,8 +325,8 @@ mod tests {
             let variance = b * b * m[(2, 2)] - 2.0 * x * b * m[(1, 2)] + x * x * m[(1, 1)];
             assert_relative_eq!((x * b).powi(2), 1.959964f64.powi(2) * variance, max_relative = 1e-5);
         }
-        assert_eq!(bias(&response, &known_to(4e-3)).ci95, None);
-        let [lo, hi] = bias(&response, &known_to(1e-6)).ci95.expect("bounded");
+        assert_eq!(bias(&response, &with_rudder_sd(4e-3)).ci95, None);
+        let [lo, hi] = bias(&response, &with_rudder_sd(1e-6)).ci95.expect("bounded");
         assert_relative_eq!(hi - lo, 2.0 * 1.959964 * 1e-4, max_relative = 1e-3);
     }
 

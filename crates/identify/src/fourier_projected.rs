@@ -1,16 +1,16 @@
-//! The Fourier method mended: heading and rudder on the same basis, least squares over all interior samples.
+//! The corrected Fourier method: heading and rudder on the same basis, least squares over all interior samples.
 //!
 //! A truncated series is a filter. In the published form it acts on the heading and not on the rudder, so the two sides
-//! of T r' + r = K (δ + δ_r) no longer belong together and K and T come out low whatever the noise. Here the rudder is
+//! of T r' + r = K (δ + δ_r) are filtered differently and K and T come out low whatever the noise. Here the rudder is
 //! projected on the same basis first: both sides are filtered alike and the bias goes. The fundamental follows from the
 //! length of the record and the zig-zag period, not from the best fit; the number of harmonics from the noise; and all
-//! samples are used instead of triples. What is left is a small truncation bias (some 0.5 %) and, in much noise, the
-//! attenuation of a regression on a noisy yaw rate. The reported covariance takes all that the series leaves of the
-//! heading for white noise, truncation included, so that it is not too sure of a quiet record.
+//! samples are used instead of triples. A small truncation bias (some 0.5 %) remains and, with much noise, the
+//! attenuation of a regression on a noisy yaw rate. The reported covariance counts the whole residual of the heading as
+//! white noise, truncation included, so that it is not overconfident for a quiet record.
 //!
-//! Of a record of more than 50 000 rows neighbours are averaged, rudder and heading alike, down to as many: the
-//! equation is linear and does not notice, and the shortest harmonic there may be still has some 800 rows. Its noise is
-//! then that of the means.
+//! Neighbouring rows of a record of more than 50 000 rows are averaged, rudder and heading alike: the equation is
+//! linear, so the averages satisfy it, and the shortest possible harmonic still has some 800 rows. The noise is then
+//! that of the means.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
@@ -25,24 +25,24 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::fourier::basis::Nested;
+use crate::fourier::basis::NestedBases;
 use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
-use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
+use crate::fourier::{self, Fitted, FourierFit, Fundamental, MAX_HARMONICS, TRUSTED_CONDITION};
 use crate::gaps::{longest_gap, pieces};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
-/// Fewest observed rows of a trial.
-const FEWEST_ROWS: usize = 20;
+/// Observed rows that a trial needs.
+const MIN_ROWS: usize = 20;
 
-/// Rows of a trial beyond which neighbours are averaged.
-const MOST_ROWS: usize = 50_000;
+/// Rows of a trial above which neighbours are averaged.
+const MAX_ROWS: usize = 50_000;
 
 /// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the
 /// first and the third.
-const LEAST_REACH: f64 = 3.0;
+const MIN_REACH: f64 = 3.0;
 
 /// Share of the record without equations at each end, where the series is poor.
 const TRIM_SHARE: f64 = 0.05;
@@ -50,8 +50,8 @@ const TRIM_SHARE: f64 = 0.05;
 /// Harmonics with which w is searched where the order follows later.
 const SEARCH_HARMONICS: usize = 8;
 
-/// White noise below this share of the residual variance: the rest is truncation.
-const LEAST_WHITE_SHARE: f64 = 0.5;
+/// Share of white noise in the residual variance below which truncation dominates.
+const MIN_WHITE_SHARE: f64 = 0.5;
 
 /// How the number of harmonics is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -73,11 +73,11 @@ pub enum RudderTreatment {
     /// Projected on the basis of the heading.
     #[default]
     Projected,
-    /// As recorded: shows what the projection mends.
+    /// As recorded: shows the bias that the projection removes.
     Recorded,
 }
 
-/// Settings of FourierProjected.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
@@ -106,26 +106,26 @@ impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<FourierProjected, SettingsError> {
         match self.harmonics {
-            Order::Fixed(fixed) => require((1..=MOST_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
+            Order::Fixed(fixed) => require((1..=MAX_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
             Order::Gcv { reach } => {
                 require((1.5..=50.0).contains(&reach), "harmonics.reach", ShortNumber(reach), "1.5 to 50")
             }
         }?;
         self.fundamental.check()?;
-        Ok(FourierProjected { settings: self, most_rows: MOST_ROWS })
+        Ok(FourierProjected { settings: self, max_rows: MAX_ROWS })
     }
 }
 
-/// The mended Fourier method.
+/// Fourier method with the rudder projected on the basis of the heading.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow,
+/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the longest series can follow,
 /// some twenty, with [`IdentifyError::Singular`] when the basis or the equations are ill-conditioned, and with
 /// [`IdentifyError::NotAShip`] when K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
     settings: Settings,
     /// Rows of a trial beyond which neighbours are averaged.
-    most_rows: usize,
+    max_rows: usize,
 }
 
 /// Heading and rudder of one trial as Fourier curves of one basis, for a figure.
@@ -147,14 +147,14 @@ struct SeriesRows {
 }
 
 impl SeriesRows {
-    fn of(samples: Samples) -> Self {
+    fn from_samples(samples: Samples) -> Self {
         let Samples { time, heading, rudder, .. } = samples;
         Self { time, heading, rudder }
     }
 
-    /// No more than about `most` rows: means of neighbours, but not across gaps.
-    fn averaged(self, most: usize) -> Self {
-        let group = self.time.len().div_ceil(most);
+    /// At most about `max_rows` rows: means of neighbours, but not across gaps.
+    fn averaged(self, max_rows: usize) -> Self {
+        let group = self.time.len().div_ceil(max_rows);
         if group == 1 {
             return self;
         }
@@ -169,7 +169,7 @@ impl SeriesRows {
     }
 }
 
-/// What the residual of one heading fit says.
+/// Variances of the residual of a heading fit.
 struct ResidualVariance {
     /// Variance of its white part, rad².
     white: f64,
@@ -182,7 +182,7 @@ impl FourierProjected {
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
-        let part = SeriesRows::of(Samples::new(trial, FEWEST_ROWS)?).averaged(self.most_rows);
+        let part = SeriesRows::from_samples(Samples::new(trial, MIN_ROWS)?).averaged(self.max_rows);
         let heading = self.fit(&part)?;
         let rudder = heading.basis.curve(&heading.basis.project(&part.rudder));
         Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
@@ -198,21 +198,21 @@ impl FourierProjected {
         let searched = SEARCH_HARMONICS.min((time.len() - 2) / 2);
         let choice = fundamental.choose(time, heading, searched)?;
         let zigzag = TAU / zero_crossing_period(time, heading)?;
-        let needed = (reach.min(LEAST_REACH) * zigzag / choice.fundamental).ceil() as usize;
-        if needed > MOST_HARMONICS {
+        let needed = (reach.min(MIN_REACH) * zigzag / choice.fundamental).ceil() as usize;
+        if needed > MAX_HARMONICS {
             let what = "harmonics to follow the many zig-zags of this record (give shorter records)";
-            return Err(IdentifyError::TooFewPoints { what, needed, found: MOST_HARMONICS });
+            return Err(IdentifyError::TooFewPoints { what, needed, count: MAX_HARMONICS });
         }
         // At least the zig-zag itself must be in reach, and fewer coefficients than half the rows.
-        let least = ((zigzag / choice.fundamental).ceil() as usize).max(1);
-        let most = ((reach * zigzag / choice.fundamental).floor() as usize)
-            .min(MOST_HARMONICS)
+        let lowest = ((zigzag / choice.fundamental).ceil() as usize).max(1);
+        let highest = ((reach * zigzag / choice.fundamental).floor() as usize)
+            .min(MAX_HARMONICS)
             .min((time.len() / 2 - 1) / 2)
             .max(1);
-        let series = Nested::new(time, choice.fundamental, most)?;
+        let series = NestedBases::new(time, choice.fundamental, highest)?;
         let rows = time.len() as f64;
         let rss = series.rss(heading);
-        let harmonics = (least.min(most)..=most)
+        let harmonics = (lowest.min(highest)..=highest)
             .min_by(|&p, &q| gcv(rows, rss[p], p as f64).total_cmp(&gcv(rows, rss[q], q as f64)))
             .expect("the range holds at least its end");
         let basis = series.basis(harmonics);
@@ -221,7 +221,7 @@ impl FourierProjected {
         accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
     }
 
-    /// Adds the equations of one trial and returns what its residual says of the noise.
+    /// Adds the equations of one trial and returns the variances of its residual.
     fn add(&self, part: &SeriesRows, fitted: &Fitted, equations: &mut Equations) -> ResidualVariance {
         let SeriesRows { time, heading, rudder } = part;
         let residual = &fitted.projection.residual;
@@ -255,8 +255,8 @@ impl Identifier for FourierProjected {
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let mut equations = Equations::default();
         let (mut fits, mut noises, mut freedom) = (Vec::new(), Vec::new(), 0.0);
-        for samples in Samples::of_all(trials, FEWEST_ROWS)? {
-            let part = SeriesRows::of(samples).averaged(self.most_rows);
+        for samples in Samples::from_trials(trials, MIN_ROWS)? {
+            let part = SeriesRows::from_samples(samples).averaged(self.max_rows);
             let fitted = self.fit(&part)?;
             noises.push(self.add(&part, &fitted, &mut equations));
             freedom += part.time.len() as f64 - (2 * fitted.basis.harmonics() + 1) as f64;
@@ -264,8 +264,8 @@ impl Identifier for FourierProjected {
         }
         let solution = equations.solve(self.settings.response, TRUSTED_CONDITION)?;
         let mut diagnostics = fourier::diagnostics(&fits);
-        let worst = |of: fn(&ResidualVariance) -> f64| {
-            to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(of(noise))).sqrt())
+        let worst = |variance: fn(&ResidualVariance) -> f64| {
+            to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(variance(noise))).sqrt())
         };
         diagnostics.extend([
             ("equations", equations.len() as f64),
@@ -275,10 +275,10 @@ impl Identifier for FourierProjected {
         ]);
         let mut warnings = fourier::warnings(&fits);
         for (trial, noise) in trials.iter().zip(&noises) {
-            if noise.white < LEAST_WHITE_SHARE * noise.residual {
+            if noise.white < MIN_WHITE_SHARE * noise.residual {
                 warnings.push(Code::ColouredResidual.warning(format!(
-                    "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg): truncation of \
-                     the series or a disturbance; the intervals take all of it for noise",
+                    "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg) but truncation of \
+                     the series or a disturbance; the intervals count all of it as noise",
                     trial.title(),
                     to_deg(noise.residual.sqrt()),
                     to_deg(noise.white.sqrt()),

@@ -1,9 +1,9 @@
 //! The Fourier method as it was published: eight harmonics with a free fundamental, triples of instants, a mean.
 //!
 //! The heading is fitted by [`crate::fourier`]; T r' + r = K (δ + δ_r) is written at three instants with the recorded
-//! rudder and solved for T, K and δ_r; the answers of n triples are averaged. The paper leaves open how many triples,
-//! which instants, and how w is started: every choice is a setting here, and the defaults read the paper kindly (ten
-//! triples, all well conditioned). The algebra is exact; what limits the method is r', which eight harmonics get wrong
+//! rudder and solved for T, K and δ_r; the answers of n triples are averaged. The paper does not specify the number of
+//! triples, the instants, or the start of w: every choice is a setting here, and the defaults favour the paper (ten
+//! triples, all well conditioned). The algebra is exact; the limit of the method is r', which eight harmonics get wrong
 //! by a quarter even without noise, so that K and T come out low. For a form without that error see
 //! [`crate::fourier_projected`].
 //!
@@ -21,8 +21,8 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, Answer, Drawn, EquationInstant, MOST_TRIPLES, Selection};
-use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS};
+use crate::fourier::triples::{self, DrawnTriples, EquationInstant, MAX_TRIPLES, Selection, TripleEstimate};
+use crate::fourier::{self, Fitted, Fundamental, MAX_HARMONICS};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
@@ -34,7 +34,7 @@ const INTERIOR_SHARE: f64 = 0.9;
 const RUDDER_REST_DEG: f64 = 0.5;
 const RUDDER_REST_S: f64 = 2.0;
 
-/// How the answers of the triples become one.
+/// How the estimates of the triples are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aggregation {
@@ -45,7 +45,7 @@ pub enum Aggregation {
     Median,
 }
 
-/// Settings of FourierPublished.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
@@ -53,11 +53,11 @@ pub struct Settings {
     pub harmonics: usize,
     /// How w is chosen.
     pub fundamental: Fundamental,
-    /// Triples n, at most `MOST_TRIPLES`; some 200 with the median make the answer independent of the seed.
+    /// Triples n, at most 10 000; some 200 with the median make the answer independent of the seed.
     pub triples: usize,
     /// Which triples are used.
     pub selection: Selection,
-    /// How their answers become one.
+    /// How their estimates are combined.
     pub aggregation: Aggregation,
     /// Seed of the draw of triples.
     pub seed: u64,
@@ -79,8 +79,8 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<FourierPublished, SettingsError> {
-        require((1..=MOST_HARMONICS).contains(&self.harmonics), "harmonics", self.harmonics, "1 to 64")?;
-        require((1..=MOST_TRIPLES).contains(&self.triples), "triples", self.triples, "1 to 10000")?;
+        require((1..=MAX_HARMONICS).contains(&self.harmonics), "harmonics", self.harmonics, "1 to 64")?;
+        require((1..=MAX_TRIPLES).contains(&self.triples), "triples", self.triples, "1 to 10000")?;
         self.fundamental.check()?;
         Ok(FourierPublished { settings: self })
     }
@@ -129,32 +129,32 @@ impl FourierPublished {
             .collect()
     }
 
-    fn aggregate(&self, answers: &[Answer], of: impl Fn(&Answer) -> f64) -> f64 {
+    fn aggregate(&self, answers: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> f64 {
         match self.settings.aggregation {
-            Aggregation::Mean => answers.iter().map(of).sum::<f64>() / answers.len() as f64,
-            Aggregation::Median => quantile(&sorted(answers, of), 0.5),
+            Aggregation::Mean => answers.iter().map(index).sum::<f64>() / answers.len() as f64,
+            Aggregation::Median => quantile(&sorted(answers, index), 0.5),
         }
     }
 
-    fn uncertainty(&self, answers: &[Answer]) -> Uncertainty {
+    fn uncertainty(&self, answers: &[TripleEstimate]) -> Uncertainty {
         if self.settings.aggregation == Aggregation::Mean {
-            let reason = "a mean over triples of one fitted curve: every answer is a ratio without a finite variance, \
+            let reason = "a mean over triples of one fitted curve: every estimate is a ratio without a finite variance, \
                           and all share the noise and the truncation of the curve";
             return Uncertainty::None { reason };
         }
         let Some((low, high)) = median_ranks(answers.len()) else {
             return Uncertainty::None { reason: "a 95 % interval of a median needs at least 6 triples" };
         };
-        let interval = |of: fn(&Answer) -> f64| {
-            let values = sorted(answers, of);
+        let interval = |index: fn(&TripleEstimate) -> f64| {
+            let values = sorted(answers, index);
             [values[low], values[high]]
         };
         Uncertainty::Intervals {
             K: interval(|answer| answer.K),
             T: interval(|answer| answer.T),
             rudder_bias: interval(|answer| answer.rudder_bias),
-            meaning: "95 % interval, by order statistics, of the median over all admissible triples of this one fitted \
-                      curve; it holds neither the noise nor the truncation of the curve",
+            meaning: "95 % interval, by order statistics, of the median over all admissible triples of this fitted \
+                      curve; it excludes the noise and the truncation of the curve",
         }
     }
 }
@@ -173,7 +173,7 @@ impl Identifier for FourierPublished {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let samples = Samples::of_all(trials, 2 * self.settings.harmonics + 2)?;
+        let samples = Samples::from_trials(trials, 2 * self.settings.harmonics + 2)?;
         let mut fits = Vec::with_capacity(trials.len());
         let mut instants = Vec::new();
         for (trial, samples) in trials.iter().zip(&samples) {
@@ -204,10 +204,10 @@ impl Identifier for FourierPublished {
 }
 
 /// Figures of the fits (of the first trial, or the worst of several) and of the triples.
-fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static str, f64)> {
+fn diagnostics(fits: &[Fitted], instants: usize, drawn: &DrawnTriples) -> Vec<(&'static str, f64)> {
     let mut all = fourier::diagnostics(fits);
-    let spread = |of: fn(&Answer) -> f64| {
-        let values = sorted(&drawn.answers, of);
+    let spread = |index: fn(&TripleEstimate) -> f64| {
+        let values = sorted(&drawn.answers, index);
         quantile(&values, 0.75) - quantile(&values, 0.25)
     };
     all.extend([
@@ -223,11 +223,11 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static
     all
 }
 
-fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<Warning> {
+fn warnings(fits: &[Fitted], drawn: &DrawnTriples) -> Vec<Warning> {
     let mut warnings = fourier::warnings(fits);
     if drawn.negative > 0 {
         let kept = drawn.answers.len();
-        let text = format!("{} of {kept} triples give a negative K or T and are part of the answer", drawn.negative);
+        let text = format!("{} of {kept} triples give a negative K or T and are part of the estimate", drawn.negative);
         warnings.push(Code::NegativeIndex.warning(text));
     }
     warnings
@@ -235,20 +235,20 @@ fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<Warning> {
 
 /// Range of a signal from `reach` seconds before to `reach` after `t`, rad.
 fn range_about(signal: &Polyline, t: f64, reach: f64) -> f64 {
-    let place = |t: f64| signal.times().partition_point(|other| *other < t);
+    let place = |t: f64| signal.times().partition_point(|instant| *instant < t);
     let (from, to) = (place(t - reach), place(t + reach));
     let (lo, hi) = extremes(&signal.values()[from..to]);
     let ends = [signal.at(t - reach), signal.at(t + reach)];
     ends.into_iter().fold(hi, f64::max) - ends.into_iter().fold(lo, f64::min)
 }
 
-fn sorted(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> Vec<f64> {
-    let mut values: Vec<f64> = answers.iter().map(of).collect();
+fn sorted(answers: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> Vec<f64> {
+    let mut values: Vec<f64> = answers.iter().map(index).collect();
     values.sort_by(f64::total_cmp);
     values
 }
 
-/// Ranks, from 0, of the order statistics that hold the median with at least 95 %; `None` below six values.
+/// Ranks, from 0, of the order statistics that bound a 95 % interval of the median; `None` below six values.
 fn median_ranks(count: usize) -> Option<(usize, usize)> {
     let below = Binomial::new(0.5, count as u64).ok()?;
     let low = (0..count / 2).take_while(|&rank| below.cdf(rank as u64) <= 0.025).last()?;

@@ -1,5 +1,5 @@
 //! Cutting a record at its gaps. A method that differentiates, integrates or averages the heading must not do so across
-//! a long stretch in which it was not recorded; here it is told where the stretches without a gap are.
+//! a long stretch in which it was not recorded; [`pieces`] gives the stretches without a gap.
 
 use std::ops::Range;
 
@@ -19,8 +19,8 @@ pub fn pieces(time: &[f64], longest_gap: f64) -> impl Iterator<Item = Range<usiz
     let mut from = 0;
     std::iter::from_fn(move || {
         let start = from;
-        let rest = time.get(start..).filter(|rest| !rest.is_empty())?;
-        let length = rest.windows(2).position(|pair| pair[1] - pair[0] > longest_gap).map_or(rest.len(), |k| k + 1);
+        let tail = time.get(start..).filter(|times| !times.is_empty())?;
+        let length = tail.windows(2).position(|pair| pair[1] - pair[0] > longest_gap).map_or(tail.len(), |k| k + 1);
         from = start + length;
         Some(start..from)
     })
@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_is_in_one_piece() {
+    fn every_row_belongs_to_a_piece() {
         let time = [0.0, 1.0, 2.0, 9.0, 10.0, 30.0];
         assert_eq!(pieces(&time, 3.0).collect::<Vec<_>>(), [0..3, 3..5, 5..6]);
         assert!(pieces(&time, 50.0).eq(std::iter::once(0..6)));

@@ -1,4 +1,4 @@
-//! What all methods have in common.
+//! The interface of all methods.
 
 use trial::Trial;
 
@@ -48,7 +48,8 @@ pub trait Identifier: Send + Sync {
 
     /// The same method with another seed, for methods that draw at random; `None` for all others.
     ///
-    /// A benchmark gives every trial a seed of its own, so that the spread over trials holds the method's own chance.
+    /// A benchmark gives every trial its own seed, so that the spread over trials includes the randomness of the
+    /// method.
     fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
         None
     }

@@ -1,9 +1,10 @@
 //! The equation of motion integrated twice and solved by least squares: no derivative of the heading, no search.
 //!
-//! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state hides in c₀ and c₁, which
-//! every stretch between gaps has for itself; a, b and b δ_r are common to all stretches of all trials. The method is
-//! nearly as good as output error for white heading noise; a yaw disturbance is outside it. For the iteration that
-//! removes the rest of the loss see the output-error and instrumental-variable methods.
+//! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state enters through c₀ and c₁,
+//! which differ from stretch to stretch between gaps; a, b and b δ_r are common to all stretches of all trials. The
+//! method is nearly as precise as output error for white heading noise; it does not model a yaw disturbance. The
+//! iteration that removes the remaining loss is that of the output-error and instrumental-variable methods. Source of
+//! the integral-equation approach: Unbehauen and Rao (1987), Identification of Continuous Systems.
 
 mod equations;
 mod noise;
@@ -21,22 +22,22 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
 use crate::identifier::Identifier;
-use crate::robust::{judge, newey_west_of_three};
+use crate::robust::{newey_west_of_three, select};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED, Solution};
 use noise::ResidualNoise;
 
-/// Fewest headings in a stretch between gaps that can say more than its own initial state.
-const FEWEST_IN_PIECE: usize = 4;
+/// Headings that a stretch between gaps needs to determine more than its initial state.
+const MIN_PIECE_ROWS: usize = 4;
 
-/// Settings of IntegralLeastSquares.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
-    /// Largest accepted condition number of the equations (see IntegralLeastSquares).
+    /// Largest accepted condition number of the equations (see the method).
     pub condition_limit: f64,
 }
 
@@ -65,8 +66,8 @@ impl Settings {
 /// by its length before the projection.
 ///
 /// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
-/// estimated from the residual. The robust covariance (Newey and West 1987) takes the noise that was found, row by row,
-/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts. Nor does either count
+/// estimated from the residual. The robust covariance (Newey and West 1987) takes the estimated noise row by row, so it
+/// is also valid for coloured heading noise; neither is valid for a lasting yaw disturbance. Nor does either include
 /// the bias by the noise of ∫ψ, a regressor, which pulls 1/T towards zero where headings come too rarely: with an
 /// interval beyond T / 2 the interval of T holds the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
 ///
@@ -87,7 +88,7 @@ impl Identifier for IntegralLeastSquares {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let samples = Samples::of_all(trials, Trial::FEWEST_ROWS)?;
+        let samples = Samples::from_trials(trials, Trial::FEWEST_ROWS)?;
         let mut pieces = self.stretches(&samples)?;
         let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
@@ -105,7 +106,7 @@ impl Identifier for IntegralLeastSquares {
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust) {
             (Some(variance), Some(robust)) => {
-                judge(covariance(noise.influence * variance), robust, noise.lag1, equations)
+                select(covariance(noise.influence * variance), robust, noise.lag1, equations)
             }
             _ => (Uncertainty::None { reason: "no more equations than unknowns" }, None),
         };
@@ -132,23 +133,23 @@ impl Identifier for IntegralLeastSquares {
 impl IntegralLeastSquares {
     /// The stretches between gaps of all trials that are long enough to be of use.
     fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<IntegratedStretch<'a>>, IdentifyError> {
-        let mut found = Vec::with_capacity(samples.len());
+        let mut all = Vec::with_capacity(samples.len());
         for trial in samples {
             let gap = longest_gap(self.settings.longest_gap_s, &trial.time);
-            let long_enough = |rows: &Range<usize>| rows.len() >= FEWEST_IN_PIECE;
-            found.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
+            let long_enough = |rows: &Range<usize>| rows.len() >= MIN_PIECE_ROWS;
+            all.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
         }
-        let equations: usize = found.iter().map(|piece| piece.time.len()).sum();
+        let equations: usize = all.iter().map(|piece| piece.time.len()).sum();
         // Initial states, the shared parameters, and as many equations left to tell their error from.
-        let needed = 2 * SHARED + 2 * found.len().max(1);
+        let needed = 2 * SHARED + 2 * all.len().max(1);
         if equations < needed {
             return Err(IdentifyError::TooFewPoints {
                 what: "headings in stretches without a gap",
                 needed,
-                found: equations,
+                count: equations,
             });
         }
-        Ok(found)
+        Ok(all)
     }
 }
 
@@ -156,12 +157,12 @@ fn warnings(trials: &[Trial], pieces: usize) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if pieces > trials.len() {
         warnings.push(Code::Gap.warning(format!(
-            "gaps cut the record into {pieces} stretches, each with an initial state of its own; longest-gap-s moves the limit"
+            "gaps cut the record into {pieces} stretches, each with its own initial state; longest-gap-s sets the limit"
         )));
     }
     for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
         warnings.push(Code::HeadingFromYawRate.warning(format!(
-            "the heading of {} is the integral of its yaw rate, whose noise is not white as the covariance takes it to be",
+            "the heading of {} is the integral of its yaw rate, so its noise is not white and the intervals are too narrow",
             trial.title()
         )));
     }

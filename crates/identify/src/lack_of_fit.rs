@@ -1,14 +1,16 @@
-//! What a first-order response leaves of a record: does the ship lack a term, or does chance move her?
+//! Lack of fit of a first-order response: the share of its residual that terms of a larger ship model explain, against
+//! the share of random moments.
 //!
-//! The residual ψ − ψ̂ of the replay is regressed on what terms of a larger model would add to it. To first order a
+//! The residual ψ − ψ̂ of the replay is regressed on the contributions of the terms of a larger model. To first order a
 //! term f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, where s'' = −s'/T + f. The
-//! terms are those of ships: r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a
-//! filtered r² (loss of speed). K, T, δ_r and the initial states of all records are free beside them. Terms of a ship
-//! return with every rudder movement, random moments do not: nine terms explain nearly all of the one and part of the
-//! other.
+//! terms are r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a filtered r² (loss
+//! of speed). K, T, δ_r and the initial states of all records are estimated with them. Terms of a ship recur with every
+//! rudder movement, random moments do not: nine terms explain nearly all of a missing ship term and part of a random
+//! moment.
 //!
-//! It is a test of first order in small terms. It names nothing; [`unexplained`](LackOfFit::unexplained) is compared
-//! with a limit that simulated trials gave.
+//! The test is of first order in small terms and names no term; [`unexplained`](LackOfFit::unexplained) is compared
+//! with a limit from simulated trials. It is a score test by linearised regression, Ljung (1999), System
+//! Identification: Theory for the User, chapter 16 on model validation.
 
 use estimation::column::dot;
 use ship::FirstOrder;
@@ -19,113 +21,111 @@ use trial::{Trial, zigzag};
 use crate::replay::{Replay, replay};
 use crate::robust;
 
-/// Half-width of the local fits that tell the noise of the heading, in T; bends of the heading last longer.
+/// Half-width of the local fits that estimate the heading noise, in T; bends of the heading last longer.
 const HALF_WIDTH: f64 = 0.25;
 
 /// Time constant of the loss of speed, in T.
 const SPEED_LAG: f64 = 3.0;
 
-/// Terms that are those of K, T and δ_r; the others are of larger ships, the first of them δ'.
-const OWN_TERMS: usize = 3;
+/// Number of terms of K, T and δ_r; the terms after them belong to larger models, δ' first.
+const BASE_TERMS: usize = 3;
 
-/// Share of what all terms take away of the residual that is most of it.
-const MOST: f64 = 0.7;
+/// Share of the reduction by all terms that a pure delay must reach.
+const MIN_DELAY_SHARE: f64 = 0.7;
 
-/// Fewest reversals of the rudder that tell a delay: the effect of one, or of the execute of a circle, may be that of a
+/// Rudder reversals that identify a delay: the effect of a single reversal, or of the execute of a circle, may be a
 /// loss of speed as well.
-const FEWEST_REVERSALS: usize = 2;
+const MIN_REVERSALS: usize = 2;
 
-/// Longest delay that is told, in T: one term in δ' stands for short delays only, and those of clocks, steering gears
-/// and compasses are short.
-const LONGEST_DELAY: f64 = 0.25;
+/// Largest delay that is reported, in T: a single term in δ' represents short delays only, and those of clocks,
+/// steering gears and compasses are short.
+const MAX_DELAY_RATIO: f64 = 0.25;
 
-/// A column that keeps less than this share of its length beside the others is one of them.
-const INDEPENDENT: f64 = 1e-6;
+/// Relative length below which a column is linearly dependent on the basis.
+const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 
-/// How far the replays of a response are from the records, and how far they would be with the terms of a larger ship.
+/// Residual of the replays of a response, and its residual with the terms of a larger ship model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LackOfFit {
     /// Root mean square of the residual of all records, rad.
     pub residual: f64,
-    /// The same with nine terms of a ship fitted to it, rad, corrected for their number.
+    /// The same with nine ship terms fitted to it, rad, corrected for their number.
     pub with_ship_terms: f64,
     /// Standard deviation of the white noise of the heading, rad.
     pub noise: f64,
-    /// Whether neighbouring residuals are correlated by no more than chance makes them.
+    /// `true` if the correlation of neighbouring residuals is within the range of white noise.
     pub is_white: bool,
-    /// Time by which the rudder acts later than it was recorded, s, by the term in δ' alone; negative for a rudder that
-    /// was recorded late.
+    /// Delay from the recorded to the acting rudder, s, from the term in δ' alone; negative for a rudder recorded late.
     pub delay: f64,
-    /// Root mean square of the residual with that one term, rad; `None` where the records do not tell a delay: the
-    /// rudder is reversed less than twice in each, or the delay is more than a quarter of T.
+    /// Root mean square of the residual with the term in δ', rad; `None` where the records do not identify a delay:
+    /// fewer than two rudder reversals in each, or a delay above a quarter of T.
     pub with_delay: Option<f64>,
 }
 
 impl LackOfFit {
-    /// Of a response on the records it was fitted to; `None` where a replay is not finite, and where so few headings
-    /// were read that their noise is not known.
+    /// Lack of fit of a response to its records; `None` where a replay is not finite, and with too few headings to
+    /// estimate their noise.
     pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let (mut residual, mut pieces) = (Vec::new(), Vec::new());
         let mut terms: Vec<Vec<f64>> = Vec::new();
         let (mut noise, mut initial) = (0.0, 0);
         for trial in trials {
             let replayed = replay(trial, response)?;
-            let own = RecordTerms::of(trial, &replayed, response);
-            terms.resize(own.terms.len(), Vec::new());
+            let record = RecordTerms::new(trial, &replayed, response);
+            terms.resize(record.terms.len(), Vec::new());
             let half_width = (HALF_WIDTH * response.T().abs()).max(3.0 * trial.sampling_period());
             let sd = zigzag::noise_sd(trial.time(), trial.heading(), half_width)?;
-            noise += sd * sd * own.residual.len() as f64;
-            initial += own.initial;
-            terms.iter_mut().zip(&own.terms).for_each(|(all, one)| all.extend(one));
-            residual.extend(&own.residual);
-            pieces.push(own.residual);
+            noise += sd * sd * record.residual.len() as f64;
+            initial += record.initial;
+            terms.iter_mut().zip(&record.terms).for_each(|(all, column)| all.extend(column));
+            residual.extend(&record.residual);
+            pieces.push(record.residual);
         }
         let rows = residual.len() as f64;
         let rms = |values: &[f64], free: usize| (dot(values, values) / (rows - free as f64).max(1.0)).sqrt();
         let before = rms(&residual, 0);
         let mut basis = Vec::new();
         let mut terms = terms.into_iter();
-        terms.by_ref().take(OWN_TERMS).for_each(|column| extend(&mut basis, column));
+        terms.by_ref().take(BASE_TERMS).for_each(|column| extend(&mut basis, column));
         remove(&basis, &mut residual);
-        // δ(t − τ) is δ − τ δ', so what δ' adds is −τ K/T of its column.
+        // δ(t − τ) is δ − τ δ', so the coefficient of the column of δ' is −τ K/T.
         let mut turning = terms.as_slice().first()?.clone();
         remove(&basis, &mut turning);
         let size = dot(&turning, &residual) / dot(&turning, &turning);
-        let delayed: Vec<f64> = residual.iter().zip(&turning).map(|(rest, own)| rest - size * own).collect();
+        let delayed: Vec<f64> = residual.iter().zip(&turning).map(|(error, column)| error - size * column).collect();
         let delayed = rms(&delayed, basis.len() + 1 + initial);
         terms.for_each(|column| extend(&mut basis, column));
         remove(&basis, &mut residual);
         let after = rms(&residual, basis.len() + initial);
         let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));
         let is_white = !robust::is_coloured(lag1, residual.len());
-        // What the terms leave holds all of the noise; the local fits bend less than the heading where its digits are
-        // few.
+        // The final residual includes all of the noise; the local fits underestimate the bends of a coarse heading.
         let (noise, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
-        let is_reversed = trials.iter().any(|trial| reversals(trial.rudder()) >= FEWEST_REVERSALS);
-        let is_told = is_reversed && delay.abs() <= LONGEST_DELAY * response.T().abs();
-        let with_delay = is_told.then_some(delayed);
-        let found = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
-        (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(found)
+        let is_reversed = trials.iter().any(|trial| reversals(trial.rudder()) >= MIN_REVERSALS);
+        let is_identified = is_reversed && delay.abs() <= MAX_DELAY_RATIO * response.T().abs();
+        let with_delay = is_identified.then_some(delayed);
+        let lack = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
+        (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(lack)
     }
 
-    /// Which share of the residual beyond the noise the terms of a ship leave, from 0 to 1: small where the ship lacks
-    /// a term, large where chance moves her. `None` where it is white.
+    /// Share, from 0 to 1, of the residual beyond the noise that the ship terms do not explain: small for a missing
+    /// term, large for random moments. `None` for a white residual.
     pub fn unexplained(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
         let all = beyond(self.residual);
         (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
     }
 
-    /// [`delay`](Self::delay), where that one term takes away most of what all terms do. `None` where the residual is
-    /// white, and where the records do not tell a delay.
+    /// [`delay`](Self::delay), where its term gives most of the reduction by all terms. `None` for a white residual,
+    /// and where the records do not identify a delay.
     pub fn rudder_delay(&self) -> Option<f64> {
-        let taken = |rms: f64| self.residual * self.residual - rms * rms;
+        let reduction = |rms: f64| self.residual * self.residual - rms * rms;
         let with_delay = self.with_delay.filter(|_| !self.is_white)?;
-        (taken(with_delay) > MOST * taken(self.with_ship_terms)).then_some(self.delay)
+        (reduction(with_delay) > MIN_DELAY_SHARE * reduction(self.with_ship_terms)).then_some(self.delay)
     }
 }
 
-/// Residual and terms of one record at the rows with a heading, its initial state taken out of both.
+/// Residual and terms of one record at the rows with a heading, both projected off its initial state.
 struct RecordTerms {
     residual: Vec<f64>,
     terms: Vec<Vec<f64>>,
@@ -133,7 +133,7 @@ struct RecordTerms {
 }
 
 impl RecordTerms {
-    fn of(trial: &Trial, replayed: &Replay, response: &FirstOrder) -> Self {
+    fn new(trial: &Trial, replayed: &Replay, response: &FirstOrder) -> Self {
         let FirstOrder { inverse_T: a, K_over_T: b, rudder_bias } = *response;
         let (time, r) = (&replayed.time[..], &replayed.yaw_rate[..]);
         let first = trial.observed_rows().next().unwrap_or(0);
@@ -172,8 +172,8 @@ impl RecordTerms {
     }
 }
 
-/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` where it begins. For a < 0 it begins at the
-/// end and runs backwards, in which it does not grow; the two differ by the motion of an initial yaw rate.
+/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` at the start. For a < 0 it starts at the end
+/// and runs backwards, so that it does not grow; the two differ by the motion of an initial yaw rate.
 fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Vec<f64> {
     let rows = time.len();
     let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };
@@ -212,23 +212,23 @@ fn filtered_square(time: &[f64], r: &[f64], lag: f64) -> Vec<f64> {
     filtered
 }
 
-/// Adds what is new in a column to an orthonormal basis (Gram and Schmidt, twice).
+/// Adds the independent part of a column to an orthonormal basis (Gram and Schmidt, twice).
 fn extend(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
     let length = dot(&column, &column).sqrt();
     remove(basis, &mut column);
     remove(basis, &mut column);
-    let rest = dot(&column, &column).sqrt();
-    if rest > INDEPENDENT * length {
-        column.iter_mut().for_each(|value| *value /= rest);
+    let remaining_length = dot(&column, &column).sqrt();
+    if remaining_length > MIN_INDEPENDENT_SHARE * length {
+        column.iter_mut().for_each(|value| *value /= remaining_length);
         basis.push(column);
     }
 }
 
-/// Takes out of a column what lies in the basis.
+/// Projects a column off the basis.
 fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
     for direction in basis {
         let size = dot(direction, column);
-        column.iter_mut().zip(direction).for_each(|(value, own)| *value -= size * own);
+        column.iter_mut().zip(direction).for_each(|(value, component)| *value -= size * component);
     }
 }
 
@@ -249,7 +249,7 @@ mod tests {
         }
     }
 
-    /// Not one of more than a quarter of T.
+    /// Delays above a quarter of T are not reported.
     #[test]
     fn a_rudder_at_another_time_is_seen() {
         for delay in [-3.0, -2.0, 2.0, 3.0, 14.0] {
@@ -261,9 +261,9 @@ mod tests {
             let method = output_error::Settings::default().build().expect("default settings");
             let answer = method.identify(&trials).expect("an answer");
             let lack = LackOfFit::of(&trials, &answer.response).expect("a zig-zag");
-            let found = lack.rudder_delay();
-            let is_right = found.is_some_and(|found| (found / delay - 1.0).abs() < 0.2);
-            assert!(is_right || found.is_none() && delay > 10.0, "{delay} s: {lack:?}");
+            let reported_delay = lack.rudder_delay();
+            let is_right = reported_delay.is_some_and(|reported| (reported / delay - 1.0).abs() < 0.2);
+            assert!(is_right || reported_delay.is_none() && delay > 10.0, "{delay} s: {lack:?}");
         }
     }
 

@@ -2,7 +2,9 @@
 //!
 //! a = 1/T, b = K/T, c = b δ_r. The textbook method, and a baseline: noise in r, a regressor, biases a towards zero
 //! (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods that
-//! do not differentiate, such as the integral or output-error ones, are better wherever noise can be seen.
+//! do not differentiate, such as the integral and output-error methods, are better with visible noise. Sources: Ljung
+//! (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström (2007),
+//! Errors-in-variables methods in system identification, Automatica 43, 939–958.
 
 use document::Code;
 use nalgebra::{Matrix3, Vector3};
@@ -20,11 +22,11 @@ use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use estimation::least_squares::LeastSquares;
 
-/// Bias of 1/T by noise, as a share, from which on a reader is warned.
-const WARN_OF_BIAS: f64 = 0.02;
+/// Relative bias of 1/T by noise above which a warning is given.
+const MAX_QUIET_BIAS: f64 = 0.02;
 
-/// Fewest equations: twice the unknowns, so that as many are left to tell the error from.
-const FEWEST_EQUATIONS: usize = 6;
+/// Equations needed: twice the unknowns, which leaves as many degrees of freedom for the error.
+const MIN_EQUATIONS: usize = 6;
 
 /// What is differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -37,7 +39,7 @@ pub enum Signal {
     YawRate,
 }
 
-/// Settings of MotionRegression.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
@@ -45,7 +47,7 @@ pub struct Settings {
     pub signal: Signal,
     /// Local polynomials that smooth before differentiating; without them central differences.
     pub smoothing: Option<SavitzkyGolay>,
-    /// Whether the rudder passes through the same local polynomials; without effect on central differences.
+    /// Whether the same local polynomials smooth the rudder; without effect on central differences.
     pub smooth_rudder: bool,
     /// Longest interval between rows that is differentiated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
@@ -81,14 +83,14 @@ impl Settings {
 
 /// Least squares on r' = −a r + b δ + c.
 ///
-/// The covariance is that of white noise in the signal, led through the differentiating filters; its variance is
-/// estimated from the residual. The robust covariance (Newey and West 1987) takes the residual as it is, of any colour.
-/// Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too large, because
-/// errors of r and r' cancel in a way they do not count. **Neither contains the bias that noise in r causes** (errors
-/// in variables); to first order it is the diagnostic `noise_bias_of_inverse_T_percent`. Smoothing adds a bias of its
-/// own, which nothing here shows.
+/// The covariance is that of white noise in the signal, propagated through the differentiating filters; its variance is
+/// estimated from the residual. The robust covariance (Newey and West 1987) also holds for a coloured residual. Where
+/// noise dominates the differentiated signal (`r_squared` far below 1) both are several times too large, because they
+/// neglect the correlation of the errors of r and r'. **Neither contains the bias that noise in r causes** (errors in
+/// variables); to first order it is the diagnostic `noise_bias_of_inverse_T_percent`. Smoothing adds another bias,
+/// which no diagnostic shows.
 ///
-/// Fails with [`IdentifyError::NoChannel`] when the yaw rate is asked for and not recorded, with
+/// Fails with [`IdentifyError::NoChannel`] when the yaw rate is selected and not recorded, with
 /// [`IdentifyError::TooFewPoints`] when no window fits between gaps, and with [`IdentifyError::NotAShip`] when K/T is
 /// not positive. A negative 1/T is an answer: the ship is course-unstable.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,15 +118,15 @@ struct Equations {
     parts: Vec<GapFreePart>,
 }
 
-/// The way of white noise of unit variance in the signal into the equations.
+/// Propagation of white noise of unit variance in the signal into the equations.
 #[derive(Debug)]
 struct NoisePath {
     /// Covariance of Xᵀe.
     influence: Matrix3<f64>,
     /// Sum of the variances of e.
-    of_error: f64,
+    error: f64,
     /// Sum of the covariances of r and e.
-    of_rate_and_error: f64,
+    rate_and_error: f64,
 }
 
 impl Identifier for MotionRegression {
@@ -150,8 +152,8 @@ impl Identifier for MotionRegression {
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -c / (b * b), 1.0 / b) * unscaled;
         let base = |scores: Matrix3<f64>| to_base * scores * to_base.transpose();
         let noise = self.noise_path(&equations, a);
-        let signal_variance = solution.variance().map(|variance| variance * acceleration.len() as f64 / noise.of_error);
-        let uncertainty = match signal_variance {
+        let noise_variance = solution.variance().map(|variance| variance * acceleration.len() as f64 / noise.error);
+        let uncertainty = match noise_variance {
             Some(variance) => Uncertainty::Covariance(Covariance {
                 matrix: base(noise.influence * variance),
                 degrees_of_freedom: Some(solution.degrees_of_freedom),
@@ -171,14 +173,14 @@ impl Identifier for MotionRegression {
             ("equations", acceleration.len() as f64),
         ];
         let mut warnings = Vec::new();
-        if let Some(variance) = signal_variance {
+        if let Some(variance) = noise_variance {
             // Noise n_r in the regressor −r makes E[Xᵀe] = −(cov(n_r, e), 0, 0).
-            let bias = -unscaled[(0, 0)] * noise.of_rate_and_error * variance / a;
+            let bias = -unscaled[(0, 0)] * noise.rate_and_error * variance / a;
             diagnostics.push(("noise_bias_of_inverse_T_percent", 100.0 * bias));
-            if bias.abs() > WARN_OF_BIAS {
+            if bias.abs() > MAX_QUIET_BIAS {
                 warnings.push(Code::NoiseBias.warning(format!(
                     "noise in the differentiated signal biases 1/T by about {:+.0} %, and K with it; the standard \
-                     deviations do not include this",
+                     deviations do not include this bias",
                     100.0 * bias
                 )));
             }
@@ -211,8 +213,8 @@ impl MotionRegression {
 
     fn equations(&self, trials: &[Trial]) -> Result<Equations, IdentifyError> {
         let mut equations = Equations::default();
-        // Also refuses what is no manoeuvre.
-        for (trial, samples) in trials.iter().zip(Samples::of_all(trials, Trial::FEWEST_ROWS)?) {
+        // Also refuses records that are not a manoeuvre.
+        for (trial, samples) in trials.iter().zip(Samples::from_trials(trials, Trial::FEWEST_ROWS)?) {
             match self.settings.signal {
                 Signal::Heading => self.add(&samples.time, &samples.heading, &samples.rudder, &mut equations),
                 Signal::YawRate => {
@@ -226,9 +228,9 @@ impl MotionRegression {
                 }
             }
         }
-        let found = equations.acceleration.len();
-        if found < FEWEST_EQUATIONS {
-            return Err(IdentifyError::TooFewPoints { what: "windows without a gap", needed: FEWEST_EQUATIONS, found });
+        let count = equations.acceleration.len();
+        if count < MIN_EQUATIONS {
+            return Err(IdentifyError::TooFewPoints { what: "windows without a gap", needed: MIN_EQUATIONS, count });
         }
         Ok(equations)
     }
@@ -254,10 +256,10 @@ impl MotionRegression {
         }
     }
 
-    /// Leads unit white noise through the filters into the equation error e = n_r' + a n_r.
+    /// Propagates unit white noise through the filters into the equation error e = n_r' + a n_r.
     fn noise_path(&self, equations: &Equations, a: f64) -> NoisePath {
         let mut weights = WindowWeights::new(self.polynomial());
-        let mut path = NoisePath { influence: Matrix3::zeros(), of_error: 0.0, of_rate_and_error: 0.0 };
+        let mut path = NoisePath { influence: Matrix3::zeros(), error: 0.0, rate_and_error: 0.0 };
         let mut equation = 0;
         let mut influence = Vec::new();
         for part in &equations.parts {
@@ -268,11 +270,11 @@ impl MotionRegression {
                 equation += 1;
                 let Some((window, weights)) = weights.at(&part.time, k) else { continue };
                 for (j, &weights) in window.zip(weights) {
-                    let (of_rate, of_acceleration) = self.rate_and_acceleration(weights);
-                    let of_error = of_acceleration + a * of_rate;
-                    influence[j] += row * of_error;
-                    path.of_error += of_error * of_error;
-                    path.of_rate_and_error += of_rate * of_error;
+                    let (rate_weight, acceleration_weight) = self.rate_and_acceleration(weights);
+                    let error_weight = acceleration_weight + a * rate_weight;
+                    influence[j] += row * error_weight;
+                    path.error += error_weight * error_weight;
+                    path.rate_and_error += rate_weight * error_weight;
                 }
             }
             path.influence += influence.iter().fold(Matrix3::zeros(), |sum, z| sum + z * z.transpose());
@@ -289,7 +291,7 @@ impl Equations {
     /// Regressors times residual, part by part.
     fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<[Vec<f64>; 3]> {
         let mut equation = 0;
-        let mut of_part = |rows: usize| {
+        let mut part_scores = |rows: usize| {
             let mut columns = [(); 3].map(|()| Vec::with_capacity(rows));
             for equation in equation..equation + rows {
                 let row = self.row(equation);
@@ -299,7 +301,7 @@ impl Equations {
             equation += rows;
             columns
         };
-        self.parts.iter().map(|part| of_part(part.rows.len())).collect()
+        self.parts.iter().map(|part| part_scores(part.rows.len())).collect()
     }
 }
 

@@ -7,7 +7,7 @@
 //! | id | method |
 //! |---|---|
 //! | `fourier-published` | eight harmonics with a free fundamental, triples of instants (Ge, Hu, Yin and Sun) |
-//! | `fourier-projected` | the mended form: rudder on the same basis, all samples |
+//! | `fourier-projected` | the corrected form: rudder on the same basis, all samples |
 //! | `characteristic-points` | extrema and zero crossings of the heading (Nomoto 1960) |
 //! | `least-squares` | regression on differentiated heading or on the gyro |
 //! | `integral-least-squares` | the equation of motion integrated twice |

@@ -1,14 +1,12 @@
-//! `maximum-likelihood`: K, T and δ_r of a ship that more moves than its rudder.
+//! `maximum-likelihood`: K, T and δ_r of a ship under a random yaw moment, with rudder and compass errors.
 //!
-//! The yaw moment beside that of the rudder is absent, white, gusting (Ornstein–Uhlenbeck) or a random walk, the
-//! compass error white or of first order in time, and the recorded rudder may have a white error of its own; which
-//! of them a record shows is decided by likelihood (BIC). Given 1/T and the noise the heading is linear in all
-//! other unknowns, so the search is over these few numbers alone, by Fisher scoring with exact slopes. It begins
-//! at the answer of `output-error`, which is global in both signs of 1/T, and asks every 1/T again under the noise
-//! it found. Where nothing but the compass is random, the answer is that of `output-error`.
+//! The random yaw moment is absent, white, gusting (Ornstein–Uhlenbeck) or a random walk, the compass error white or of
+//! first order in time, and the recorded rudder may have a white error; the law is selected by BIC. Given 1/T and the
+//! noise the heading is linear in all other unknowns, so the search is over these few numbers alone, by Fisher scoring
+//! with exact slopes. It starts at the estimate of `output-error`, which is global in both signs of 1/T, and repeats
+//! the search over 1/T under the selected noise. With compass noise alone, the estimate is that of `output-error`.
 //!
-//! Readings of the compass that stand alone, and jumps of its level, are recognised, left out or estimated, and
-//! listed.
+//! Spikes of the compass are left out, jumps of its level are estimated, and both are listed.
 //!
 //! Sources: Åström and Källström (1976), Automatica 12, 9–22; Källström and Åström (1981), Automatica 17, 187–198;
 //! Harvey (1989) for the prediction error decomposition; Schwarz (1978) for BIC.
@@ -34,9 +32,9 @@ use crate::estimate::Estimate;
 use crate::identifier::Identifier;
 use crate::settings::{SettingsError, check_iterations};
 
-/// Times, s, of the readings of every record that belong to no ship: single spikes and sentinels such as −999, which
-/// stand alone against what `output-error` leaves of the headings about them. None where more than a tenth of the
-/// readings do: that is noise of another law. Fails as `output-error` does.
+/// Times, s, of the outliers of every record: single spikes and sentinels such as −999, isolated in the residual of
+/// `output-error`. None where more than a tenth of the readings are outliers: the noise then follows another law. Fails
+/// as `output-error` does.
 pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
     Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
@@ -56,7 +54,7 @@ pub struct MaximumLikelihood {
 }
 
 impl MaximumLikelihood {
-    /// The kinds of noise that explain some records best, with the likelihood of each.
+    /// The most plausible noise laws of some records, with the fit under each.
     fn chosen(&self, trials: &[Trial]) -> Result<choice::Chosen, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
@@ -64,10 +62,10 @@ impl MaximumLikelihood {
         choice::PreparedRecords::new(&self.settings, trials)?.choose(&self.settings)
     }
 
-    /// Log of the largest likelihood of some records; `None` where the method has no answer.
+    /// Log of the largest likelihood of some records; `None` where the method gives no estimate.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
         let chosen = self.chosen(trials).ok()?;
-        let log_likelihood = -0.5 * chosen.found[0].1.point.deviance;
+        let log_likelihood = -0.5 * chosen.maxima[0].1.point.deviance;
         answer::estimate(trials, chosen).is_ok().then_some(log_likelihood)
     }
 }

@@ -1,11 +1,12 @@
 //! `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
-//! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. Once 1/T is
-//! given the heading is linear in all the others, so the whole problem is a search over one number: the profiled sum of
+//! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. For a given 1/T
+//! the heading is linear in all other unknowns, so the problem is a search over a single number: the profiled sum of
 //! squares is scanned over both signs of 1/T, every local minimum of the scan is polished by variable projection with
-//! exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), on some of the rows and then, where it is not hopeless,
-//! on all, and the lowest wins. A local minimum therefore cannot be mistaken for the answer unless it is narrower than
-//! the scan.
+//! exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), first on a part of the rows and then, unless it is far
+//! above the lowest, on all, and the lowest wins. A local minimum is therefore not mistaken for the estimate unless the
+//! global minimum is narrower than the scan. Source of the method: Ljung (1999), System Identification: Theory for the
+//! User, chapter 7.
 
 use document::Code;
 use nalgebra::Matrix3;
@@ -24,7 +25,7 @@ use crate::samples::track;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations, require};
 
-/// Settings of OutputError.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
@@ -46,7 +47,7 @@ impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<OutputError, SettingsError> {
         let per_decade = self.grid_per_decade;
-        require((1..=FINEST_GRID).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
+        require((1..=MAX_POINTS_PER_DECADE).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
         check_iterations("iterations", self.iterations)?;
         if let Some(smallest) = self.smallest_time_constant_s {
             let holds = TIME_CONSTANTS.contains(&smallest);
@@ -62,66 +63,66 @@ pub struct OutputError {
     settings: Settings,
 }
 
-/// Most points of the scan per decade: no valley is narrower than a tenth of that.
-const FINEST_GRID: usize = 1000;
+/// Limit on the points of the scan per decade: valleys are ten times as wide as its spacing.
+const MAX_POINTS_PER_DECADE: usize = 1000;
 
-/// Time constants, s, that the scan can be told to end at.
+/// Time constants, s, that the setting accepts as the end of the scan.
 const TIME_CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// Smallest |1/T| of the scan, in units of one over the length of the record: below it the response cannot be told
-/// from a neutrally stable one.
-const SLOWEST: f64 = 0.02;
+/// Smallest |1/T| of the scan, in units of one over the length of the record: below it the response is
+/// indistinguishable from a neutrally stable response.
+const MIN_INVERSE_TIME_RECORDS: f64 = 0.02;
 
-/// When a polish is over.
+/// Stopping rules of a polish.
 struct Goal {
-    /// Step, relative to 1/T, that counts as none.
+    /// Step, relative to 1/T, at convergence.
     tolerance: f64,
     /// Largest number of steps.
     iterations: usize,
-    /// Sum of squares, rad², to get below.
+    /// Sum of squares, rad², that a promising valley falls below.
     bar: f64,
 }
 
-/// Share of its bound by which 1/T may be off it and still be at it: what a polish that stops there leaves.
-const AT_BOUND: f64 = 1e-6;
+/// Relative tolerance for "at its bound".
+const BOUND_TOLERANCE: f64 = 1e-6;
 
-/// Relative step at which the polish stops.
+/// Relative step at convergence of the polish.
 const TOLERANCE: f64 = 1e-10;
 
-/// The goal of a search that sees only some of the rows. Their minimum lies a fraction of a standard deviation from
-/// that of all rows, so more digits are of no use; a valley that needs more steps has a large residual and is not the
-/// lowest.
+/// Goal of a search over a part of the rows. Their minimum lies within a fraction of a standard deviation of that of
+/// all rows, so more digits are useless; a valley that needs more steps has a large residual and is not the lowest.
 const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
 
-/// A valley whose sum of squares over some of the rows is this many times the lowest is left there.
-const HOPELESS: f64 = 10.0;
+/// Largest sum of squares over a part of the rows, relative to the lowest, of a valley that is polished on all rows.
+const MAX_RSS_RATIO: f64 = 10.0;
 
-/// Steps taken before a valley is called hopeless.
-const TRIED: usize = 2;
+/// Steps before a valley may be dropped.
+const MIN_STEPS: usize = 2;
 
-/// By how much the decrease that a step promises may be too small: steps are those of a parabola.
-const BOLD: f64 = 4.0;
+/// Safety factor on the predicted decrease of a step, which assumes a parabola.
+const DECREASE_MARGIN: f64 = 4.0;
 
-/// Share of the sum of squares below which a promised decrease is rounding.
+/// Predicted decrease, relative to the sum of squares, that is rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Halvings after which a step that does not lead down is taken for rounding.
-const MOST_HALVINGS: usize = 12;
+/// Halvings after which a step without decrease counts as rounding.
+const MAX_HALVINGS: usize = 12;
 
 /// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
 const SHARED: usize = 3;
 
-/// Largest condition number of the scaled Jacobian: beyond, 1/T, K/T and δ_r cannot be told apart.
+/// Largest condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
 pub(crate) const CONDITION_LIMIT: f64 = 1e6;
 
-/// Fewest headings of one trial.
-pub(crate) const FEWEST_ROWS: usize = 12;
+/// Headings that a trial needs.
+pub(crate) const MIN_ROWS: usize = 12;
 
-/// Rows of every trial that the scan looks at.
+/// Rows of every trial in the scan.
 const SCANNED_ROWS: usize = 200;
 
-/// Standard deviations by which K/T has to exceed zero: below, the rudder is not shown to act and δ_r means nothing.
-pub(crate) const SIGNIFICANT: f64 = 2.0;
+/// Standard deviations by which K/T must exceed zero: below them the record shows no effect of the rudder and δ_r is
+/// undefined.
+pub(crate) const MIN_GAIN_DEVIATIONS: f64 = 2.0;
 
 /// A polished minimum of the profiled sum of squares.
 struct PolishedMinimum {
@@ -135,7 +136,7 @@ impl OutputError {
     /// Values of 1/T to scan, in increasing order: logarithmic for both signs, and zero.
     fn grid(&self, tracks: &[Track], finest: f64) -> Vec<f64> {
         let longest = tracks.iter().map(Track::duration).fold(0.0, f64::max);
-        let slowest = SLOWEST / longest;
+        let slowest = MIN_INVERSE_TIME_RECORDS / longest;
         let fastest = self.settings.smallest_time_constant_s.unwrap_or(0.5 * finest).recip().max(10.0 * slowest);
         let decades = (fastest / slowest).log10();
         let points = (decades * self.settings.grid_per_decade as f64).ceil() as usize;
@@ -154,31 +155,32 @@ impl OutputError {
 
     /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
     ///
-    /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to
-    /// get below the bar.
+    /// Ends when a step is below the tolerance, its predicted decrease is below the rounding of the sum of squares, or
+    /// the valley cannot fall below the bar.
     fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<PolishedMinimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
         for iterations in 1..=goal.iterations {
             let converged = PolishedMinimum { inverse_time, rss, stop: StopReason::Converged, iterations };
             let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_time);
-            let hopeless = iterations > TRIED && rss - BOLD * decrease > goal.bar;
+            let hopeless = iterations > MIN_STEPS && rss - DECREASE_MARGIN * decrease > goal.bar;
             if step.abs() <= goal.tolerance * (inverse_time.abs() + resolution) || hopeless {
                 return Some(converged);
             }
             if decrease <= ROUNDING * rss {
-                // The score is known to more digits than the sum of squares: the step is right, whatever the sum does.
+                // The score has more digits than the sum of squares: the step is accepted even if the sum does not
+                // decrease.
                 let last = profile.evaluate(inverse_time + step);
                 return last.map(|rss| PolishedMinimum { inverse_time: inverse_time + step, rss, ..converged });
             }
-            let lower = (0..MOST_HALVINGS).find_map(|_| {
+            let lower = (0..MAX_HALVINGS).find_map(|_| {
                 let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
                 if lower.is_none() {
                     step *= 0.5;
                 }
                 lower
             });
-            // No step downhill is left: a minimum to rounding.
+            // No step decreases it any further: a minimum to rounding.
             let Some(lower) = lower else { return Some(converged) };
             (inverse_time, rss) = (inverse_time + step, lower);
         }
@@ -199,19 +201,19 @@ impl Identifier for OutputError {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let tracks = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let tracks = trials.iter().map(|trial| track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         self.fit(tracks, finest)
     }
 }
 
 impl OutputError {
-    /// Fits tracks whose rows are no nearer to each other than usually `finest`, s.
+    /// Fits tracks with a usual sampling period of at least `finest`, s.
     pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
         let grid = self.grid(&tracks, finest);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
-        // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last
-        // takes all.
+        // The scan and the first polish only locate the valleys, for which a part of the rows suffices; the last polish
+        // uses all.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
         let scan = RangeScan { fits: scan::fits(&thinned, &grid), grid };
         let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
@@ -223,10 +225,10 @@ impl OutputError {
             if place.as_ref().is_some_and(|place| place.rss > bar) {
                 continue;
             }
-            bar = place.as_ref().map_or(bar, |place| bar.min(HOPELESS * place.rss));
+            bar = place.as_ref().map_or(bar, |place| bar.min(MAX_RSS_RATIO * place.rss));
             let start = place.map_or(start, |place| place.inverse_time);
             if let Some(minimum) = self.polish(&mut profile, start, resolution, &self.goal())
-                && best.as_ref().is_none_or(|so_far| minimum.rss < so_far.rss)
+                && best.as_ref().is_none_or(|best| minimum.rss < best.rss)
             {
                 best = Some(minimum);
             }
@@ -250,8 +252,8 @@ struct RangeScan {
 }
 
 impl RangeScan {
-    /// Places of the local minima of a ship that turns to the side of its rudder. The deepest comes first: it tells
-    /// which of the others are hopeless.
+    /// Local minima in 1/T of a ship that turns to the side of its rudder, the deepest first, because it sets the bar
+    /// for the others.
     fn valleys(&self) -> Vec<f64> {
         let height = |k: usize| {
             let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
@@ -262,15 +264,15 @@ impl RangeScan {
             height(k).is_finite() && (k == 0 || height(k - 1) >= height(k)) && (k == last || height(k + 1) >= height(k))
         });
         let mut valleys: Vec<usize> = valleys.collect();
-        valleys.sort_by(|&one, &other| height(one).total_cmp(&height(other)));
+        valleys.sort_by(|&a, &b| height(a).total_cmp(&height(b)));
         valleys.into_iter().map(|k| self.grid[k]).collect()
     }
 
-    /// Why there is no answer: the best fit of the scan, whatever the sign of its K/T, is no ship; or the columns are
+    /// Reason for no estimate: the best fit of the scan, over both signs of K/T, is not a ship; or the columns are
     /// parallel.
     fn refusal(&self, condition: f64) -> IdentifyError {
         let fits = self.grid.iter().zip(&self.fits).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
-        match fits.min_by(|(_, one), (_, other)| one.rss.total_cmp(&other.rss)) {
+        match fits.min_by(|(_, a), (_, b)| a.rss.total_cmp(&b.rss)) {
             Some((inverse_time, Fit { gain, .. })) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
             _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
         }
@@ -282,35 +284,35 @@ impl RangeScan {
         profile.evaluate(inverse_time);
         let (gain, offset) = profile.steering();
         let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
-        // Whichever valley it came from: a minimum may leave the range on the way, or stop where the range ends.
+        // A minimum may leave the range during the polish, or stop at its edge.
         let fastest = self.grid[self.grid.len() - 1];
-        let at_bound = inverse_time.abs() >= fastest * (1.0 - AT_BOUND);
-        // A rudder of the wrong sign looks like a ship that is course-unstable with a T of no time at all.
+        let at_bound = inverse_time.abs() >= fastest * (1.0 - BOUND_TOLERANCE);
+        // A rudder of the wrong sign looks like a course-unstable ship with a vanishing T.
         if at_bound && let refused @ IdentifyError::NotAShip { .. } = self.refusal(f64::INFINITY) {
             return Err(refused);
         }
         let information = profile.information(inverse_time);
         let observations = profile.observations();
         let freedom = observations as f64 - (SHARED + 2 * profile.trials()) as f64;
-        // Ships that turn the wrong way have their best fit with b > 0 where the rudder hardly counts.
+        // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) =
             invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;
         let white = to_response(&(inverse * (rss / freedom)), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
-        if gain < SIGNIFICANT * gain_sd {
+        if gain < MIN_GAIN_DEVIATIONS * gain_sd {
             return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
         }
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());
-        // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
+        // The factor corrects for the degrees of freedom of the fit, as in the variance above.
         let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
         let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
-        let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);
+        let (uncertainty, warning) = robust::select(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
         warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
-            let text = format!("T = {time} s is at its bound or beyond: the search ends at ±{end} s");
+            let text = format!("T = {time} s lies at or beyond the limit of the search, ±{end} s");
             warnings.push(Code::AtBound.warning(text));
         }
         Ok(Estimate {
@@ -333,14 +335,14 @@ impl RangeScan {
     }
 }
 
-/// What is said of a ship whose 1/T is below zero.
+/// Warning text for a negative 1/T.
 pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
-pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
+pub(crate) fn to_response(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
     let b = response.K_over_T;
     let jacobian = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -response.rudder_bias / b, 1.0 / b);
-    Covariance { matrix: jacobian * of_linear * jacobian.transpose(), degrees_of_freedom: Some(freedom) }
+    Covariance { matrix: jacobian * linear_covariance * jacobian.transpose(), degrees_of_freedom: Some(freedom) }
 }
 
 #[cfg(test)]

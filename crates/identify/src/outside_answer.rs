@@ -1,4 +1,4 @@
-//! K, T and δ_r as somebody else found them, and the estimate that is made of them.
+//! K, T and δ_r of an outside estimator, and their conversion to an [`Estimate`].
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use document::{Code, Warning};
@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 
-/// K, T and δ_r as somebody else found them.
+/// K, T and δ_r of an outside estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
     /// K, 1/s.
@@ -17,14 +17,14 @@ pub struct Answer {
     pub T: f64,
     /// δ_r, rad.
     pub rudder_bias: f64,
-    /// What is known of their errors.
+    /// Their errors.
     pub errors: Errors,
 }
 
-/// What somebody else knows of the errors of K (1/s), T (s) and δ_r (rad), in this order.
+/// Errors of K (1/s), T (s) and δ_r (rad), in this order, as an outside estimator reports them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Errors {
-    /// Nothing.
+    /// Not reported.
     Unknown,
     /// Standard deviations.
     Deviations([Option<f64>; 3]),
@@ -32,11 +32,11 @@ pub enum Errors {
     Covariance(Matrix3<f64>),
 }
 
-/// Said where standard deviations are all that is known.
-const UNCORRELATED: &str = "errors of K and T are taken as independent, because no covariance was given: their own \
-                            intervals do not depend on it, that of K/T and predictions do";
+/// Warning where only standard deviations are reported.
+const UNCORRELATED: &str = "errors of K and T are treated as independent, because no covariance was given; this \
+                            affects predictions and the interval of K/T, not the intervals of K and T";
 
-/// Largest asymmetry of a covariance and excess of a correlation over one, as a share: rounding.
+/// Largest relative asymmetry of a covariance and excess of a correlation over 1: rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl Answer {
@@ -52,17 +52,17 @@ impl Answer {
             return Err(IdentifyError::NotAShip { inverse_time: inverse_T, gain: K_over_T });
         }
         if !rudder_bias.is_finite() {
-            return Err(IdentifyError::outside("the rudder bias is no finite number"));
+            return Err(IdentifyError::outside("the rudder bias is not a finite number"));
         }
         let (a, b) = (inverse_T, K_over_T);
         let jacobian = Matrix3::new(0.0, -a * a, 0.0, a, -a * b, 0.0, 0.0, 0.0, 1.0);
-        let transformed = |(known, warning)| (jacobian * known * jacobian.transpose(), warning);
+        let transformed = |(covariance, warning)| (jacobian * covariance * jacobian.transpose(), warning);
         let is_finite = |(matrix, _): &(Matrix3<f64>, _)| matrix.iter().all(|value| value.is_finite());
         let (uncertainty, warning) = match self.covariance().map(transformed).filter(is_finite) {
             None => {
                 let reason = match self.errors {
                     Errors::Covariance(_) => "the covariance of the outside estimator is not positive definite",
-                    _ => "the outside estimator gave no errors of both K and T",
+                    _ => "the outside estimator gave no error of K or of T",
                 };
                 (Uncertainty::None { reason }, None)
             }
@@ -82,8 +82,8 @@ impl Answer {
         })
     }
 
-    /// The covariance of (K, T, δ_r), and what has to be said of it; `None` where K or T has no error, or what is given
-    /// is no covariance.
+    /// The covariance of (K, T, δ_r), and a warning on it; `None` where K or T has no error, or the given matrix is not
+    /// a covariance.
     fn covariance(&self) -> Option<(Matrix3<f64>, Option<Warning>)> {
         match self.errors {
             Errors::Unknown => None,
@@ -97,15 +97,15 @@ impl Answer {
     }
 }
 
-/// Whether a matrix is finite and symmetric, with variances that are not negative and correlations that go together:
-/// no combination of K, T and δ_r may have a negative variance. One that has no error at all may be left at zero.
+/// Whether a matrix is finite and symmetric, with non-negative variances and consistent correlations: no combination of
+/// K, T and δ_r may have a negative variance. A parameter without an error may have a variance of zero.
 fn is_covariance(matrix: &Matrix3<f64>) -> bool {
     let is_plausible = (0..3).all(|i| {
         (0..3).all(|j| {
-            let (one, other) = (matrix[(i, j)], matrix[(j, i)]);
+            let (upper, lower) = (matrix[(i, j)], matrix[(j, i)]);
             let most = (matrix[(i, i)] * matrix[(j, j)]).sqrt() * (1.0 + ROUNDING);
             // Written so that NaN is refused too.
-            one.abs() <= most && most.is_finite() && (one - other).abs() <= ROUNDING * most && matrix[(i, i)] >= 0.0
+            upper.abs() <= most && most.is_finite() && (upper - lower).abs() <= ROUNDING * most && matrix[(i, i)] >= 0.0
         })
     });
     let scaled = Matrix3::from_fn(|i, j| match (matrix[(i, i)] * matrix[(j, j)]).sqrt() {
@@ -128,8 +128,8 @@ mod tests {
         answer(errors).estimate().expect("a ship")
     }
 
-    /// What goes in as standard deviations comes out as such: the transformation to 1/T and K/T and the delta method
-    /// back are inverse to one another.
+    /// Standard deviations are unchanged by the conversion: the transformation to 1/T and K/T and the delta method back
+    /// are inverse to one another.
     #[test]
     fn errors_survive_the_change_of_parameters() {
         let sd = [0.004, 0.9, 0.002];
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_not_made_up() {
+    fn missing_errors_stay_missing() {
         let half = estimate(Errors::Deviations([Some(0.004), Some(0.9), None]));
         assert!(half.K().sd.is_some() && half.T().sd.is_some());
         assert_eq!((half.rudder_bias().sd, half.rudder_bias().ci95), (None, None));

@@ -1,8 +1,9 @@
-//! The sum of squares of a first-order fit as a function of 1/T alone.
+//! Profiled sum of squares of a first-order fit, a function of 1/T alone.
 //!
-//! Given 1/T everything else is linear: the anchor of every trial is eliminated by orthogonal projection, b and b δ_r
-//! follow from two normal equations over all trials. The same projections give the exact step in 1/T, the Fisher
-//! information and the scores. Work space is allocated once.
+//! For a given 1/T the other unknowns are linear: the anchor of every trial is eliminated by orthogonal projection, b
+//! and b δ_r follow from two normal equations over all trials. The same projections give the exact step in 1/T, the
+//! Fisher information and the scores. Work space is allocated once. Sources: variable projection, Golub and Pereyra
+//! (1973); its step, Kaufman (1975).
 
 use estimation::column::{Removed, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -17,7 +18,7 @@ struct TrialColumns {
     columns: MotionColumns,
     /// Mean and length of φ₁ before it became a unit column.
     homogeneous: (f64, f64),
-    /// What was taken out of G, H and the heading.
+    /// Components of G, H and the heading that were projected out.
     removed: [Removed; 3],
     /// Heading, projected.
     heading: Vec<f64>,
@@ -27,12 +28,12 @@ struct TrialColumns {
     residual: Vec<f64>,
 }
 
-/// The profiled sum of squares and everything at the point where it was last evaluated.
+/// The profiled sum of squares and the fit at the point last evaluated.
 #[derive(Debug)]
 pub(crate) struct Profile {
     parts: Vec<TrialColumns>,
     steering: Vector2<f64>,
-    /// Point last evaluated and the answer there.
+    /// Point last evaluated and the sum of squares there.
     last: Option<(f64, Option<f64>)>,
     /// Number of evaluations so far.
     pub evaluations: usize,
@@ -43,7 +44,7 @@ pub(crate) struct Profile {
 pub(crate) struct NewtonStep {
     /// Change of 1/T, 1/s.
     pub by: f64,
-    /// Change of the sum of squares that it promises, rad².
+    /// Predicted decrease of the sum of squares, rad².
     pub decrease: f64,
 }
 
@@ -70,12 +71,12 @@ impl Profile {
     /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` when the columns are dependent or b ≤ 0.
     pub fn evaluate(&mut self, inverse_time: f64) -> Option<f64> {
         match self.last {
-            Some((point, answer)) if point == inverse_time => answer,
+            Some((point, rss)) if point == inverse_time => rss,
             _ => {
                 self.evaluations += 1;
-                let answer = self.fit(inverse_time);
-                self.last = Some((inverse_time, answer));
-                answer
+                let rss = self.fit(inverse_time);
+                self.last = Some((inverse_time, rss));
+                rss
             }
         }
     }
@@ -129,12 +130,12 @@ impl Profile {
     /// Residual times projected Jacobian, column by column and trial by trial; after
     /// [`information`](Self::information).
     pub fn into_scores(self) -> Vec<[Vec<f64>; 3]> {
-        let of_trial = |own: TrialColumns| {
-            let mut columns = [own.sensitivity, own.columns.rudder, own.columns.constant];
-            columns.iter_mut().for_each(|column| column.iter_mut().zip(&own.residual).for_each(|(x, e)| *x *= e));
+        let trial_scores = |part: TrialColumns| {
+            let mut columns = [part.sensitivity, part.columns.rudder, part.columns.constant];
+            columns.iter_mut().for_each(|column| column.iter_mut().zip(&part.residual).for_each(|(x, e)| *x *= e));
             columns
         };
-        self.parts.into_iter().map(of_trial).collect()
+        self.parts.into_iter().map(trial_scores).collect()
     }
 
     /// Residuals, trial by trial.
@@ -159,12 +160,12 @@ impl Profile {
 
     /// Σ(ψ − mean)² over all trials, rad².
     pub fn total_sum_of_squares(&self) -> f64 {
-        let of_part = |part: &TrialColumns| {
+        let trial_squares = |part: &TrialColumns| {
             let heading = &part.track.heading;
             let mean = sum(heading) / heading.len() as f64;
             heading.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>()
         };
-        self.parts.iter().map(of_part).sum()
+        self.parts.iter().map(trial_squares).sum()
     }
 }
 
@@ -195,7 +196,7 @@ impl TrialColumns {
         Matrix3::from(gram([&self.sensitivity, &self.columns.rudder, &self.columns.constant]))
     }
 
-    /// Coefficients of the track for given steering: the anchor is what the projections took out.
+    /// Coefficients of the track for given steering: the projected-out components give the anchor.
     fn coefficients(&self, gain: f64, offset: f64) -> Coefficients {
         let [rudder, constant, heading] = self.removed;
         let (mean, length) = self.homogeneous;
@@ -208,8 +209,8 @@ impl TrialColumns {
 }
 
 /// Inverse of an [`information`](Profile::information) and the condition number of the Jacobian behind it, its columns
-/// scaled. The error is the condition number where it exceeds `limit`: the digits of the inverse are then rounding, and
-/// what it calls a variance may be negative.
+/// scaled. The error is the condition number where it exceeds `limit`: the inverse is then dominated by rounding, and
+/// its variances may be negative.
 pub(crate) fn invert(information: &Matrix3<f64>, limit: f64) -> Result<(Matrix3<f64>, f64), f64> {
     let scale = information.diagonal().map(|value| value.sqrt().recip());
     let scaled = |matrix: &Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);

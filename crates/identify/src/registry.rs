@@ -1,7 +1,7 @@
 //! The methods of the project by name, with their settings as they are written in scenario files.
 //!
 //! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below.
-//! The contract of all methods then runs it. A method that is made of others stands behind them.
+//! The contract of all methods then runs it. A method that combines others is listed after them.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::identifier::Identifier;
 use crate::settings::SettingsError;
 
 macro_rules! methods {
-    ($($Method:ident($file:ident)),+ $(,)?; of others: $($Chooser:ident($chooser:ident)),+ $(,)?) => {
+    ($($Method:ident($file:ident)),+ $(,)?; combined: $($Chooser:ident($chooser:ident)),+ $(,)?) => {
         /// A method and its settings; the variant is the key in a scenario file.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
         #[serde(rename_all = "kebab-case")]
@@ -34,7 +34,7 @@ macro_rules! methods {
             }
         }
 
-        /// Every method that is not made of others, with its default settings, in the order of reports.
+        /// Every method that does not combine others, with its default settings, in the order of reports.
         pub fn defaults() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }
@@ -51,11 +51,11 @@ methods! {
     OutputError(output_error),
     Srivc(srivc),
     MaximumLikelihood(maximum_likelihood);
-    of others: Recommended(recommended),
+    combined: Recommended(recommended),
 }
 
-/// Ids of the methods that one record is worth, the best first. Without `srivc`, which comes to the answer of
-/// `output-error`, and `fourier-published`, whose T is biased whatever the noise.
+/// Ids of the methods of a usual fit, the best first. Without `srivc`, whose estimate is that of `output-error`, and
+/// `fourier-published`, whose T is biased even without noise.
 pub const USUAL: [&str; 6] = [
     "output-error",
     "maximum-likelihood",
@@ -71,24 +71,29 @@ mod tests {
     use crate::savitzky_golay::SavitzkyGolay;
     use crate::{characteristic_points, fourier_published, least_squares, output_error, srivc};
 
-    use super::IdentifierSettings as Of;
+    use super::IdentifierSettings;
 
-    /// Counts that would take all memory or all time, numbers whose size has to be seen, and those of no meaning.
+    /// Counts that would exhaust memory or time, extreme numbers, and meaningless values.
     #[test]
     fn settings_out_of_range_are_refused() {
-        let published = |settings: fourier_published::Settings| Of::FourierPublished(settings);
+        let published = |settings: fourier_published::Settings| IdentifierSettings::FourierPublished(settings);
         let triples = |triples| published(fourier_published::Settings { triples, ..Default::default() });
-        let error = |settings| Of::OutputError(settings);
+        let error = |settings| IdentifierSettings::OutputError(settings);
         let default = output_error::Settings::default;
         let smoothed = |window_samples, order| {
             let smoothing = Some(SavitzkyGolay { window_samples, order });
-            Of::LeastSquares(least_squares::Settings { smoothing, ..Default::default() })
+            IdentifierSettings::LeastSquares(least_squares::Settings { smoothing, ..Default::default() })
         };
-        let projected =
-            |harmonics| Of::FourierProjected(fourier_projected::Settings { harmonics, ..Default::default() });
+        let projected = |harmonics| {
+            IdentifierSettings::FourierProjected(fourier_projected::Settings { harmonics, ..Default::default() })
+        };
         let points = |half_width_s, condition_limit| {
             let default = characteristic_points::Settings::default();
-            Of::CharacteristicPoints(characteristic_points::Settings { half_width_s, condition_limit, ..default })
+            IdentifierSettings::CharacteristicPoints(characteristic_points::Settings {
+                half_width_s,
+                condition_limit,
+                ..default
+            })
         };
         for (settings, key, found) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
@@ -109,7 +114,11 @@ mod tests {
                 "smallest-time-constant-s",
                 "1e-300",
             ),
-            (Of::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
+            (
+                IdentifierSettings::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }),
+                "max-iterations",
+                "1001",
+            ),
         ] {
             let error = settings.build().err().expect("it cannot end");
             assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");

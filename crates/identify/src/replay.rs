@@ -1,7 +1,8 @@
-//! The recorded rudder replayed through a given first-order response: how far is the heading from the record?
+//! Replay of the recorded rudder through a given first-order response, and the heading residual.
 //!
-//! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay as they are, so the error judges
-//! them and not the luck of a start. Works for any sign of T.
+//! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay fixed, so the residual measures
+//! their error and not that of the initial state. Valid for either sign of T. The comparison of a simulated with a
+//! measured output is model validation as in Ljung (1999), chapter 16.
 
 use estimation::column::{dot, sum};
 use ship::FirstOrder;
@@ -53,16 +54,16 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     track.fill(a, &mut columns);
     let mut coefficients = Coefficients::of(response);
     let forced = columns.rudder.iter().zip(&columns.constant);
-    let rest: Vec<f64> = track
+    let free: Vec<f64> = track
         .heading
         .iter()
         .zip(forced)
         .map(|(psi, (g, h))| psi - coefficients.gain * g - coefficients.offset * h)
         .collect();
-    if rest.iter().any(|value| !value.is_finite()) {
+    if free.iter().any(|value| !value.is_finite()) {
         return None;
     }
-    coefficients.anchor = best_start(&rest, &columns.homogeneous);
+    coefficients.anchor = best_start(&free, &columns.homogeneous);
     let states = track.simulate(a, &coefficients);
     let mut residual = vec![f64::NAN; states.len()];
     for (&row, &measured) in track.observed.iter().zip(&track.heading) {
@@ -81,13 +82,13 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     replay.rms().is_finite().then_some(replay)
 }
 
-/// Root mean square of what the replays of some records leave of all headings, rad; `None` where one is not finite.
+/// Root mean square residual of the replays of some records over all headings, rad; `None` if a replay is not finite.
 pub fn pooled(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
     let replays = trials.iter().map(|trial| replay(trial, response));
     Some(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?))
 }
 
-/// Root mean square of what several replays leave of the headings, over all rows, rad; NaN without any.
+/// Root mean square heading residual of several replays over all rows, rad; NaN without any.
 pub fn pooled_rms(replays: &[Replay]) -> f64 {
     let (mut square, mut rows) = (0.0, 0usize);
     for (_, residual) in replays.iter().flat_map(Replay::observed) {
@@ -97,20 +98,21 @@ pub fn pooled_rms(replays: &[Replay]) -> f64 {
     (square / rows as f64).sqrt()
 }
 
-/// Heading and yaw rate at the anchor whose own motion, 1 and φ₁, comes nearest to `rest`.
-pub(crate) fn best_start(rest: &[f64], homogeneous: &[f64]) -> State {
-    let rows = rest.len() as f64;
-    let (level, mean) = (sum(rest) / rows, sum(homogeneous) / rows);
+/// Heading and yaw rate at the anchor whose free motion, along 1 and φ₁, fits `free` best: the heading less the
+/// response to the rudder.
+pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
+    let rows = free.len() as f64;
+    let (level, mean) = (sum(free) / rows, sum(homogeneous) / rows);
     let square = dot(homogeneous, homogeneous);
     let centred: Vec<f64> = homogeneous.iter().map(|x| x - mean).collect();
     let spread = dot(&centred, &centred);
     // With the angle θ between 1 and φ₁ the condition number of the two is 2/θ, and θ² = spread / square.
-    let told_apart = spread.is_finite() && spread * CONDITION_LIMIT.powi(2) > 4.0 * square;
-    if !told_apart {
+    let is_independent = spread.is_finite() && spread * CONDITION_LIMIT.powi(2) > 4.0 * square;
+    if !is_independent {
         // The transient of the initial yaw rate dies within a sample: only the heading can be fitted.
         return State { heading: level, yaw_rate: 0.0 };
     }
-    let yaw_rate = dot(&centred, rest) / spread;
+    let yaw_rate = dot(&centred, free) / spread;
     State { heading: level - yaw_rate * mean, yaw_rate }
 }
 

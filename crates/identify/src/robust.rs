@@ -1,4 +1,5 @@
-//! Errors of a least-squares estimate whose residual is coloured.
+//! Covariance of a least-squares estimate with a coloured residual. Source: Newey and West (1987), A simple, positive
+//! semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica 55, 703–708.
 
 use document::{Code, Warning};
 use estimation::column::dot;
@@ -7,33 +8,33 @@ use nalgebra::Matrix3;
 
 use crate::estimate::{Covariance, Uncertainty};
 
-/// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
-const COLOURED: f64 = 0.2;
+/// Lag-1 autocorrelation above which a residual is coloured, if it exceeds the range of white noise.
+const MAX_WHITE_CORRELATION: f64 = 0.2;
 
-/// The error a method quotes: that of a white residual where it is white, else the robust one, with a warning.
-/// Where neighbours differ in sign the robust error would be smaller than the white one, which a record of two
-/// instruments read in turn does not deserve: the white one stays.
-pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<Warning>) {
+/// Covariance that a method reports: that of a white residual, or for a coloured residual the robust covariance, with a
+/// warning. A negative correlation keeps the white covariance: the robust covariance would be smaller, which is not
+/// justified for a record of two instruments read in turn.
+pub(crate) fn select(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<Warning>) {
     if !is_coloured(lag1, rows) {
         return (Uncertainty::Covariance(white), None);
     }
     if lag1 > 0.0 {
         let warning = format!(
-            "errors of the replay last from reading to reading (correlation {lag1:.2}): the model lacks an effect, or the compass \
-             has a memory; intervals allow for it"
+            "successive errors of the replay are alike (correlation {lag1:.2}): the model lacks an effect, or the compass \
+             error lasts; the intervals allow for it"
         );
         return (Uncertainty::Covariance(robust.clone()), Some(Code::ColouredResidual.warning(warning)));
     }
     let warning = format!(
-        "the residual alternates from reading to reading (lag-1 autocorrelation {lag1:.2}), as where two instruments that \
-         disagree are read in turn: intervals take it for white; look at the heading"
+        "successive errors of the replay alternate (correlation {lag1:.2}), as if two instruments that disagree were \
+         read in turn; the intervals do not allow for it; check the heading column"
     );
     (Uncertainty::Covariance(white), Some(Code::ColouredResidual.warning(warning)))
 }
 
-/// Whether neighbours are correlated by more than is usual, and by more than chance.
+/// `true` if the lag-1 autocorrelation is relevant and outside three standard deviations of white noise.
 pub(crate) fn is_coloured(lag1: f64, rows: usize) -> bool {
-    lag1.abs() > COLOURED.max(3.0 / (rows as f64).sqrt())
+    lag1.abs() > MAX_WHITE_CORRELATION.max(3.0 / (rows as f64).sqrt())
 }
 
 /// Lag-1 autocorrelation of residuals, pooled over trials.

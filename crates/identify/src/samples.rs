@@ -1,4 +1,4 @@
-//! A record as methods want it: the rows with a heading, and the rudder integrated exactly up to them.
+//! Samples of a record: the rows with a heading, and the rudder integrated exactly up to them.
 
 use std::ops::RangeInclusive;
 
@@ -10,14 +10,14 @@ use trial::{Corner, Trial};
 use crate::error::IdentifyError;
 
 /// Smallest range of rudder and heading, deg, that counts as steering.
-const SMALLEST_RANGE_DEG: f64 = 0.5;
+const MIN_RANGE_DEG: f64 = 0.5;
 
 /// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth
 /// and number frequencies by its ratio to the interval, which have to stay in the range of floating point.
 const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
 
 /// Largest angle, rad: a heading that has turned 160 000 times.
-const LARGEST_ANGLE: f64 = 1e6;
+const MAX_ANGLE_RAD: f64 = 1e6;
 
 /// The observed rows of a trial. All columns have the same length; time starts at 0.
 #[derive(Debug, Clone, Default)]
@@ -38,7 +38,7 @@ impl Samples {
     /// Takes the observed rows of a trial.
     ///
     /// Fails with [`IdentifyError::NotExcited`] when rudder or heading move over less than half a degree, with
-    /// [`IdentifyError::OutOfRange`] when times or angles are none of a manoeuvre, and with
+    /// [`IdentifyError::OutOfRange`] when times or angles are beyond any manoeuvre, and with
     /// [`IdentifyError::TooFewSamples`] when there are fewer than `needed` rows.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         check(trial, needed)?;
@@ -56,9 +56,9 @@ impl Samples {
             let h = t[row] - t[row - 1];
             match corner {
                 Some(&Corner { row: before_row, time, before, after }) if before_row + 1 == row => {
-                    let (start, rest, change) = (delta[row - 1], t[row] - time, after - before);
-                    double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + rest.powi(3) * change / 6.0;
-                    integral += h * start + 0.5 * (h * h * before + rest * rest * change);
+                    let (start, u, change) = (delta[row - 1], t[row] - time, after - before);
+                    double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + u.powi(3) * change / 6.0;
+                    integral += h * start + 0.5 * (h * h * before + u * u * change);
                     corner = corners.next();
                 }
                 _ => {
@@ -73,16 +73,16 @@ impl Samples {
         let mut columns = [time, psi[first..].to_vec(), delta[first..].to_vec(), once, twice];
         if psi[first..].iter().any(|psi| !psi.is_finite()) {
             for column in &mut columns {
-                let mut own = psi[first..].iter();
-                column.retain(|_| own.next().is_some_and(|psi| psi.is_finite()));
+                let mut headings = psi[first..].iter();
+                column.retain(|_| headings.next().is_some_and(|psi| psi.is_finite()));
             }
         }
         let [time, heading, rudder, rudder_integral, rudder_double_integral] = columns;
         Ok(Self { time, heading, rudder, rudder_integral, rudder_double_integral })
     }
 
-    /// Samples of every trial, or the first reason why there are none.
-    pub fn of_all(trials: &[Trial], needed: usize) -> Result<Vec<Self>, IdentifyError> {
+    /// Samples of every trial, or the first error.
+    pub fn from_trials(trials: &[Trial], needed: usize) -> Result<Vec<Self>, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
@@ -101,24 +101,24 @@ pub(crate) fn track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError
     Ok(Track::new(trial))
 }
 
-/// What every method asks of a trial; fails as [`Samples::new`] does.
+/// Checks the requirements of every method on a trial; fails as [`Samples::new`] does.
 pub(crate) fn check(trial: &Trial, needed: usize) -> Result<(), IdentifyError> {
     let (time, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
-    let found = psi.iter().filter(|psi| psi.is_finite()).count();
+    let count = psi.iter().filter(|psi| psi.is_finite()).count();
     let first = trial.observed_rows().next().unwrap_or(0);
     let last = psi.iter().rposition(|psi| psi.is_finite()).unwrap_or(0);
-    if found < needed {
-        return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, found });
+    if count < needed {
+        return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, count });
     }
     let largest = |(lo, hi): (f64, f64)| hi.max(-lo);
     let range_deg = |(lo, hi): (f64, f64)| to_deg(hi - lo);
     let heading = extremes(psi);
-    // The rudder between observed rows is integrated and simulated with.
+    // The rudder between observed rows is used as well.
     let (duration_s, angle_rad) = (time[last] - time[first], largest(heading).max(largest(extremes(delta))));
-    if !DURATION_S.contains(&duration_s) || angle_rad > LARGEST_ANGLE {
+    if !DURATION_S.contains(&duration_s) || angle_rad > MAX_ANGLE_RAD {
         return Err(IdentifyError::OutOfRange { trial: trial.name().into(), duration_s, angle_rad });
     }
-    let steered = if found == trial.len() {
+    let steered = if count == trial.len() {
         extremes(delta)
     } else {
         trial
@@ -126,7 +126,7 @@ pub(crate) fn check(trial: &Trial, needed: usize) -> Result<(), IdentifyError> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), row| (lo.min(delta[row]), hi.max(delta[row])))
     };
     let (rudder_deg, heading_deg) = (range_deg(steered), range_deg(heading));
-    if rudder_deg < SMALLEST_RANGE_DEG || heading_deg < SMALLEST_RANGE_DEG {
+    if rudder_deg < MIN_RANGE_DEG || heading_deg < MIN_RANGE_DEG {
         return Err(IdentifyError::NotExcited { trial: trial.name().into(), rudder_deg, heading_deg });
     }
     Ok(())
@@ -137,7 +137,7 @@ mod tests {
     use crate::registry;
     use crate::testing::{Case, record};
 
-    /// Any finite number makes a valid trial; a search over frequencies or an iteration need not end on its squares.
+    /// Any finite number makes a valid trial; a search over frequencies or an iteration may not end on its squares.
     #[test]
     fn what_overflows_is_refused_by_every_method() {
         let trial = Case::default().trial();

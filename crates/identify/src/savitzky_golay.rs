@@ -1,5 +1,7 @@
 //! Local polynomials by least squares: smoothed values and derivatives of a record, evenly sampled or not. With even
-//! sampling they are the Savitzky-Golay filters. What lies within half a window of an end is left to the caller.
+//! sampling they are the Savitzky-Golay filters. Rows within half a window of an end are left to the caller. Source:
+//! Savitzky and Golay (1964), Smoothing and differentiation of data by simplified least squares procedures, Analytical
+//! Chemistry 36, 1627–1639.
 
 use std::ops::Range;
 
@@ -9,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use crate::settings::{SettingsError, require};
 
 /// Highest order of a local polynomial.
-pub const HIGHEST_ORDER: usize = 5;
+pub const MAX_ORDER: usize = 5;
 
 /// Coefficients of a local polynomial; those above its order are zero.
-pub const COEFFICIENTS: usize = HIGHEST_ORDER + 1;
+pub const COEFFICIENTS: usize = MAX_ORDER + 1;
 
 /// Window and order of the local polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -24,8 +26,8 @@ pub struct SavitzkyGolay {
     pub order: usize,
 }
 
-/// Most rows in a window: every row of a record costs that many.
-const WIDEST_WINDOW: usize = 10_001;
+/// Limit on the rows of a window, which set the cost of every row of a record.
+const MAX_WINDOW_ROWS: usize = 10_001;
 
 impl Default for SavitzkyGolay {
     fn default() -> Self {
@@ -37,14 +39,14 @@ impl SavitzkyGolay {
     /// Three rows and a parabola: central differences.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
-    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or holds so
-    /// many that nothing of a manoeuvre is left.
+    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or exceeds
+    /// 10 001 rows.
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self { window_samples: rows, order } = *self;
-        require((2..=HIGHEST_ORDER).contains(&order), "order", order, "2, 3, 4 or 5")?;
-        let holds = !rows.is_multiple_of(2) && rows > order;
-        require(holds, "window-samples", rows, "an odd number above the order")?;
-        require(rows <= WIDEST_WINDOW, "window-samples", rows, "at most 10001")
+        require((2..=MAX_ORDER).contains(&order), "order", order, "2, 3, 4 or 5")?;
+        let is_valid = !rows.is_multiple_of(2) && rows > order;
+        require(is_valid, "window-samples", rows, "an odd number above the order")?;
+        require(rows <= MAX_WINDOW_ROWS, "window-samples", rows, "at most 10001")
     }
 
     /// Rows of the window around row `k`; `None` when it does not fit into `len` rows.
@@ -66,7 +68,7 @@ pub struct WindowWeights<'a> {
 }
 
 impl<'a> WindowWeights<'a> {
-    /// For windows and polynomials of `filter`.
+    /// Weights for windows and polynomials of `filter`.
     pub fn new(filter: &'a SavitzkyGolay) -> Self {
         Self { filter, relative: Vec::new(), weights: Vec::new() }
     }
@@ -104,14 +106,14 @@ impl<'a> WindowWeights<'a> {
     }
 }
 
-/// Coefficients cₚ of Σ cₚ (t − `about`)ᵖ, p ≤ `order`, fitted by least squares to points of equal weight; zero above.
+/// Coefficients cₚ of Σ cₚ (t − `centre`)ᵖ, p ≤ `order`, fitted by least squares to points of equal weight; zero above.
 ///
 /// `time` and `value` have the same length; times differ. cₚ has the unit of the value over sᵖ. `None` with no more
 /// points than the order, or when the equations are singular.
 ///
 /// Source: Savitzky and Golay (1964), here for any spacing.
-pub fn local_polynomial(time: &[f64], value: &[f64], about: f64, order: usize) -> Option<[f64; COEFFICIENTS]> {
-    let coefficients = LocalFit::new(time, about, order)?.coefficients(value);
+pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) -> Option<[f64; COEFFICIENTS]> {
+    let coefficients = LocalFit::new(time, centre, order)?.coefficients(value);
     coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
 }
 
@@ -119,24 +121,24 @@ pub fn local_polynomial(time: &[f64], value: &[f64], about: f64, order: usize) -
 #[derive(Debug)]
 pub struct LocalFit<'a> {
     time: &'a [f64],
-    about: f64,
+    centre: f64,
     order: usize,
-    /// Largest distance from `about`, s: powers are those of the distance over this.
+    /// Largest distance from `centre`, s, by which distances are scaled.
     reach: f64,
     normal: Cholesky<f64, Const<COEFFICIENTS>>,
 }
 
 impl<'a> LocalFit<'a> {
-    /// For the rows at `time` (s), a polynomial of `order` in t − `about`; `None` as for [`local_polynomial`].
-    pub fn new(time: &'a [f64], about: f64, order: usize) -> Option<Self> {
-        if time.len() <= order || order > HIGHEST_ORDER {
+    /// Fit for the rows at `time` (s), a polynomial of `order` in t − `centre`; `None` as for [`local_polynomial`].
+    pub fn new(time: &'a [f64], centre: f64, order: usize) -> Option<Self> {
+        if time.len() <= order || order > MAX_ORDER {
             return None;
         }
-        let reach = time.iter().fold(0.0_f64, |reach, t| reach.max((t - about).abs()));
+        let reach = time.iter().fold(0.0_f64, |reach, t| reach.max((t - centre).abs()));
         // Unused orders keep a unit diagonal and a zero right-hand side, so that one size fits all.
         let mut normal = Matrix6::from_fn(|i, j| if i == j && i > order { 1.0 } else { 0.0 });
         for t in time {
-            let powers = powers((t - about) / reach, order);
+            let powers = powers((t - centre) / reach, order);
             // Cholesky reads the lower triangle only.
             for i in 0..=order {
                 for j in 0..=i {
@@ -144,16 +146,15 @@ impl<'a> LocalFit<'a> {
                 }
             }
         }
-        Some(Self { time, about, order, reach, normal: normal.cholesky()? })
+        Some(Self { time, centre, order, reach, normal: normal.cholesky()? })
     }
 
     /// The coefficients for one value per row.
     pub fn coefficients(&self, value: &[f64]) -> [f64; COEFFICIENTS] {
-        let right = self
-            .time
-            .iter()
-            .zip(value)
-            .fold(Vector6::zeros(), |right, (t, &y)| right + powers((t - self.about) / self.reach, self.order) * y);
+        let right =
+            self.time.iter().zip(value).fold(Vector6::zeros(), |right, (t, &y)| {
+                right + powers((t - self.centre) / self.reach, self.order) * y
+            });
         self.rescaled(self.normal.solve(&right).into())
     }
 
@@ -162,7 +163,7 @@ impl<'a> LocalFit<'a> {
         let scaled = Vector6::from(self.rescaled(functional));
         let used = Vector6::from_fn(|p, _| if p <= self.order { scaled[p] } else { 0.0 });
         let solved = self.normal.solve(&used);
-        self.time.iter().map(move |t| solved.dot(&powers((t - self.about) / self.reach, self.order)))
+        self.time.iter().map(move |t| solved.dot(&powers((t - self.centre) / self.reach, self.order)))
     }
 
     /// Divides by powers of the reach: from powers of the scaled distance to powers of seconds.
@@ -219,13 +220,13 @@ mod tests {
     }
 
     #[test]
-    fn a_polynomial_is_found_again_from_uneven_rows() {
+    fn a_polynomial_is_recovered_from_uneven_rows() {
         let time = [0.0, 0.3, 1.1, 1.2, 2.5, 3.0, 4.4, 4.9];
-        for order in 0..=HIGHEST_ORDER {
+        for order in 0..=MAX_ORDER {
             let truth = [0.3, -1.0, 0.5, 0.2, -0.05, 0.01];
             let value = time.map(|t| (0..=order).map(|p| truth[p] * f64::powi(t - 2.0, p as i32)).sum::<f64>());
             let found = local_polynomial(&time, &value, 2.0, order).expect("regular");
-            for p in 0..=HIGHEST_ORDER {
+            for p in 0..=MAX_ORDER {
                 assert_abs_diff_eq!(found[p], if p <= order { truth[p] } else { 0.0 }, epsilon = 1e-9);
             }
         }

@@ -1,8 +1,8 @@
-//! The profiled sum of squares of a first-order fit at many values of 1/T at once.
+//! Scan of the profiled sum of squares of a first-order fit over many values of 1/T at once.
 //!
-//! What [`crate::profile`] computes by projection, to the last digit and for one 1/T, is computed here by normal
-//! equations for several side by side: half the digits, which is enough to see where the valleys are, in a small part
-//! of the time.
+//! [`crate::profile`] computes it by projection, to the last digit and for a single 1/T; this module uses normal
+//! equations for several values side by side: half the digits, which locate the valleys, in a small part of the time.
+//! Source: variable projection, Golub and Pereyra (1973).
 
 use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
@@ -28,24 +28,24 @@ pub(crate) struct Fit {
 /// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` where the columns are dependent.
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
-/// [thinned](Track::thinned) ones.
+/// [thinned](Track::thinned) tracks.
 pub(crate) fn fits(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
     let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
-    let mut found = Vec::with_capacity(inverse_time.len());
+    let mut fits = Vec::with_capacity(inverse_time.len());
     // The columns of one block have their anchors at the same end of the record.
-    for same_side in inverse_time.chunk_by(|&one, &other| is_backward(one) == is_backward(other)) {
+    for same_side in inverse_time.chunk_by(|&a, &b| is_backward(a) == is_backward(b)) {
         for block in same_side.chunks(LANES) {
             let values: Lanes = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
             let mut products = [Products::default(); LANES];
             for (track, heading) in tracks.iter().zip(&centred) {
-                let own = estimation::lanes::run(Sweep { track, heading, inverse_time: &values });
-                products.iter_mut().zip(own).for_each(|(sum, own)| sum.add(&own));
+                let trial_products = estimation::lanes::run(Sweep { track, heading, inverse_time: &values });
+                products.iter_mut().zip(trial_products).for_each(|(sum, term)| sum.add(&term));
             }
-            found.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
+            fits.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
         }
     }
-    found
+    fits
 }
 
 fn centred(heading: &[f64]) -> Vec<f64> {
@@ -61,7 +61,7 @@ struct Products {
     hh: f64,
     g_psi: f64,
     h_psi: f64,
-    /// What φ₁ explains of the heading, rad².
+    /// Part of the heading explained by φ₁, rad².
     explained: f64,
 }
 
@@ -214,12 +214,12 @@ mod tests {
         let heading = centred(&track.heading);
         for sign in [1.0, -1.0] {
             let inverse_time = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
-            let found = estimation::lanes::on_every_set(|| Sweep {
+            let results = estimation::lanes::on_every_set(|| Sweep {
                 track: &track,
                 heading: &heading,
                 inverse_time: &inverse_time,
             });
-            assert!(found.iter().all(|(_, products)| products == &found[0].1), "{found:?}");
+            assert!(results.iter().all(|(_, products)| products == &results[0].1), "{results:?}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Why the settings of a method are refused; shared by every method, found before any record is read.
+//! Checks of the settings of all methods, made before any record is read.
 
 use ship::ShortNumber;
 use thiserror::Error;
@@ -11,41 +11,41 @@ pub struct SettingsError {
     pub key: &'static str,
     /// The value found.
     pub found: String,
-    /// What would be accepted, in words.
+    /// The accepted values, as text.
     pub expected: &'static str,
 }
 
 impl SettingsError {
-    /// A refusal that names the key, the value found and what would be accepted.
-    pub fn new(key: &'static str, found: impl ToString, expected: &'static str) -> Self {
-        Self { key, found: found.to_string(), expected }
+    /// Error that names the key, its value and the accepted values.
+    pub fn new(key: &'static str, value: impl ToString, expected: &'static str) -> Self {
+        Self { key, found: value.to_string(), expected }
     }
 }
 
-/// Most steps of an iteration: what has not settled in a thousand never does.
-pub(crate) const MOST_ITERATIONS: usize = 1000;
+/// Limit on the steps of an iteration: an iteration that has not settled by then never does.
+pub(crate) const MAX_ITERATIONS: usize = 1000;
 
-/// Refuses a setting of which something does not hold, with the value found and what would be accepted.
+/// Refuses a setting whose condition does not hold, with its value and the accepted values.
 pub(crate) fn require(
-    holds: bool,
+    is_valid: bool,
     key: &'static str,
-    found: impl ToString,
+    value: impl ToString,
     expected: &'static str,
 ) -> Result<(), SettingsError> {
-    if holds { Ok(()) } else { Err(SettingsError::new(key, found, expected)) }
+    if is_valid { Ok(()) } else { Err(SettingsError::new(key, value, expected)) }
 }
 
-/// Refuses a number of iterations that is none, or has no end.
+/// Refuses a number of iterations outside 1 to 1000.
 pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(), SettingsError> {
-    require((1..=MOST_ITERATIONS).contains(&iterations), key, iterations, "1 to 1000")
+    require((1..=MAX_ITERATIONS).contains(&iterations), key, iterations, "1 to 1000")
 }
 
-/// Refuses a `condition-limit` that no equations can keep, and one that is no number.
+/// Refuses a `condition-limit` of 1 or less, and NaN.
 pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
     require(limit > 1.0, "condition-limit", ShortNumber(limit), "a number above 1")
 }
 
-/// Refuses a `longest-gap-s` that is no time.
+/// Refuses a `longest-gap-s` that is not positive.
 pub(crate) fn check_longest_gap(gap_s: Option<f64>) -> Result<(), SettingsError> {
     gap_s.map_or(Ok(()), |gap| require(gap > 0.0, "longest-gap-s", ShortNumber(gap), "a positive time"))
 }

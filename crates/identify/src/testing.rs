@@ -203,22 +203,22 @@ impl Case {
 
 /// A record of these columns, s and rad.
 pub fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
-    of_channels(name, time, [(Channel::Heading, heading), (Channel::Rudder, rudder)].into())
+    from_channels(name, time, [(Channel::Heading, heading), (Channel::Rudder, rudder)].into())
 }
 
 /// The same with a gyro, rad/s.
 pub fn record_with_gyro(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>, yaw_rate: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::YawRate, yaw_rate)];
-    of_channels("gyro", time, channels.into())
+    from_channels("gyro", time, channels.into())
 }
 
-fn of_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64>>) -> Trial {
+fn from_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64>>) -> Trial {
     let origin = Origin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
     Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
 }
 
-/// Heading of `ship` from `start` under the rudder of these rows, exact for what a record of them takes it for: linear
-/// between rows and the corners between them.
+/// Heading of `ship` from `start` under the rudder of these rows, exact for a rudder that is linear between rows and
+/// the corners between them.
 pub fn steered(ship: &FirstOrder, start: State, time: &[f64], rudder: &[f64]) -> Vec<f64> {
     let blank = record("steering", time.to_vec(), vec![0.0; time.len()], rudder.to_vec());
     let path = blank.rudder_signal();

@@ -1,12 +1,13 @@
-//! A trial that was made in ballast, corrected to full load, or to another loading, by two models of the ship.
+//! Correction of a trial in ballast to full load, or to another loading, by two models of the ship.
 //!
-//! R = T F / B of every figure of merit: T is measured in the condition of the trial, B is told of the same manoeuvre
-//! by a model of the ship in that condition, F by a model of the ship at the other loading. What both models have wrong
-//! alike cancels; what they have wrong differently does not, so both have to be of one method.
+//! R = T F / B of every figure of merit: T is measured in the condition of the trial, B is the prediction of the same
+//! manoeuvre by a model of the ship in that condition, F by a model of the ship at the other loading. Errors common to
+//! both models cancel; other errors do not, so both models must be of the same method.
 //!
-//! F and B are drawn apart, each with the errors of its parameters and the random moment of one trial, T with the
-//! standard deviation of its reading. The moment in B stands for that in T. Where F is the hull of B at another
-//! loading, the errors of its trial are in both ([`document::stored_hull`]). It reads no file and fits nothing.
+//! F and B are drawn independently, each with the errors of its parameters and the random moment of one trial, T with
+//! the standard deviation of its reading. The moment in B represents that in T. Where F is the hull of B at another
+//! loading, both share the errors of its trial ([`document::stored_hull`]). This module reads no file and fits no
+//! model.
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
@@ -29,14 +30,14 @@ use crate::replay::{file_of, thinned};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
-/// Half width of the 90 % interval of F/B, as a share of its median, above which R says little more than F.
-const WIDE: f64 = 0.2;
+/// Half width of the 90 % interval of F/B, relative to its median, above which a warning is given.
+const MAX_HALF_WIDTH: f64 = 0.2;
 
-/// Lower end of the 90 % interval of B, as a share of its median, below which the ratio is ill-defined.
-const NEAR_ZERO: f64 = 0.2;
+/// Lower end of the 90 % interval of B, relative to its median, below which the ratio is ill-defined.
+const MIN_LOWER_END: f64 = 0.2;
 
-/// Difference of two approach speeds, as a share, above which it is said.
-const SAME_SPEED: f64 = 0.05;
+/// Relative tolerance of equal approach speeds.
+const SPEED_TOLERANCE: f64 = 0.05;
 
 /// Figures that are read at the end of a turn.
 const AT_THE_END: [&str; 4] = ["steady_rate_deg_s", "speed_loss_share", "drift_angle_deg", "pivot_ahead_lengths"];
@@ -44,7 +45,7 @@ const AT_THE_END: [&str; 4] = ["steady_rate_deg_s", "speed_loss_share", "drift_a
 /// Seed of the readings of T; those of ships are 0 and 1.
 const READING: u64 = 2;
 
-/// The loading of the criteria, in the words of messages and pages; another one goes by its file.
+/// Name of the loading of the criteria in messages and pages; another loading is named by its file.
 pub const FULL_LOAD: &str = "full load";
 
 /// A figure of merit corrected to another loading, in the unit of its name.
@@ -52,22 +53,22 @@ pub const FULL_LOAD: &str = "full load";
 pub struct Corrected {
     /// T, measured in the condition of the trial.
     pub measured: f64,
-    /// Standard deviation of T, where the record tells it; else T is taken as exact.
+    /// Standard deviation of T, where the record gives it; otherwise T is treated as exact.
     pub sd: Option<f64>,
     /// R = T F/B.
     #[serde(flatten)]
     pub result: PredictionInterval,
     /// F/B.
     pub factor: PredictionInterval,
-    /// F, told of the ship at that loading.
+    /// F: predicted by the model at the target loading.
     pub full: PredictionInterval,
-    /// B, told of the ship in the condition of the trial.
+    /// B: predicted by the model in the condition of the trial.
     pub ballast: PredictionInterval,
-    /// Why it says little; empty where nothing speaks against it.
+    /// Warnings on this figure.
     pub warnings: Vec<Warning>,
 }
 
-/// A record that was corrected to another loading.
+/// Correction of a record to another loading.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Correction {
     /// The file as the user named it.
@@ -75,27 +76,27 @@ pub struct Correction {
     /// Name of the record.
     #[serde(default)]
     pub name: String,
-    /// Models at that loading, where these have names.
+    /// Files of the models at that loading.
     pub full: Vec<String>,
-    /// Models in the condition of the trial, where these have names.
+    /// Files of the models in the condition of the trial.
     pub ballast: Vec<String>,
     /// Its figures by name; empty where the record is neither a zig-zag nor a turn.
     pub figures: IndexMap<String, Corrected>,
-    /// What is to be said of all of them.
+    /// Warnings on all figures.
     pub warnings: Vec<Warning>,
 }
 
-/// Where two models differ that are to be held against each other, before they are scaled to a record; `loading` is
-/// that of the first.
+/// Warnings on differences between two models to be compared, before they are scaled to a record; `loading` is that of
+/// the first.
 ///
 /// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
 pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<Warning> {
-    let structure = |known: &IdentifiedShip| {
-        if !known.hulls.is_empty() {
+    let structure = |ship: &IdentifiedShip| {
+        if !ship.hulls.is_empty() {
             return String::from("a hull");
         }
-        let members = known.members.first().into_iter();
-        let mut ids: Vec<&str> = members.flat_map(|own| &own.effects).map(|effect| effect.id.as_str()).collect();
+        let members = ship.members.first().into_iter();
+        let mut ids: Vec<&str> = members.flat_map(|member| &member.effects).map(|effect| effect.id.as_str()).collect();
         ids.sort_unstable();
         let effects = if ids.is_empty() { String::new() } else { format!(" with {}", ids.join(", ")) };
         format!("a response{effects}")
@@ -106,13 +107,13 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
         warnings.push(different("structure", &of_full, &of_trial, loading));
     }
     let is_same = match (full.length_m, trial.length_m) {
-        (Some(one), Some(other)) => is_same_length(one, other),
-        (one, other) => one == other,
+        (Some(a), Some(b)) => is_same_length(a, b),
+        (a, b) => a == b,
     };
     if !is_same {
-        let [own, other] = [full, trial]
-            .map(|known| known.length_m.map_or_else(|| String::from("unknown"), |length| format!("{length} m")));
-        warnings.push(different("scale", &format!("length {own}"), &other, loading));
+        let [of_full, of_trial] = [full, trial]
+            .map(|ship| ship.length_m.map_or_else(|| String::from("unknown"), |length| format!("{length} m")));
+        warnings.push(different("scale", &format!("length {of_full}"), &of_trial, loading));
     }
     warnings
 }
@@ -123,30 +124,29 @@ pub fn different(what: &str, full: &str, trial: &str, loading: &str) -> Warning 
     Code::ModelsApart.warning(text)
 }
 
-/// Draws of one ship after the other; `None` for one that does not come to the end.
+/// Results of the drawn ships in order; `None` for a ship that does not complete the manoeuvre.
 type Draws = Vec<Option<DrawResult>>;
 
-/// A manoeuvre of a record made by both ships.
-struct ManoeuvreOfBoth {
+/// Manoeuvre of a record, simulated with both models.
+struct PairedManoeuvre {
     /// Largest rudder, rad.
     rudder: f64,
     full: Draws,
     trial: Draws,
-    /// What the record shows.
+    /// Figures of the record.
     shown: Vec<(&'static str, Quantity)>,
 }
 
-/// Corrects what a record shows to a loading, [`FULL_LOAD`] or another in the words of messages; both ships have to be
-/// of its scale.
+/// Corrects the figures of a record to a loading, [`FULL_LOAD`] or the name of another; both ships must be of its
+/// scale.
 ///
-/// R = T F/B, draw by draw; the 50 and 90 % intervals hold the errors of both models, the random moment of one trial
-/// each and the reading of T. Two mixtures of the same files are drawn alike, so that F/B is 1. A zig-zag is steered as
-/// the record was, with its rate of the rudder and its first yaw rate; a turn has its rudder, held on for the slower of
-/// the two; what is read at its end is read when the record ends. Figures that the record does not show are left out;
-/// a record that is neither has none.
+/// R = T F/B, draw by draw; the 50 and 90 % intervals include the errors of both models, the random moment of one trial
+/// each and the reading of T. Two mixtures of the same files share their draws, so that F/B is 1. A zig-zag is steered
+/// as in the record, with its rudder rate and its first yaw rate; a turn has the recorded rudder, held longer for a
+/// slower ship; figures at the end of a turn are taken at the end of the record. Figures that the record does not show
+/// are left out; a record that is neither a zig-zag nor a turn has none.
 ///
-/// Fails where less than half of the drawn ships come to the end of the manoeuvre.
-/// Source: MSC/Circ.1053 (2002), 3.4.1.2.
+/// Fails where less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
 pub fn correct(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -157,25 +157,25 @@ pub fn correct(
     let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart_from(ballast) };
     let mut warnings = Vec::new();
     let speed = |mixture: &ShipMixture| mixture.first().speed_m_s;
-    if let (Some(own), Some(other)) = (speed(full), speed(ballast))
-        && (own / other - 1.0).abs() > SAME_SPEED
+    if let (Some(of_full), Some(of_trial)) = (speed(full), speed(ballast))
+        && (of_full / of_trial - 1.0).abs() > SPEED_TOLERANCE
     {
-        let [own, other] = [own, other].map(|speed| format!("{speed:.2} m/s"));
-        let Warning { code, text, .. } = different("approach speeds", &own, &other, loading);
-        warnings.push(code.warning(text + "; F/B has this difference in it"));
+        let [of_full, of_trial] = [of_full, of_trial].map(|speed| format!("{speed:.2} m/s"));
+        let Warning { code, text, .. } = different("approach speeds", &of_full, &of_trial, loading);
+        warnings.push(code.warning(text + "; the ratio F/B includes this difference"));
     }
     let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
-    let made = match &zigzag {
+    let paired = match &zigzag {
         Some(zigzag) => zig_zag(full, ballast, record, zigzag, draws),
         None => turned(full, ballast, record, draws)?,
     };
-    let Some(made) = made else { return Ok(Correction::default()) };
-    for (ship, own, condition) in [
-        (full, &made.full, format!("at {loading}")),
-        (ballast, &made.trial, String::from("in the condition of the trial")),
+    let Some(paired) = paired else { return Ok(Correction::default()) };
+    for (ship, results, condition) in [
+        (full, &paired.full, format!("at {loading}")),
+        (ballast, &paired.trial, String::from("in the condition of the trial")),
     ] {
-        enough(format!("{} ({condition})", record.name()), own.iter().flatten().count(), draws)?;
-        if ship.is_unseen(made.rudder, own.iter().flatten().map(|result| result.largest_rate)) {
+        enough(format!("{} ({condition})", record.name()), results.iter().flatten().count(), draws)?;
+        if ship.is_unseen(paired.rudder, results.iter().flatten().map(|result| result.largest_rate)) {
             let text = format!("the model {condition} is extrapolated beyond its records");
             warnings.push(Code::ModelsApart.warning(text));
         }
@@ -184,36 +184,36 @@ pub fn correct(
         StreamKey { seed: READING, cell: 0, replicate }.rng(Purpose::Heading).sample(StandardNormal)
     });
     let corrected = |&(name, measured): &(&str, Quantity)| {
-        Some((name.to_owned(), ratio(name, measured, [&made.full, &made.trial], &readings)?))
+        Some((name.to_owned(), ratio(name, measured, [&paired.full, &paired.trial], &readings)?))
     };
-    let figures = made.shown.iter().filter_map(corrected).collect();
+    let figures = paired.shown.iter().filter_map(corrected).collect();
     let (file, name) = (file_of(record).to_owned(), record.name().to_owned());
     Ok(Correction { file, name, figures, warnings, ..Correction::default() })
 }
 
-/// A zig-zag steered anew; `None` where the record begins within the trial.
+/// The zig-zag of a record, steered with both models; `None` where the record begins within the trial.
 fn zig_zag(
     full: &ShipMixture,
     ballast: &ShipMixture,
     record: &Trial,
     zigzag: &Measured,
     draws: usize,
-) -> Option<ManoeuvreOfBoth> {
+) -> Option<PairedManoeuvre> {
     let steered = SteeredZigZag::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown = names.filter_map(|name| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
-    Some(ManoeuvreOfBoth { rudder: steered.kind.rudder(), full, trial, shown })
+    Some(PairedManoeuvre { rudder: steered.kind.rudder(), full, trial, shown })
 }
 
-/// A turn; `None` for a record that is none.
+/// The turn of a record, simulated with both models; `None` for a record without a turn.
 fn turned(
     full: &ShipMixture,
     ballast: &ShipMixture,
     record: &Trial,
     draws: usize,
-) -> Result<Option<ManoeuvreOfBoth>, PredictError> {
-    let length = record.particulars().or(ballast.particulars()).map(|own| own.length);
+) -> Result<Option<PairedManoeuvre>, PredictError> {
+    let length = record.particulars().or(ballast.particulars()).map(|particulars| particulars.length);
     let turn = HeldTurn::of(record).zip(turn::recorded(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
     let measured = turn.figures(&passage).into_iter();
@@ -223,18 +223,18 @@ fn turned(
     let manoeuvre = Manoeuvre::replay(thinned(&rudder));
     let sail = |mixture: &ShipMixture, number| {
         let mut ship = mixture.draw(number, &UncertaintySource::ALL);
-        // Both ships begin as that of the record did.
+        // Both ships start with the yaw rate of the record.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
-        let of_rate: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
-        ship.yaw_rate = rate.0 + rate.1 * of_rate;
+        let standard_normal: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
+        ship.yaw_rate = rate.0 + rate.1 * standard_normal;
         let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.whole_figures(&passage);
-        // Of what is read at the end both ships have had as much time as that of the record.
+        // Figures at the end are taken after the duration of the record for both ships.
         figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
         Some(DrawResult { figures, largest_rate: passage.largest_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| drawn(draws, |number| sail(mixture, number)));
-    Ok(Some(ManoeuvreOfBoth { rudder: turn.rudder.abs(), full, trial, shown }))
+    Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
 }
 
 /// Four digits, as far as they are behind the point.
@@ -243,7 +243,7 @@ fn short(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-/// R = T F/B of one figure; `None` where hardly a pair of ships has it.
+/// R = T F/B of one figure; `None` where less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
     let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
@@ -263,23 +263,23 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::of(&mut column));
     let (full, ballast, factor, result) = (full?, ballast?, factor?, result?);
     let [low, high] = ballast.ci90.map(short);
-    let mut doubts = Vec::new();
-    if ballast.ci90.iter().any(|end| end * ballast.median.signum() < NEAR_ZERO * ballast.median.abs()) {
-        doubts.push(format!("B is near zero (90 % [{low}, {high}]), so F/B says little"));
+    let mut messages = Vec::new();
+    if ballast.ci90.iter().any(|end| end * ballast.median.signum() < MIN_LOWER_END * ballast.median.abs()) {
+        messages.push(format!("B is near zero (90 % [{low}, {high}]), so the ratio F/B is ill-defined"));
     }
     let half = 0.5 * (factor.ci90[1] - factor.ci90[0]) / factor.median.abs();
-    if half > WIDE {
-        doubts.push(format!("F/B is known to ±{:.0} % only", 100.0 * half));
+    if half > MAX_HALF_WIDTH {
+        messages.push(format!("F/B is uncertain by ±{:.0} %", 100.0 * half));
     }
     let reach = 1.645 * sd;
     if measured.value + reach < ballast.ci90[0] || measured.value - reach > ballast.ci90[1] {
         let measured = short(measured.value);
-        doubts.push(format!("the model of the trial does not do what was measured: {measured}, outside its 90 % interval [{low}, {high}]"));
+        messages.push(format!("the model of the trial does not reproduce the measured {measured}, outside its 90 % interval [{low}, {high}]"));
     }
     if share < 1.0 {
-        doubts.push(format!("{:.0} % of the pairs of drawn ships come that far", 100.0 * share));
+        messages.push(format!("only {:.0} % of the pairs of drawn ships get this far", 100.0 * share));
     }
-    let warnings = doubts.into_iter().map(|text| Code::Correction.warning(text)).collect();
+    let warnings = messages.into_iter().map(|text| Code::Correction.warning(text)).collect();
     Some(Corrected { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
 }
 
@@ -291,8 +291,8 @@ mod tests {
 
     /// The made-up ship, and the same at full load: heavier, and less stable on her course.
     fn ships() -> [IdentifiedShip; 2] {
-        let ballast = testing::known();
-        let mut full = testing::known();
+        let ballast = testing::identified_ship();
+        let mut full = testing::identified_ship();
         let parameters = &mut full.members[0].parameters;
         (parameters[0], parameters[1]) = (0.3 * parameters[0], 0.75 * parameters[1]);
         for row in &mut full.members[0].covariance {
@@ -314,7 +314,7 @@ mod tests {
         let (mut held, mut all) = (0, 0);
         for number in 0..30_u64 {
             let trial = record(&ballast, "zig-zag:20/20", 1000 + number, from_deg(0.1));
-            let found = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
+            let correction = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
             let manoeuvre = crate::standard::steered(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
             let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
@@ -322,7 +322,7 @@ mod tests {
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, full.timescale()).expect("sails");
             let truth = crate::figures::of(&kind, &passage, full.particulars());
             for name in names {
-                let Some(figure) = found.figures.get(name) else { continue };
+                let Some(figure) = correction.figures.get(name) else { continue };
                 let truth = truth[name].expect("whole");
                 held += usize::from(figure.result.holds90(truth));
                 all += 1;
@@ -335,22 +335,22 @@ mod tests {
     /// Two ships without doubt: R is what the ship at full load does, to what a record tells of T.
     #[test]
     fn without_doubt_the_answer_is_the_truth() {
-        let [full, ballast] = ships().map(|mut known| {
-            (known.members[0].covariance, known.members[0].fitted) = (Vec::new(), Vec::new());
-            known.noise.moment = document::RandomMoment::None;
-            if let Some(gear) = &mut known.gear {
+        let [full, ballast] = ships().map(|mut identified| {
+            (identified.members[0].covariance, identified.members[0].fitted) = (Vec::new(), Vec::new());
+            identified.noise.moment = document::RandomMoment::None;
+            if let Some(gear) = &mut identified.gear {
                 gear.sd_rad_s = 0.0;
             }
-            known.approach_yaw_rate_rad_s = 0.0;
-            mixture(known)
+            identified.approach_yaw_rate_rad_s = 0.0;
+            mixture(identified)
         });
         let truth = full.predict(&"zig-zag:20/20".parse().expect("known"), 4, false).expect("sails");
         let trial = record(&ballast, "zig-zag:20/20", 0, from_deg(0.02));
-        let found = correct(&full, &ballast, &trial, FULL_LOAD, 40).expect("both sail");
+        let correction = correct(&full, &ballast, &trial, FULL_LOAD, 40).expect("both sail");
         for name in ["first_overshoot_deg", "second_overshoot_deg", "initial_turning_time_s"] {
-            let own = truth.figures[name].interval.median;
-            let figure = &found.figures[name];
-            assert!((figure.result.median / own - 1.0).abs() < 0.03, "{name}: {figure:?} {own}");
+            let expected = truth.figures[name].interval.median;
+            let figure = &correction.figures[name];
+            assert!((figure.result.median / expected - 1.0).abs() < 0.03, "{name}: {figure:?} {expected}");
             let is_other = !name.contains("overshoot") || figure.factor.median > 1.3;
             assert!(is_other, "{name}: the ship at full load is less stable, {figure:?}");
             assert!(figure.factor.ci90[1] - figure.factor.ci90[0] < 1e-9, "nothing is drawn");
@@ -381,12 +381,12 @@ mod tests {
     #[test]
     fn a_hull_taken_from_that_of_the_trial_has_its_errors() {
         let hulls = vec![testing::hull("quadratic")];
-        let ballast = IdentifiedShip { hulls, gear: None, ..testing::known() }.in_calm().expect("known");
+        let ballast = IdentifiedShip { hulls, gear: None, ..testing::identified_ship() }.in_calm().expect("known");
         let taken = vec![testing::at_same_loading(&ballast.hulls[0], 1.0)];
         let full = mixture(IdentifiedShip { hulls: taken, ..ballast.clone() });
-        let trial = record(&mixture(testing::known()), "zig-zag:20/20", 7, from_deg(0.1));
-        let found = correct(&full, &mixture(ballast), &trial, FULL_LOAD, 200).expect("sails");
-        assert_eq!(found.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
+        let trial = record(&mixture(testing::identified_ship()), "zig-zag:20/20", 7, from_deg(0.1));
+        let correction = correct(&full, &mixture(ballast), &trial, FULL_LOAD, 200).expect("sails");
+        assert_eq!(correction.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
     /// A ship at full load turns more slowly than the record lasts: the rudder is held on for her.
@@ -397,36 +397,36 @@ mod tests {
         full.members[0].parameters[1] *= 0.5;
         let [full, ballast] = [full, ballast].map(mixture);
         let trial = record(&ballast, "turning-circle:15", 3, from_deg(0.1));
-        let found = correct(&full, &ballast, &trial, FULL_LOAD, 60).expect("both sail");
-        let names: Vec<&String> = found.figures.keys().collect();
+        let correction = correct(&full, &ballast, &trial, FULL_LOAD, 60).expect("both sail");
+        let names: Vec<&String> = correction.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
-        let time = &found.figures[1];
+        let time = &correction.figures[1];
         assert!(time.factor.median > 1.1, "slower at full load: {time:?}");
-        assert!(found.warnings[0].text.starts_with("different approach speeds"), "{:?}", found.warnings);
+        assert!(correction.warnings[0].text.starts_with("different approach speeds"), "{:?}", correction.warnings);
     }
 
     #[test]
-    fn models_that_do_not_pair_up_are_told() {
+    fn different_models_are_reported() {
         let [mut full, ballast] = ships();
         assert!(differences(&full, &ballast, FULL_LOAD).is_empty());
         full.members[0].effects.clear();
         full.length_m = Some(300.0);
-        let said = differences(&full, &ballast, FULL_LOAD);
-        assert!(said[0].text.contains("nonlinear_damping") && said[1].text.contains("300 m"), "{said:?}");
+        let warnings = differences(&full, &ballast, FULL_LOAD);
+        assert!(warnings[0].text.contains("nonlinear_damping") && warnings[1].text.contains("300 m"), "{warnings:?}");
     }
 
-    /// A model that says nothing of the trial says so, and a reading far off it is told.
+    /// A vague model of the trial and a reading far from its prediction give warnings.
     #[test]
-    fn what_says_little_is_told() {
+    fn a_vague_model_is_reported() {
         let [full, mut ballast] = ships();
         for row in &mut ballast.members[0].covariance {
             row.iter_mut().for_each(|entry| *entry *= 200.0);
         }
-        let [full, vague, exact] = [full, ballast, testing::known()].map(mixture);
+        let [full, vague, exact] = [full, ballast, testing::identified_ship()].map(mixture);
         let trial = record(&exact, "zig-zag:20/20", 0, from_deg(0.1));
-        let found = correct(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
-        let first = &found.figures["first_overshoot_deg"];
-        assert!(first.warnings.iter().any(|warning| warning.text.starts_with("F/B is known to ±")), "{first:?}");
+        let correction = correct(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
+        let first = &correction.figures["first_overshoot_deg"];
+        assert!(first.warnings.iter().any(|warning| warning.text.starts_with("F/B is uncertain by ±")), "{first:?}");
         let strange = correct(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
         let outside = |figure: &Corrected| {
             figure.warnings.iter().any(|warning| warning.text.contains("outside its 90 % interval ["))

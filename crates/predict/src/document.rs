@@ -1,5 +1,5 @@
-//! The document of a prediction and the curves beside it: what files hold, pages and figures are made from, and Python
-//! gets.
+//! Document of a prediction and its curves: the content of the files, from which pages, figures and the Python objects
+//! are made.
 
 use document::Warning;
 use document::identified_ship::ValidityRange;
@@ -13,18 +13,18 @@ use crate::imo::PredictedCriterion;
 use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
 use crate::replay::RecordReplay;
 
-/// What `schema` says.
+/// Value of `schema`.
 pub const SCHEMA: &str = "predict/2";
 
-/// `predict.json`. Its curves, which stand as `skip` where they are of use, are in a file beside it: PredictCurves.
+/// `predict.json`. Its curves, marked `skip`, are in a separate file: PredictCurves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
     /// `predict/2`.
     #[schemars(extend("const" = "predict/2"))]
     pub schema: String,
-    /// The models that are mixed.
+    /// The models of the mixture.
     pub models: Vec<ModelWeight>,
-    /// Ships that are drawn.
+    /// Number of drawn ships.
     pub draws: usize,
     /// Whether the weather of the records was left out.
     pub calm: bool,
@@ -41,28 +41,28 @@ pub struct PredictDocument {
     /// The records that were corrected to full load, or to the loading of `load`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corrected: Vec<Correction>,
-    /// The form of MSC/Circ.1053, where it was asked for.
+    /// The form of MSC/Circ.1053, where it was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<Vec<ImoFormEntry>>,
-    /// What is to be said beside it.
+    /// Remarks on the form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form_remarks: Option<Vec<String>>,
-    /// Models in the condition of the records, which the replays are of; empty where there are none.
+    /// Models in the condition of the records, used for the replays; empty where there are none.
     #[serde(default)]
     pub ballast: Vec<String>,
-    /// What is said of earlier trials that the hulls of every model were weighed together with.
+    /// Notes on the earlier trials that the hulls of every model were combined with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier_trials: Vec<String>,
     /// Whether a hull takes the place of the yaw response.
     #[serde(default)]
     pub hull: bool,
-    /// The loading that the hulls are taken to; none where they are at that of their records.
+    /// The loading that the hulls are converted to; none for that of their records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<OtherLoading>,
-    /// Where the ship was seen.
+    /// Range of the records of the ship.
     #[serde(default)]
     pub seen: ValidityRange,
-    /// The drawn ships, where they were asked for.
+    /// The drawn ships, where they were requested.
     #[serde(skip)]
     pub drawn: Vec<DrawnParameters>,
     /// Warnings of models, records and manoeuvres, the worst first.
@@ -70,7 +70,7 @@ pub struct PredictDocument {
     pub warnings: Vec<Warning>,
 }
 
-/// A loading that hulls are taken to by the formulas of particulars.
+/// A loading that hulls are converted to by the formulas of particulars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OtherLoading {
     /// The file that describes it.
@@ -79,18 +79,18 @@ pub struct OtherLoading {
     pub draughts_at_trials_m: Vec<f64>,
     /// Mean draught at this loading, at the same scale.
     pub draught_m: f64,
-    /// What standard deviations are widened by.
+    /// Factor that widens the standard deviations.
     pub factor: f64,
 }
 
 impl OtherLoading {
-    /// The loading in the words of messages and pages: full load where there is none.
+    /// Name of the loading in messages and pages: full load where there is none.
     pub fn name(load: Option<&Self>) -> String {
         load.map_or_else(|| FULL_LOAD.into(), |load| format!("the loading of {}", load.file))
     }
 }
 
-/// A model that takes part in a prediction.
+/// A model of the mixture of a prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelWeight {
     /// Its file.
@@ -102,32 +102,32 @@ pub struct ModelWeight {
 /// The curves of a prediction, in a file beside the document; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PredictCurves {
-    /// Of every manoeuvre, in the order of the document.
+    /// Curves of every manoeuvre, in the order of the document.
     pub manoeuvres: Vec<ManoeuvreCurves>,
-    /// Of every replayed record: rudder over time, heading with its band, and measured headings.
+    /// Curves of every replayed record: rudder over time, heading with its band, and measured headings.
     pub replays: Vec<([Vec<f64>; 2], Bands, Vec<f64>)>,
 }
 
 impl PredictDocument {
-    /// The curves, which [`with_curves`](Self::with_curves) puts back.
+    /// The curves, which [`with_curves`](Self::with_curves) restores.
     pub fn curves(&self) -> PredictCurves {
-        let of_replay = |own: &RecordReplay| (own.rudder.clone(), own.heading.clone(), own.measured.clone());
+        let replay_curves = |r: &RecordReplay| (r.rudder.clone(), r.heading.clone(), r.measured.clone());
         PredictCurves {
-            manoeuvres: self.manoeuvres.iter().map(|own| own.curves.clone()).collect(),
-            replays: self.replays.iter().map(of_replay).collect(),
+            manoeuvres: self.manoeuvres.iter().map(|prediction| prediction.curves.clone()).collect(),
+            replays: self.replays.iter().map(replay_curves).collect(),
         }
     }
 
     /// The document that was read from its file, with the curves from theirs.
     pub fn with_curves(mut self, curves: PredictCurves) -> Self {
-        self.manoeuvres.iter_mut().zip(curves.manoeuvres).for_each(|(own, curves)| own.curves = curves);
-        for (own, curves) in self.replays.iter_mut().zip(curves.replays) {
-            (own.rudder, own.heading, own.measured) = curves;
+        self.manoeuvres.iter_mut().zip(curves.manoeuvres).for_each(|(prediction, curves)| prediction.curves = curves);
+        for (replay, curves) in self.replays.iter_mut().zip(curves.replays) {
+            (replay.rudder, replay.heading, replay.measured) = curves;
         }
         self
     }
 
-    /// The files of the models, one after the other, and that of the loading that they are taken to.
+    /// The files of the models, separated by commas, and that of the loading they are converted to.
     pub fn model_files(&self) -> String {
         let files = self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
         if self.load.is_some() { format!("{files} at {}", OtherLoading::name(self.load.as_ref())) } else { files }
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let manoeuvres: Vec<Prediction> =
             form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();

@@ -1,4 +1,4 @@
-//! Ships drawn from a hull of three degrees of freedom.
+//! Ships drawn from a hull of three degrees of freedom, from the normal law of its coefficients.
 
 use document::{IdentifiedShipError, StoredHull};
 use nalgebra::{DMatrix, DVector};
@@ -11,98 +11,98 @@ use ship::vessel::scaled::ScaledHull;
 use crate::error::PredictError;
 use crate::root::root_of;
 
-/// Draws that make no ship, or lie beyond the ends of a coefficient, and are made again before the known values are
+/// Largest number of rejected draws, outside the ends of a coefficient or without a ship, before the stored values are
 /// taken.
-const MOST_TRIES: usize = 100;
+const MAX_TRIES: usize = 100;
 
 /// A hull that ships are drawn from.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableHull {
-    pub known: StoredHull,
+    pub stored: StoredHull,
     form: HullForm,
     coefficients: Vec<HullCoefficient>,
-    /// Square root of the covariance, of a hull at another loading that of what the trials do not tell of it.
+    /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
     root: DMatrix<f64>,
-    /// The hull of the trials, and G.
+    /// The hull of the trials, and the gain G on its coefficients.
     from: Option<(Box<DrawableHull>, DMatrix<f64>)>,
 }
 
-/// Refuses a hull that no file of this program holds: another form, other coefficients, a covariance that is none.
+/// Checks a hull; fails for an unknown form, wrong coefficients, or a matrix that is not a covariance.
 pub fn check(hull: &StoredHull) -> Result<(), PredictError> {
     DrawableHull::new(hull).map(drop)
 }
 
 impl DrawableHull {
-    /// Fails for what no file of this program holds.
-    pub fn new(known: &StoredHull) -> Result<Self, PredictError> {
-        let form = known.form()?;
+    /// Prepares the draws; fails as [`check`] does.
+    pub fn new(stored: &StoredHull) -> Result<Self, PredictError> {
+        let form = stored.form()?;
         let range = |key| Particular::named(key).expect("it is one").range;
         let [length, speed] = ["length-m", "speed-m-s"].map(range);
         for (key, value, [least, most]) in [
-            ("length-m", known.length_m, length),
-            ("speed-m-s", known.speed_m_s, speed),
-            ("weight", known.weight, [0.0, f64::MAX]),
+            ("length-m", stored.length_m, length),
+            ("speed-m-s", stored.speed_m_s, speed),
+            ("weight", stored.weight, [0.0, f64::MAX]),
         ] {
             if !(least..=most).contains(&value) {
                 return Err(IdentifiedShipError::Value { key, value }.into());
             }
         }
         let coefficients = form.coefficients().to_vec();
-        let found = known.covariance.len();
-        if found != coefficients.len() {
-            let expected = coefficients.len();
-            return Err(IdentifiedShipError::Count { what: "rows of the covariance of a hull", expected, found }.into());
+        let rows = stored.covariance.len();
+        if rows != coefficients.len() {
+            let (what, expected) = ("rows of the covariance of a hull", coefficients.len());
+            return Err(IdentifiedShipError::Count { what, expected, found: rows }.into());
         }
-        let root = root_of(known.from.as_ref().map_or(&known.covariance, |from| &from.rest))?;
-        let from = known
+        let root = root_of(stored.from.as_ref().map_or(&stored.covariance, |from| &from.rest))?;
+        let from = stored
             .from
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
-        let hull = Self { known: known.clone(), form, coefficients, root, from: from.transpose()? };
-        hull.with(&known.values()).ok_or_else(|| known.refused())?;
+        let hull = Self { stored: stored.clone(), form, coefficients, root, from: from.transpose()? };
+        hull.with(&stored.values()).ok_or_else(|| stored.refused())?;
         Ok(hull)
     }
 
     fn with(&self, values: &[f64]) -> Option<ScaledHull> {
         let hull = self.form.with(values)?;
-        let StoredHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.known;
+        let StoredHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.stored;
         (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
     }
 
-    /// The hull with the known values.
+    /// The hull with the stored values.
     pub fn most_probable(&self) -> ScaledHull {
-        self.with(&self.known.values()).expect("it was made once")
+        self.with(&self.stored.values()).expect("checked when it was made")
     }
 
-    /// The hull of coefficients that make one; else that of the known ones.
+    /// The hull of these coefficients, or the most probable hull if they make none.
     pub fn made_of(&self, values: &[f64]) -> ScaledHull {
         self.with(values).unwrap_or_else(|| self.most_probable())
     }
 
-    /// Coefficients by their covariance, within their ends; what makes no ship is drawn again. At another
-    /// loading `rng` draws the hull of the trials, which this one follows, and `rest` what that does not tell of it.
-    pub fn drawn(&self, rng: &mut impl rand::Rng, rest: &mut impl rand::Rng) -> Vec<f64> {
-        let known = DVector::from(self.known.values());
+    /// Drawn coefficients, by their covariance and within their ends. At another loading `rng` draws the hull of the
+    /// trials, which this hull follows, and `independent` the part that is independent of the trials.
+    pub fn drawn(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
+        let mean = DVector::from(self.stored.values());
         let values = match &self.from {
-            None => self.values(rng, &known),
+            None => self.values(rng, &mean),
             Some((from, gain)) => {
-                let of_trial = DVector::from(from.known.values());
+                let of_trial = DVector::from(from.stored.values());
                 let step = from.values(rng, &of_trial) - of_trial;
-                self.values(rest, &(known + gain * step))
+                self.values(independent, &(mean + gain * step))
             }
         };
         values.as_slice().to_vec()
     }
 
-    /// Values about some, within their ends; the known ones where none are found.
-    fn values(&self, rng: &mut impl rand::Rng, about: &DVector<f64>) -> DVector<f64> {
+    /// Values drawn about a mean, within their ends; the stored values after too many rejections.
+    fn values(&self, rng: &mut impl rand::Rng, mean: &DVector<f64>) -> DVector<f64> {
         let is_within = |values: &DVector<f64>| {
-            self.coefficients.iter().zip(values).all(|(own, value)| own.ends[0] <= *value && *value <= own.ends[1])
+            self.coefficients.iter().zip(values).all(|(prior, value)| (prior.ends[0]..=prior.ends[1]).contains(value))
         };
-        let mut tries = (0..MOST_TRIES)
-            .map(|_| about + &self.root * DVector::from_fn(about.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
-        let found = tries.find(|values| is_within(values) && self.with(values.as_slice()).is_some());
-        found.unwrap_or_else(|| self.known.values().into())
+        let mut tries = (0..MAX_TRIES)
+            .map(|_| mean + &self.root * DVector::from_fn(mean.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
+        let accepted = tries.find(|values| is_within(values) && self.with(values.as_slice()).is_some());
+        accepted.unwrap_or_else(|| self.stored.values().into())
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
     use simulate::Manoeuvre;
 
     fn ship() -> IdentifiedShip {
-        IdentifiedShip { hulls: ["quadratic", "cubic", "mmg"].map(testing::hull).into(), ..testing::known() }
+        IdentifiedShip { hulls: ["quadratic", "cubic", "mmg"].map(testing::hull).into(), ..testing::identified_ship() }
     }
 
     fn circle(mixture: &ShipMixture, draws: usize) -> crate::Prediction {
@@ -127,9 +127,9 @@ mod tests {
     /// A ship with hulls is drawn from them, by their weights, and shows a track of her own.
     #[test]
     fn hulls_take_the_place_of_the_structures() {
-        let mut known = ship();
-        known.hulls[0].weight = 2.0;
-        let mixture = testing::mixture(known);
+        let mut stored = ship();
+        stored.hulls[0].weight = 2.0;
+        let mixture = testing::mixture(stored);
         let is_first = |number| {
             let hull = mixture.draw(number, &[UncertaintySource::Structure]).hull.expect("a hull");
             hull == mixture.most_probable().hull.expect("a hull")
@@ -164,39 +164,39 @@ mod tests {
     /// At the same Froude number times grow with the root of the scale, and what is random with them.
     #[test]
     fn a_hull_at_another_scale_moves_alike() {
-        let known = testing::hull("mmg");
+        let stored = testing::hull("mmg");
         let ratio: f64 = 4.0;
-        let (length, speed) = (known.length_m * ratio, known.speed_m_s * ratio.sqrt());
-        let large = known.scaled_to(length, speed);
-        let of = |known: &StoredHull, state: [f64; 4]| {
+        let (length, speed) = (stored.length_m * ratio, stored.speed_m_s * ratio.sqrt());
+        let large = stored.scaled_to(length, speed);
+        let of = |stored: &StoredHull, state: [f64; 4]| {
             let mut rate = [0.0; 4];
             let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
-            DrawableHull::new(known).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
+            DrawableHull::new(stored).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
             rate
         };
         let time = ratio.sqrt();
-        let small = of(&known, [0.3, 0.02, 5.0, -0.8]);
+        let small = of(&stored, [0.3, 0.02, 5.0, -0.8]);
         let other = of(&large, [0.3, 0.02 / time, 5.0 * time, -0.8 * time]);
         for (small, other) in small.iter().zip([other[0] * time, other[1] * ratio, other[2], other[3]]) {
             assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
         }
-        assert_eq!(large.moment.correlation_s, known.moment.correlation_s * time);
-        assert_eq!(large.beginning_yaw_rate_rad_s, known.beginning_yaw_rate_rad_s / time);
-        assert_eq!(large.particulars, known.particulars);
+        assert_eq!(large.moment.correlation_s, stored.moment.correlation_s * time);
+        assert_eq!(large.beginning_yaw_rate_rad_s, stored.beginning_yaw_rate_rad_s / time);
+        assert_eq!(large.particulars, stored.particulars);
     }
 
     /// With G the identity and three times the deviations, errors of the hull of the trial are once in that at another
     /// loading, and eight times their variance beside them. δ_r is the same.
     #[test]
     fn a_hull_at_another_loading_follows_that_of_the_trial() {
-        let own = testing::hull("quadratic");
-        let [full, trial] = [testing::at_same_loading(&own, 3.0), own.clone()]
-            .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::known() }));
+        let one = testing::hull("quadratic");
+        let [full, trial] = [testing::at_same_loading(&one, 3.0), one.clone()]
+            .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::identified_ship() }));
         let full = full.apart_from(&trial);
         let values = |ship: &ShipMixture, number| {
             let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
             let ship::vessel::prime::CalmHull::Quadratic(values) = hull else { panic!("{hull:?}") };
-            [0, 8].map(|place| (values[place] - own.coefficients[place].value) / own.covariance[place][place].sqrt())
+            [0, 8].map(|place| (values[place] - one.coefficients[place].value) / one.covariance[place][place].sqrt())
         };
         let [mut of_full, mut common] = [0.0; 2];
         for number in 0..4000 {
@@ -209,9 +209,9 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again_and_nonsense_is_refused() {
-        let known = ship();
-        let text = serde_json::to_string(&known).expect("plain data");
-        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
+        let stored = ship();
+        let text = serde_json::to_string(&stored).expect("plain data");
+        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), stored);
         let refused = |change: fn(&mut StoredHull)| {
             let mut hull = testing::hull("mmg");
             change(&mut hull);

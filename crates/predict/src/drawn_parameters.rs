@@ -1,4 +1,4 @@
-//! What a drawn ship is in numbers, for other programs: structure and parameters.
+//! Structure and parameters of a drawn ship, for other programs.
 
 use crate::mixture::{DrawnShip, ShipMixture, UncertaintySource};
 
@@ -13,32 +13,34 @@ pub struct DrawnParameters {
     pub weight: f64,
     /// Rate of the rudder, rad/s; `None` where the rudder moves at once.
     pub gear_rate_rad_s: Option<f64>,
-    /// Yaw rate that it begins with, rad/s.
+    /// Initial yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
-    /// Parameters by name: `K_over_T`, `EFFECT.KEY`, and of a hull, which takes the place of the response, `FORM.KEY`.
+    /// Parameters by name: `K_over_T` and `EFFECT.KEY` of a response, `FORM.KEY` of a hull, which replaces the
+    /// response.
     pub parameters: Vec<(String, f64)>,
 }
 
 impl ShipMixture {
-    /// What ship number `number` is, with all sources of doubt at work: the one that manoeuvres are predicted with.
+    /// Structure and parameters of ship `number`, drawn from all sources of uncertainty as for the prediction of
+    /// manoeuvres.
     pub fn parameters(&self, number: u64) -> DrawnParameters {
         let part = self.chosen(number);
         let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw(number, &UncertaintySource::ALL);
         let model = response.model();
-        let base = ship::response::BASE.iter().map(|own| own.key.to_owned());
-        let of_effects = model.effects().iter().flat_map(|effect| {
+        let base = ship::response::BASE.iter().map(|parameter| parameter.key.to_owned());
+        let effect_keys = model.effects().iter().flat_map(|effect| {
             effect.parameters().iter().map(move |parameter| format!("{}.{}", effect.id(), parameter.key))
         });
         let effects: Vec<&str> = model.effects().iter().map(|effect| effect.id()).collect();
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
-                let form = hull.known.form.clone();
-                let keys = hull.known.coefficients.iter().map(|own| format!("{form}.{}", own.key));
+                let form = hull.stored.form.clone();
+                let keys = hull.stored.coefficients.iter().map(|coefficient| format!("{form}.{}", coefficient.key));
                 let parameters = keys.zip(coefficients).collect();
                 (form, parameters)
             }
             None => {
-                let parameters = base.chain(of_effects).zip(response.parameters().iter().copied()).collect();
+                let parameters = base.chain(effect_keys).zip(response.parameters().iter().copied()).collect();
                 let structure = if effects.is_empty() { "first_order".to_owned() } else { effects.join(" + ") };
                 (structure, parameters)
             }
@@ -57,21 +59,24 @@ mod tests {
 
     /// Structure, parameters and weight are those that the ship is steered with.
     #[test]
-    fn a_drawn_ship_is_told_as_it_is_steered() {
-        let mixture = testing::mixture(testing::known());
-        let (told, ship) = (mixture.parameters(7), mixture.draw(7, &UncertaintySource::ALL));
-        let keys = told.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
+    fn a_drawn_ship_is_reported_as_it_is_steered() {
+        let mixture = testing::mixture(testing::identified_ship());
+        let (reported, ship) = (mixture.parameters(7), mixture.draw(7, &UncertaintySource::ALL));
+        let keys = reported.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
         assert_eq!(keys[..3], ["inverse_T", "K_over_T", "rudder_bias"]);
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");
-        let values: Vec<f64> = told.parameters.iter().map(|(_, value)| *value).collect();
+        let values: Vec<f64> = reported.parameters.iter().map(|(_, value)| *value).collect();
         assert_eq!(values, ship.response.parameters());
-        assert_eq!((told.gear_rate_rad_s, told.yaw_rate_rad_s), (ship.gear.rate, ship.yaw_rate));
-        assert_eq!((told.structure.as_str(), told.weight), ("nonlinear_damping", 1.0));
+        assert_eq!((reported.gear_rate_rad_s, reported.yaw_rate_rad_s), (ship.gear.rate, ship.yaw_rate));
+        assert_eq!((reported.structure.as_str(), reported.weight), ("nonlinear_damping", 1.0));
 
         let hulls = ["quadratic", "mmg"].map(testing::hull).to_vec();
-        let mixture = testing::mixture(IdentifiedShip { hulls, ..testing::known() });
-        let of_mmg = (0..20).map(|number| mixture.parameters(number)).find(|told| told.structure == "mmg");
-        let told = of_mmg.expect("half of them");
-        assert!(told.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && told.weight == 0.5, "{told:?}");
+        let mixture = testing::mixture(IdentifiedShip { hulls, ..testing::identified_ship() });
+        let mmg = (0..20).map(|number| mixture.parameters(number)).find(|reported| reported.structure == "mmg");
+        let reported = mmg.expect("half of them");
+        assert!(
+            reported.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && reported.weight == 0.5,
+            "{reported:?}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Why a prediction is refused.
+//! Reasons why a prediction is refused.
 
 use document::IdentifiedShipError;
 use thiserror::Error;
@@ -6,28 +6,28 @@ use thiserror::Error;
 /// Why a prediction is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PredictError {
-    /// The ship of the file cannot be made again, or not at another scale.
+    /// The ship of the file cannot be restored, or not at another scale.
     #[error(transparent)]
     Ship(#[from] IdentifiedShipError),
-    /// A covariance is none.
+    /// The covariance of the parameters is not positive definite.
     #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
     Covariance,
     /// There is no model.
     #[error("there is no model to predict from")]
     Empty,
-    /// The model asks for a channel that nobody predicts.
+    /// The model needs a channel that is not predicted.
     #[error(
         "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m, and \
          --speed-kn where the record has no speed, to fit or trace so that a hull is fitted, or trace with --without {option}"
     )]
     Needs {
-        /// The channel, in words.
+        /// The channel, as text.
         channel: &'static str,
-        /// The channel as it is withheld from a trace.
+        /// The channel as an option of a trace.
         option: &'static str,
     },
-    /// Hardly any drawn ship comes to the end of a manoeuvre.
-    #[error("{kind}: only {made} of {draws} drawn ships complete it; the model does not hold there")]
+    /// Too few drawn ships complete a manoeuvre.
+    #[error("{kind}: only {made} of {draws} drawn ships complete it; the model is not valid there")]
     Lost {
         /// The manoeuvre.
         kind: String,

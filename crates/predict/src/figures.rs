@@ -1,4 +1,5 @@
-//! Figures of merit of a manoeuvre; the unit is in the name. `None` where the ship did not come that far.
+//! Figures of merit of a manoeuvre; the unit is in the name. `None` where the ship did not get that far. Source of the
+//! definitions: MSC.137(76) and MSC/Circ.1053 (2002).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,7 +25,7 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
-/// The way of the initial turning is V times its time where nothing is known of the speed.
+/// The distance of the initial turning is V times its time for a model without speed.
 pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
     let side = kind.side().sign();
     let last = passage.heading.last().copied();
@@ -47,7 +48,7 @@ pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Pa
             ("rate_before_deg_s", mean_rate(passage, passage.heading.len() / 2, side)),
             ("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)),
         ]),
-        // She comes back from the other side: the opposite course is 180° to it.
+        // The ship returns from the other side: the opposite course is at −180°.
         Manoeuvre::Williamson { .. } => Figures::from([
             ("second_execute_s", passage.executes.get(1).map(|execute| execute.time)),
             ("third_execute_s", passage.executes.get(2).map(|execute| execute.time)),
@@ -57,7 +58,7 @@ pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Pa
     }
 }
 
-/// Time of the initial turning, and its way in ship lengths.
+/// Time of the initial turning, and its distance in ship lengths.
 pub(crate) fn initial_turning(
     passage: &SimulatedManoeuvre,
     turning: Option<f64>,
@@ -70,26 +71,26 @@ pub(crate) fn initial_turning(
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
-/// Figures of the track of a turn that was begun at `execute` s, where there is one.
+/// Figures of the track of a turn with its execute at `execute` s; none without a track.
 pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
-    let found = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
+    let measures = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
     let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
-    let speed_loss = ("speed_loss_share", found.speed_ratio.map(|ratio| 1.0 - ratio));
+    let speed_loss = ("speed_loss_share", measures.speed_ratio.map(|ratio| 1.0 - ratio));
     Figures::from([
-        ("advance_m", found.advance),
-        ("advance_lengths", lengths(found.advance)),
-        ("transfer_m", found.transfer),
-        ("tactical_diameter_m", found.tactical_diameter),
-        ("tactical_diameter_lengths", lengths(found.tactical_diameter)),
+        ("advance_m", measures.advance),
+        ("advance_lengths", lengths(measures.advance)),
+        ("transfer_m", measures.transfer),
+        ("tactical_diameter_m", measures.tactical_diameter),
+        ("tactical_diameter_lengths", lengths(measures.tactical_diameter)),
         speed_loss,
-        ("drift_angle_deg", found.drift_angle.map(|angle| to_deg(angle.abs()))),
-        ("pivot_ahead_lengths", lengths(found.pivot_ahead)),
+        ("drift_angle_deg", measures.drift_angle.map(|angle| to_deg(angle.abs()))),
+        ("pivot_ahead_lengths", lengths(measures.pivot_ahead)),
     ])
 }
 
-/// Whether an interval means something for a figure: the size of a turning circle is above zero.
+/// `true` if an interval is possible for a figure: sizes of a turning circle are above zero.
 pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
     let is_size = ["advance", "transfer", "tactical_diameter"].iter().any(|size| name.starts_with(size));
     !is_size || interval.ci90[0] > 0.0
@@ -114,12 +115,12 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
     figures.insert("period_s", period(executes));
 }
 
-/// Mean time between executes to the same side, s. The cycle from the second one on holds the transient of the start
-/// and counts only where there is no other, as in a record ([`trial::ZigZag::period`]).
+/// Mean time between executes to the same side, s. The cycle from the second execute on includes the transient of the
+/// start and counts only without a later cycle, as in a record ([`trial::ZigZag::period`]).
 pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
     let first = if executes.len() > 4 { 2 } else { 1 };
     let ends = executes.iter().skip(first + 2);
-    let cycles: Vec<f64> = executes.iter().skip(first).zip(ends).map(|(one, next)| next.time - one.time).collect();
+    let cycles: Vec<f64> = executes.iter().skip(first).zip(ends).map(|(a, b)| b.time - a.time).collect();
     (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64)
 }
 
@@ -200,9 +201,9 @@ mod tests {
     /// A mirrored manoeuvre has the same figures.
     #[test]
     fn sides_are_mirrored() {
-        for [one, other] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
-            let [one, other]: [Manoeuvre; 2] = [one, other].map(|text| text.parse().expect("known"));
-            let (a, b) = (of(&one, &yukun(&one), None), of(&other, &yukun(&other), None));
+        for [original, mirrored] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
+            let [original, mirrored]: [Manoeuvre; 2] = [original, mirrored].map(|text| text.parse().expect("known"));
+            let (a, b) = (of(&original, &yukun(&original), None), of(&mirrored, &yukun(&mirrored), None));
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 let (a, b) = (a.expect(name), b.expect(name));
                 assert!((a - b).abs() < 1e-9, "{name} {a} {b}");

@@ -1,8 +1,8 @@
-//! The form for reporting manoeuvring data to IMO: every entry with its value, its limit and where it comes from.
+//! The form for reporting manoeuvring data to IMO: every entry with its value, its limit and its source.
 //!
-//! An entry is measured where a record is that very manoeuvre, corrected where the record was made in ballast and two
-//! models tell the factor, predicted otherwise. What nobody declared is said to be missing; nothing is guessed. The
-//! stopping trial is never predicted: no model of this program has a propeller that goes astern.
+//! An entry is measured where a record is that manoeuvre, corrected where the record was made in ballast and two models
+//! give the factor, and otherwise predicted. Undeclared data are reported as missing. The stopping trial is never
+//! predicted: no model of this program has a propeller that goes astern.
 //!
 //! Source: MSC/Circ.1053 (2002), appendix 6; limits of MSC.137(76), 5.3.
 
@@ -25,13 +25,13 @@ use crate::replay::file_of;
 use crate::standard;
 use record::TestedManoeuvre;
 
-/// Longest track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
+/// Limit on the track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
 pub const TRACK_REACH_LENGTHS: f64 = 15.0;
 
 /// Section of the stopping trial.
 pub const STOPPING: &str = "stopping";
 
-/// Most decimals of a result: no trial tells a hundredth of a degree or of a ship length.
+/// Largest number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
 pub const DECIMALS: usize = 2;
 
 /// The form.
@@ -39,7 +39,7 @@ pub const DECIMALS: usize = 2;
 pub struct Form {
     /// Entries in the order of the form.
     pub entries: Vec<ImoFormEntry>,
-    /// Conditions that are not met or not known, and what else is to be said.
+    /// Remarks: conditions that are not met or unknown, and others.
     pub remarks: Vec<String>,
 }
 
@@ -50,7 +50,7 @@ pub fn manoeuvres() -> Vec<Manoeuvre> {
     standard::of_imo().into_iter().flat_map(|kind| [kind.clone().to(Side::Port), kind]).collect()
 }
 
-/// What a file declares, with the length of the ship, m.
+/// Declarations of a file, with the length of the ship, m.
 struct Declared<'a> {
     file: &'a str,
     form: &'a Conditions,
@@ -63,40 +63,40 @@ const TRIALS: &str = "trials data";
 /// Ratio L/V, which is that of the predictions.
 const SCALE: &str = "L/V";
 
-/// Section, name, unit and value of what is declared.
+/// Section, name, unit and value of a declared entry.
 type Field = (&'static str, &'static str, &'static str, fn(&Declared) -> Option<Value>);
 
 const FIELDS: [Field; 17] = [
-    ("", "administration", "", |own| words(&own.form.administration)),
-    (SHIP, "ship type", "", |own| words(&own.form.ship_type)),
+    ("", "administration", "", |ship| text(&ship.form.administration)),
+    (SHIP, "ship type", "", |ship| text(&ship.form.ship_type)),
     (SHIP, SCALE, "s", |_| None),
-    (SHIP, "L/B", "1", |own| number(own.length? / own.form.beam?)),
-    (SHIP, "B/T", "1", |own| number(own.form.beam? / own.form.draught_at_full_load()?)),
-    (SHIP, "block coefficient", "1", |own| number(own.form.block_coefficient?)),
-    (SHIP, "rudder type", "", |own| words(&own.form.rudder_type)),
-    (SHIP, "total rudder area/LT", "1", |own| {
-        number(own.form.rudder_area? / (own.length? * own.form.draught_at_full_load()?))
+    (SHIP, "L/B", "1", |ship| number(ship.length? / ship.form.beam?)),
+    (SHIP, "B/T", "1", |ship| number(ship.form.beam? / ship.form.draught_at_full_load()?)),
+    (SHIP, "block coefficient", "1", |ship| number(ship.form.block_coefficient?)),
+    (SHIP, "rudder type", "", |ship| text(&ship.form.rudder_type)),
+    (SHIP, "total rudder area/LT", "1", |ship| {
+        number(ship.form.rudder_area? / (ship.length? * ship.form.draught_at_full_load()?))
     }),
-    (SHIP, "number of rudders", "1", |own| number(own.form.rudders?)),
-    (SHIP, "propeller type", "", |own| words(&own.form.propeller_type)),
-    (SHIP, "number of propellers", "1", |own| number(own.form.propellers?)),
-    (SHIP, "trim (by the stern)", "m", |own| number(own.form.trim?)),
-    (SHIP, "engine type", "", |own| words(&own.form.engine_type)),
-    (SHIP, "ballast condition", "", |own| words(&own.form.ballast)),
-    (TRIALS, "water depth/trial draught", "1", |own| number(own.form.depth_in_draughts()?)),
-    (TRIALS, "wind: Beaufort number", "1", |own| number(own.form.wind_beaufort?)),
-    (TRIALS, "wave: sea state", "1", |own| number(own.form.sea_state?)),
+    (SHIP, "number of rudders", "1", |ship| number(ship.form.rudders?)),
+    (SHIP, "propeller type", "", |ship| text(&ship.form.propeller_type)),
+    (SHIP, "number of propellers", "1", |ship| number(ship.form.propellers?)),
+    (SHIP, "trim (by the stern)", "m", |ship| number(ship.form.trim?)),
+    (SHIP, "engine type", "", |ship| text(&ship.form.engine_type)),
+    (SHIP, "ballast condition", "", |ship| text(&ship.form.ballast)),
+    (TRIALS, "water depth/trial draught", "1", |ship| number(ship.form.depth_in_draughts()?)),
+    (TRIALS, "wind: Beaufort number", "1", |ship| number(ship.form.wind_beaufort?)),
+    (TRIALS, "wave: sea state", "1", |ship| number(ship.form.sea_state?)),
 ];
 
-fn words(words: &Option<String>) -> Option<Value> {
-    words.clone().map(Value::from)
+fn text(declared: &Option<String>) -> Option<Value> {
+    declared.clone().map(Value::from)
 }
 
 fn number(value: impl Into<f64>) -> Option<Value> {
     Some(Value::from(value.into()))
 }
 
-/// An entry of one value; without one its source says that it is missing.
+/// Entry with a single value; a missing value is reported in its source.
 fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> ImoFormEntry {
     let source = if value.is_some() { source } else { String::from("not in the records") };
     ImoFormEntry {
@@ -111,9 +111,9 @@ fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: S
 
 /// Fills in the form.
 ///
-/// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag; `models` is what
-/// their source is called. What is declared of the ship is that of the first record that says it; `declared` are such
-/// words without a record, from a file.
+/// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag; `models` is the
+/// name of their source. Declarations of the ship are those of the first record that has them; `declared` are
+/// declarations without a record, from a file.
 pub fn fill<'a>(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
@@ -122,17 +122,18 @@ pub fn fill<'a>(
     declared: Option<(&'a str, &'a Conditions)>,
 ) -> Form {
     let tested: Vec<TestedManoeuvre> = records.iter().map(TestedManoeuvre::of).collect();
+    let length = |particulars: Option<Particulars>| particulars.map(|ship| ship.length);
     let of_record = |FormRecord { trial, .. }: &FormRecord<'a>| {
-        let own = trial.conditions().particulars.or(trial.particulars());
-        Declared { file: file_of(trial), form: trial.conditions(), length: own.map(|own| own.length) }
+        let form = trial.conditions();
+        Declared { file: file_of(trial), form, length: length(form.particulars.or(trial.particulars())) }
     };
-    let of_file = declared.map(|(file, form)| Declared { file, form, length: form.particulars.map(|own| own.length) });
-    let said: Vec<Declared> = records.iter().map(of_record).chain(of_file).collect();
+    let of_file = |(file, form): (&'a str, &'a Conditions)| Declared { file, form, length: length(form.particulars) };
+    let declarations: Vec<Declared> = records.iter().map(of_record).chain(declared.map(of_file)).collect();
     let scale = if predictions.is_empty() { "scale of the records" } else { "scale of the prediction" };
-    let field = |&(section, name, unit, of): &Field| {
-        let found = said.iter().find_map(|own| Some((format!("declared with {}", own.file), of(own)?)));
-        let ratio = particulars.filter(|_| name == SCALE).map(|own| Value::from(own.length / own.speed));
-        let (source, value) = found.or_else(|| Some((scale.into(), ratio?))).unzip();
+    let field = |&(section, name, unit, value): &Field| {
+        let declared = declarations.iter().find_map(|d| Some((format!("declared with {}", d.file), value(d)?)));
+        let ratio = particulars.filter(|_| name == SCALE).map(|ship| Value::from(ship.length / ship.speed));
+        let (source, value) = declared.or_else(|| Some((scale.into(), ratio?))).unzip();
         entry(section, name, unit, value, source.unwrap_or_default())
     };
     let mut entries: Vec<ImoFormEntry> = FIELDS.iter().map(field).collect();
@@ -140,27 +141,27 @@ pub fn fill<'a>(
     // The order of the form.
     for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
         for side in ["port", "starboard"] {
-            let found = measured(limit, side, &tested);
+            let from_record = measured(limit, side, &tested);
             entries.push(ImoFormEntry {
                 section: limit.section.into(),
                 field: limit.field.into(),
                 side: Some(side.into()),
                 unit: if limit.unit == Unit::Degrees { "deg" } else { "ship lengths" }.into(),
-                limit: (limit.of)(particulars),
-                ..found.unwrap_or_else(|| predicted(limit, side, predictions, particulars, models))
+                limit: (limit.value)(particulars),
+                ..from_record.unwrap_or_else(|| predicted(limit, side, predictions, particulars, models))
             });
         }
     }
     entries.push(ImoFormEntry {
         limit: Some(TRACK_REACH_LENGTHS),
-        source: "never predicted: no model of this program goes astern; stop the ship and measure".into(),
+        source: "never predicted: no model of this program goes astern; measure the stopping trial".into(),
         ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
     });
     let mut remarks = remarks::remarks(&tested, declared, particulars);
     if entries.iter().any(|entry| entry.extrapolated.is_some()) {
         remarks.push(String::from(
-            "predicted entries hold for the loading, the water depth and the weather of the records that the models were \
-             fitted to, which a model does not say; they are no trial",
+            "predicted entries apply to the loading, the water depth and the weather of the records that the models were \
+             fitted to, which the models do not state; they do not replace a trial",
         ));
     }
     if entries.iter().any(|entry| entry.extrapolated == Some(true)) {
@@ -169,13 +170,13 @@ pub fn fill<'a>(
     Form { entries, remarks }
 }
 
-/// Value and source of a figure that a record shows: what needs no correction, or has one, goes before what was made at
-/// partial load.
+/// Value and source of a figure that a record shows: a record at full load or with a correction is preferred to a
+/// record at partial load.
 fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
         let file = file_of(record.trial);
-        let corrected = record.correction.and_then(|own| Some((own, own.figures.get(limit.figure)?)));
+        let corrected = record.correction.and_then(|all| Some((all, all.figures.get(limit.figure)?)));
         if let Some((correction, figure)) = corrected {
             let is_doubtful = !(figure.warnings.is_empty() && correction.warnings.is_empty());
             let doubt = if is_doubtful { "; see the remarks" } else { "" };
@@ -199,8 +200,8 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<Imo
             ImoFormEntry { value: number(quantity.value), sd: quantity.sd, source, ..ImoFormEntry::default() },
         ))
     };
-    let found = tested.iter().filter(|tested| tested.is(limit.manoeuvre, side)).filter_map(show);
-    found.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
+    let entries = tested.iter().filter(|tested| tested.is(limit.manoeuvre, side)).filter_map(show);
+    entries.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
 }
 
 /// Value and source of a figure that is predicted.
@@ -211,19 +212,19 @@ fn predicted(
     particulars: Option<Particulars>,
     models: &str,
 ) -> ImoFormEntry {
-    let untold = |why: &str| ImoFormEntry { source: why.into(), ..ImoFormEntry::default() };
+    let missing = |why: &str| ImoFormEntry { source: why.into(), ..ImoFormEntry::default() };
     let kind: Manoeuvre = limit.manoeuvre.parse().expect("the name of a manoeuvre");
     let kind = if side == "port" { kind.to(Side::Port) } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
-        return untold(match predictions {
+        return missing(match predictions {
             [] => "not measured; `study predict --form` predicts it",
-            _ => "hardly a drawn ship comes to the end of the manoeuvre",
+            _ => "too few drawn ships complete the manoeuvre",
         });
     };
     let Some(figure) = prediction.figures.get(limit.figure) else {
-        return untold("the length of the ship, or her speed and drift, are not known");
+        return missing("needs the length of the ship and a model of her speed and drift");
     };
-    let passing = (limit.of)(particulars).map(|limit| figure.share_within(limit));
+    let passing = (limit.value)(particulars).map(|limit| figure.share_within(limit));
     let beyond = if figure.extrapolated { ", extrapolated" } else { "" };
     let pass = passing.map_or_else(String::new, |share| format!("; {:.0} % pass", 100.0 * share));
     let source = format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval));
@@ -243,12 +244,12 @@ fn decimals(interval: &PredictionInterval) -> usize {
     interval.decimals().min(DECIMALS)
 }
 
-/// A number with a true minus sign, none before a zero.
+/// Number with a true minus sign, and without a sign before a zero.
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),
-        Some(rest) => format!("−{rest}"),
+        Some(digits) if digits.bytes().all(|byte| matches!(byte, b'0' | b'.')) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
         None => text,
     }
 }
@@ -259,19 +260,19 @@ fn range(interval: &PredictionInterval) -> String {
     format!("[{low}, {high}]")
 }
 
-/// How the ship was loaded when she was tested.
+/// Loading of the ship in her tests.
 fn loading(tested: &[TestedManoeuvre]) -> ImoFormEntry {
-    let used: Vec<FormRecord> = tested.iter().filter(|one| one.what.is_some()).map(|one| one.record).collect();
+    let used: Vec<FormRecord> = tested.iter().filter(|test| test.what.is_some()).map(|test| test.record).collect();
     let any = |is: fn(&FormRecord) -> bool| used.iter().any(is);
     let is_partial = |record: &FormRecord| record.correction.is_none() && record.loading() == Some(Loading::Partial);
-    let found = [
+    let statements = [
         (any(|record| record.loading() == Some(Loading::Full)), "tested at full load"),
         (any(|record| record.correction.is_some()), "tested at partial load and corrected"),
         (any(is_partial), "tested at partial load, not corrected"),
         (used.is_empty(), "not tested: every result is predicted"),
     ];
-    let words: Vec<&str> = found.into_iter().filter(|(is, _)| *is).map(|(_, words)| words).collect();
-    let value = (!words.is_empty()).then(|| Value::from(words.join("; ")));
+    let texts: Vec<&str> = statements.into_iter().filter(|(holds, _)| *holds).map(|(_, text)| text).collect();
+    let value = (!texts.is_empty()).then(|| Value::from(texts.join("; ")));
     entry("manoeuvring data", "loading condition", "", value, "from the records given".into())
 }
 
@@ -320,23 +321,23 @@ mod tests {
     #[test]
     fn manoeuvres_go_to_both_sides() {
         let names: Vec<String> = manoeuvres().iter().map(Manoeuvre::to_string).collect();
-        let wanted = ["zig-zag -10/10", "zig-zag 10/10", "zig-zag -20/20", "zig-zag 20/20"];
-        assert_eq!(names[..4], wanted);
+        let expected = ["zig-zag -10/10", "zig-zag 10/10", "zig-zag -20/20", "zig-zag 20/20"];
+        assert_eq!(names[..4], expected);
         assert_eq!(names[4..], ["turning-circle -35", "turning-circle 35"]);
     }
 
     #[test]
-    fn a_trial_at_partial_load_is_corrected_or_said_to_be_so() {
-        let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::known());
+    fn a_trial_at_partial_load_is_corrected_or_reported() {
+        let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::identified_ship());
         let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
             known.members[0].parameters[1] *= gain;
             testing::mixture(known)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");
-        let told = predictions(&full);
+        let all = predictions(&full);
         let with = |correction| {
-            fill(&told, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
+            fill(&all, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
         };
         let of = |form: &Form| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
@@ -351,9 +352,9 @@ mod tests {
 
     /// A record that is another manoeuvre fills in nothing and says why.
     #[test]
-    fn what_is_no_manoeuvre_of_the_form_is_said() {
-        let ship = testing::mixture(testing::known());
-        let said = |kind: &str| {
+    fn other_manoeuvres_are_reported() {
+        let ship = testing::mixture(testing::identified_ship());
+        let remarks = |kind: &str| {
             let trial = record(&ship, kind, Conditions::default());
             let form = fill(
                 &predictions(&ship),
@@ -366,9 +367,9 @@ mod tests {
             assert!(!form.entries.iter().any(measured), "{kind}");
             form.remarks.join("\n")
         };
-        let circle = said("turning-circle:15");
+        let circle = remarks("turning-circle:15");
         assert!(circle.contains("15.0° of rudder") && circle.contains("here 75.00 m at 6.00 m/s"), "{circle}");
-        assert!(said("zig-zag:10/20").contains("a zig-zag of 10/20"));
+        assert!(remarks("zig-zag:10/20").contains("a zig-zag of 10/20"));
         let declared = Conditions { ship_type: Some("ferry".into()), ..Conditions::default() };
         let form = fill(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));
         assert_eq!(entry(&form, "ship", "ship type", None).value, Some("ferry".into()));

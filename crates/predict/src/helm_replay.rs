@@ -1,5 +1,5 @@
-//! A measured zig-zag steered anew: a helm that reverses the rudder where the record did, because a rudder that is
-//! replayed knows nothing of the heading. What the record shows of it stands beside.
+//! Simulation of a measured zig-zag by a helm that reverses the rudder at the recorded headings, because a replayed
+//! rudder does not follow the heading; and the figures of the record for comparison.
 
 use ship::Particulars;
 use ship::angle::to_deg;
@@ -12,10 +12,10 @@ use crate::prediction::drawn;
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::standard::{self, EXECUTES};
 
-/// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
-const NOMINAL: f64 = 0.05;
+/// Relative tolerance between a mean angle of a zig-zag and the nominal angle.
+const TOLERANCE: f64 = 0.05;
 
-/// What one drawn ship did.
+/// Result of one drawn ship.
 pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Figures,
@@ -23,12 +23,12 @@ pub(crate) struct DrawResult {
     pub largest_rate: f64,
 }
 
-/// A measured zig-zag as a helm steers it.
+/// Helm of a measured zig-zag.
 pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
-    /// Change of heading that ends the initial turning, rad: the nominal one, where a helm is later than ordered.
+    /// Change of heading that ends the initial turning, rad: the nominal change, for a helm that is late.
     turned: f64,
-    /// Executes that the record shows, of which its period is.
+    /// Number of executes of the record, which determine its period.
     executes: usize,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
@@ -49,17 +49,17 @@ impl SteeredZigZag {
         let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
         let rudder = mean(executes.iter().map(|execute| execute.rudder_after.abs()).collect());
         let heading = mean(executes[1..].iter().map(|execute| (execute.heading.value - base).abs()).collect());
-        // Orders are whole numbers where readings are near to them.
+        // Angles near the nominal pair are set to it.
         let [rudder, heading] = match measured.pair {
             Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)]
-                .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
+                .map(|(mean, nominal)| if (mean - nominal).abs() < TOLERANCE * nominal { nominal } else { mean }),
             None => [rudder, heading],
         };
         let yaw_rate = match measured.straight_yaw_rate() {
-            // A slope that is read off a few headings is not known well.
+            // Shrinks a slope from few headings towards zero by its error.
             Some(rate) => {
-                let known = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
-                if known > 0.0 { rate.value * approach.powi(2) / known } else { 0.0 }
+                let variance = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
+                if variance > 0.0 { rate.value * approach.powi(2) / variance } else { 0.0 }
             }
             None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
         };
@@ -68,14 +68,14 @@ impl SteeredZigZag {
         Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
-    /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
+    /// Results of drawn ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
         let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
-        // The record tells the yaw rate of the approach.
-        let in_doubt = UncertaintySource::ALL.into_iter().filter(|own| *own != UncertaintySource::InitialState);
-        let in_doubt: Vec<UncertaintySource> = in_doubt.collect();
+        // The record gives the yaw rate of the approach.
+        let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
+        let sources: Vec<UncertaintySource> = UncertaintySource::ALL.into_iter().filter(is_drawn).collect();
         drawn(draws, |number| {
-            let mut ship = mixture.draw(number, &in_doubt);
+            let mut ship = mixture.draw(number, &sources);
             ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
@@ -89,10 +89,9 @@ impl SteeredZigZag {
     }
 }
 
-/// A figure that a measured zig-zag shows, by its name; angles in degrees, times in s from the first execute.
+/// Figure of a measured zig-zag by its name; angles in degrees, times in s from the first execute.
 ///
-/// The way of the initial turning is that of the recorded speed; `particulars` are given where V times its time may
-/// stand for it.
+/// The distance of the initial turning uses the recorded speed, or V times its time where `particulars` are given.
 pub(crate) fn shown(
     trial: &Trial,
     measured: &Measured,
@@ -100,10 +99,10 @@ pub(crate) fn shown(
     length: Option<f64>,
     particulars: Option<Particulars>,
 ) -> Option<Quantity> {
-    let place = |names: &[&str]| names.iter().position(|own| *own == name).map(|place| place + 1);
+    let place = |names: &[&str]| names.iter().position(|figure| *figure == name).map(|place| place + 1);
     let begin = measured.executes.first()?.time;
     let since = |time: Quantity| {
-        let sd = time.sd.zip(begin.sd).map(|(one, other)| one.hypot(other));
+        let sd = time.sd.zip(begin.sd).map(|(end, start)| end.hypot(start));
         Quantity::new(time.value - begin.value, sd)
     };
     match (place(&OVERSHOOTS), place(&EXECUTE_TIMES), name) {
@@ -111,7 +110,7 @@ pub(crate) fn shown(
         (_, Some(number), _) => Some(since(measured.executes.get(number)?.time)),
         (.., "initial_turning_time_s") => measured.initial_turning_time,
         (.., "initial_turning_lengths") => {
-            let length = trial.particulars().map(|own| own.length).or(length)?;
+            let length = trial.particulars().map(|particulars| particulars.length).or(length)?;
             let time = measured.initial_turning_time?;
             let speed = particulars.map(|particulars| particulars.speed);
             let way = measured.initial_turning_distance.or_else(|| Some(speed? * time.value))?;

@@ -13,9 +13,9 @@ use crate::prediction::Prediction;
 /// One criterion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictedCriterion {
-    /// What is limited.
+    /// The limited quantity.
     pub criterion: String,
-    /// The manoeuvre it is read from.
+    /// The manoeuvre of the quantity.
     pub manoeuvre: String,
     /// Largest value allowed.
     pub limit: f64,
@@ -24,27 +24,27 @@ pub struct PredictedCriterion {
     /// Predicted value.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Share of the drawn ships that keep within the limit; a ship without the figure does not.
+    /// Share of the drawn ships within the limit; a ship without the figure counts as outside.
     pub probability_of_passing: f64,
-    /// Whether the manoeuvre is beyond what the records have seen.
+    /// Whether the manoeuvre is beyond the range of the records.
     pub extrapolated: bool,
 }
 
-/// A manoeuvre of the criteria and of the form of MSC/Circ.1053, as it is asked for at a positive rudder.
+/// Manoeuvre of the criteria and of the form of MSC/Circ.1053, at a positive rudder.
 pub(crate) type FormManoeuvre = &'static str;
 
 pub(crate) const TEN: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const TWENTY: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
 
-/// Rudder of that circle, and by how much another may be off it, rad. A largest rudder that is another would do as
-/// well, but no model knows it.
+/// Rudder of that circle and its tolerance, rad. The resolution also allows the largest rudder angle, which no model
+/// states.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
-pub(crate) const ABOUT: f64 = 0.05 * CIRCLE_RUDDER;
+pub(crate) const RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// A limit of the resolution.
 pub(crate) struct Limit {
-    /// What it is called, and its section and name in the form.
+    /// Its name, and its section and field in the form.
     pub name: &'static str,
     pub section: &'static str,
     pub field: &'static str,
@@ -52,8 +52,8 @@ pub(crate) struct Limit {
     pub manoeuvre: FormManoeuvre,
     pub figure: &'static str,
     pub unit: Unit,
-    /// Largest value; `None` where it follows L/V, which is not known.
-    pub of: fn(Option<Particulars>) -> Option<f64>,
+    /// Largest value; `None` where it depends on an unknown L/V.
+    pub value: fn(Option<Particulars>) -> Option<f64>,
 }
 
 const IN_CIRCLE: Limit = Limit {
@@ -63,7 +63,7 @@ const IN_CIRCLE: Limit = Limit {
     manoeuvre: CIRCLE,
     figure: "advance_lengths",
     unit: Unit::ShipLengths,
-    of: |_| Some(imo::ADVANCE_LENGTHS),
+    value: |_| Some(imo::ADVANCE_LENGTHS),
 };
 
 const IN_TEN: Limit = Limit {
@@ -73,7 +73,7 @@ const IN_TEN: Limit = Limit {
     manoeuvre: TEN,
     figure: "first_overshoot_deg",
     unit: Unit::Degrees,
-    of: |own| own.map(imo::first_overshoot_10_10_limit_deg),
+    value: |scale| scale.map(imo::first_overshoot_10_10_limit_deg),
 };
 
 /// All limits. Source: MSC.137(76), 5.3.
@@ -84,7 +84,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
         field: "distance to turn 10° with 10° rudder",
         figure: "initial_turning_lengths",
         unit: Unit::ShipLengths,
-        of: |_| Some(imo::INITIAL_TURNING_LENGTHS),
+        value: |_| Some(imo::INITIAL_TURNING_LENGTHS),
         ..IN_TEN
     },
     IN_TEN,
@@ -92,14 +92,14 @@ pub(crate) const LIMITS: [Limit; 6] = [
         name: "10/10 second overshoot",
         field: "2nd overshoot angle",
         figure: "second_overshoot_deg",
-        of: |own| own.map(imo::second_overshoot_10_10_limit_deg),
+        value: |scale| scale.map(imo::second_overshoot_10_10_limit_deg),
         ..IN_TEN
     },
     Limit {
         name: "20/20 first overshoot",
         section: "zig-zag 20°/20°",
         manoeuvre: TWENTY,
-        of: |_| Some(imo::FIRST_OVERSHOOT_20_20_DEG),
+        value: |_| Some(imo::FIRST_OVERSHOOT_20_20_DEG),
         ..IN_TEN
     },
     IN_CIRCLE,
@@ -107,20 +107,20 @@ pub(crate) const LIMITS: [Limit; 6] = [
         name: "tactical diameter",
         field: "tactical diameter",
         figure: "tactical_diameter_lengths",
-        of: |_| Some(imo::TACTICAL_DIAMETER_LENGTHS),
+        value: |_| Some(imo::TACTICAL_DIAMETER_LENGTHS),
         ..IN_CIRCLE
     },
 ];
 
 impl Limit {
-    /// Whether a manoeuvre answers it, to either side: a turn with 10° as well as a 10/10.
+    /// Whether a manoeuvre gives its figure, to either side: for the 10/10 also an initial turning with 10°.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
         let is_pair =
             |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
             CIRCLE => {
-                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= ABOUT)
+                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= RUDDER_TOLERANCE)
             }
             TWENTY => is_pair(20.0),
             _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),
@@ -133,22 +133,22 @@ impl Limit {
 pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
-        |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|own| own.trim() == limit.figure);
-    LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.of)(Some(scale))?)))
+        |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
+    LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
-/// The criteria that some predicted manoeuvres answer, for a ship of this length and speed.
+/// The criteria of some predicted manoeuvres, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;
-        let most = (limit.of)(Some(particulars))?;
+        let largest = (limit.value)(Some(particulars))?;
         Some(PredictedCriterion {
             criterion: limit.name.to_owned(),
             manoeuvre: prediction.kind.to_string(),
-            limit: most,
+            limit: largest,
             unit: limit.unit.symbol().to_owned(),
             interval: figure.interval,
-            probability_of_passing: figure.share_within(most),
+            probability_of_passing: figure.share_within(largest),
             extrapolated: figure.extrapolated,
         })
     };
@@ -167,26 +167,26 @@ mod tests {
 
     #[test]
     fn probabilities_are_shares_of_the_draws() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let predictions: Vec<Prediction> = crate::standard::of_imo()
             .iter()
             .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
             .collect();
-        let found = criteria(&predictions, mixture.particulars().expect("made up"));
-        let names: Vec<&str> = found.iter().map(|criterion| criterion.criterion.as_str()).collect();
+        let predicted = criteria(&predictions, mixture.particulars().expect("made up"));
+        let names: Vec<&str> = predicted.iter().map(|criterion| criterion.criterion.as_str()).collect();
         assert_eq!(
             names,
             ["initial turning", "10/10 first overshoot", "10/10 second overshoot", "20/20 first overshoot"],
             "a response without speed and drift has no track"
         );
-        for criterion in &found {
+        for criterion in &predicted {
             let passes = criterion.interval.ci90[1] <= criterion.limit;
             assert!(!passes || criterion.probability_of_passing >= 0.95, "{criterion:?}");
         }
         // L/V = 12.5 s.
-        assert!((found[1].limit - 11.25).abs() < 1e-12);
+        assert!((predicted[1].limit - 11.25).abs() < 1e-12);
         let (name, limit) = limit_of("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
-        assert_eq!((name, limit), ("10/10 first overshoot", found[1].limit));
+        assert_eq!((name, limit), ("10/10 first overshoot", predicted[1].limit));
         assert_eq!(limit_of("zig-zag 20/20 second_overshoot_deg", 12.5), None);
     }
 }

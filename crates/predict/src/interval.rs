@@ -1,4 +1,4 @@
-//! Quantiles of drawn values, and how many digits of them are worth writing.
+//! Quantiles of drawn values, and their significant digits.
 
 use estimation::statistics::quantile;
 use schemars::JsonSchema;
@@ -15,7 +15,7 @@ pub struct PredictionInterval {
     pub ci90: [f64; 2],
 }
 
-/// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are put in order.
+/// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are sorted in place.
 ///
 /// # Panics
 /// Without a value.
@@ -25,13 +25,13 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
 }
 
 impl PredictionInterval {
-    /// The interval of some draws, which are put in order; `None` without one.
+    /// The interval of some draws, which are sorted in place; `None` without draws.
     pub fn of(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 
-    /// Decimals that its width asks for: two digits of it, at most six.
+    /// Decimals that give two digits of its width, at most six.
     pub fn decimals(&self) -> usize {
         let width = self.ci90[1] - self.ci90[0];
         let decimals = if width > 0.0 { (1.0 - width.log10().floor()).max(0.0) } else { 2.0 };

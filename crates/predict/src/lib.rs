@@ -1,23 +1,23 @@
-//! What an identified ship will do in a trial that was not made.
+//! Prediction of manoeuvres of an identified ship, with intervals.
 //!
-//! A fit leaves a model with a covariance and a noise. Ships are drawn from it, each is steered through the manoeuvre,
-//! and what they do is told as medians with intervals of 50 and 90 %. An interval holds the errors of the parameters,
-//! the structures that the records cannot tell apart, the random moment of one trial, the rate of the rudder and the
-//! yaw rate of the approach; the share of each is told beside it.
+//! A fit gives a model with a covariance and a noise law. Ships are drawn from it, each is steered through the
+//! manoeuvre, and the results are medians with intervals of 50 and 90 %. An interval includes the errors of the
+//! parameters, the structures that the records do not distinguish, the random moment of one trial, the rudder rate and
+//! the yaw rate of the approach; the share of each source is reported.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | ships drawn from it | [`mixture`], [`drawn_parameters`] |
-//! | the manoeuvres, and what ends them | [`standard`] |
+//! | drawn ships | [`mixture`], [`drawn_parameters`] |
+//! | the manoeuvres and their ends | [`standard`] |
 //! | figures of merit | [`figures`] |
-//! | a manoeuvre predicted | [`prediction`] |
-//! | a recorded rudder replayed, held against the record | [`replay`] |
-//! | a record that is a turn, and the current it shows | [`turn`] |
+//! | the prediction of a manoeuvre | [`prediction`] |
+//! | the replay of a recorded rudder, compared with the record | [`replay`] |
+//! | a recorded turn and its current | [`turn`] |
 //! | steady turns and the unstable loop | [`steady`] |
 //! | the criteria of IMO | [`imo`] |
 //! | a trial in ballast corrected to another loading | [`correction`] |
 //! | the form of MSC/Circ.1053 | [`form`] |
-//! | all of it as a file holds it | [`document`] |
+//! | the document of a prediction | [`document`] |
 //!
 //! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
 

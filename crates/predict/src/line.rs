@@ -1,6 +1,6 @@
 //! A straight line by least squares.
 
-/// A straight line through points, with what it leaves.
+/// Straight line through points, with its residual variance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StraightLine {
     /// Means of the points along and across.
@@ -8,13 +8,13 @@ pub(crate) struct StraightLine {
     pub slope: f64,
     /// Sum of squares along, about the mean.
     spread: f64,
-    /// Variance of what the line leaves.
+    /// Variance of the residuals.
     variance: f64,
     count: f64,
 }
 
 impl StraightLine {
-    /// The line through the points that are finite; `None` for less than three, or all at one place.
+    /// The line through the finite points; `None` for less than three, or all at the same abscissa.
     pub fn through(points: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let points: Vec<(f64, f64)> = points.filter(|(_, y)| y.is_finite()).collect();
         let count = points.len() as f64;

@@ -1,5 +1,7 @@
-//! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
-//! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
+//! Ships drawn from the models of one or several files: a structure by its probability, parameters by their covariance,
+//! and the random disturbances of one trial. Every source can be switched off, so that its share of an interval can be
+//! computed. Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a tutorial, Statistical
+//! Science 14, 382–417.
 
 use document::{IdentifiedShip, IdentifiedShipError, RandomMoment, RandomYawMoment, WeightedStructure};
 use nalgebra::{DMatrix, DVector};
@@ -14,14 +16,14 @@ use crate::drawable_hull::DrawableHull;
 use crate::error::PredictError;
 use crate::root::root_of;
 
-/// Where an interval comes from.
+/// Source of the uncertainty of a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum UncertaintySource {
     /// Errors of the parameters.
     Parameters,
-    /// Structures that the records cannot tell apart.
+    /// Structures that the records do not distinguish.
     Structure,
-    /// The random yaw moment, and what a hull gets wrong in the first seconds.
+    /// The random yaw moment, and the error of a hull in the first seconds.
     ProcessNoise,
     /// The rate of the rudder.
     SteeringGear,
@@ -34,7 +36,7 @@ impl UncertaintySource {
     pub const ALL: [Self; 5] =
         [Self::Parameters, Self::Structure, Self::ProcessNoise, Self::SteeringGear, Self::InitialState];
 
-    /// The word used in files.
+    /// Name used in files.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Parameters => "parameters",
@@ -46,20 +48,19 @@ impl UncertaintySource {
     }
 }
 
-/// Draws outside the range of a parameter that are made again before its end is taken.
-const MOST_TRIES: usize = 100;
+/// Largest number of rejected draws, outside the range of a parameter, before its bound is taken.
+const MAX_TRIES: usize = 100;
 
-/// Correlation time of what stands for a white moment, in times of the ship.
-const WHITE: f64 = 0.05;
+/// Correlation time of the process that approximates a white moment, in times of the ship.
+const WHITE_CORRELATION_TIME: f64 = 0.05;
 
-/// One structure with the square root of its covariance; of a file with hulls, one of these beside the most probable
-/// structure.
+/// A structure with the square root of its covariance; for a file with hulls, a hull with the most probable structure.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableStructure {
-    /// Probability among all.
+    /// Probability among all structures.
     pub weight: f64,
     model: ResponseModel,
-    known: WeightedStructure,
+    stored: WeightedStructure,
     root: DMatrix<f64>,
     /// Places of dead times among the parameters.
     dead_times: Vec<usize>,
@@ -69,7 +70,7 @@ pub(crate) struct DrawableStructure {
     pub file: usize,
 }
 
-/// Everything that is known of a ship from one or several files, ready to be drawn from.
+/// Mixture of the models of a ship from one or several files.
 #[derive(Debug, Clone)]
 pub struct ShipMixture {
     parts: Vec<DrawableStructure>,
@@ -77,66 +78,66 @@ pub struct ShipMixture {
     /// Probability of every file.
     shares: Vec<f64>,
     timescale: f64,
-    /// Whether the draws are apart from those of any other mixture that is not.
+    /// Whether its random numbers are independent of those of another mixture.
     apart: bool,
-    /// Whether its hulls follow those of the other mixture all the same, each at another loading.
+    /// Whether its hulls nevertheless follow those of the other mixture, each at another loading.
     follows: bool,
-    /// The wind that blows at hulls, from off the heading of the approach.
+    /// Wind on the hulls; direction relative to the approach heading.
     pub(crate) wind: Option<Wind>,
 }
 
 /// A ship for one trial.
 #[derive(Debug, Clone)]
 pub struct DrawnShip {
-    /// How the ship turns.
+    /// Its yaw response.
     pub response: Response,
-    /// The hull, where one was fitted; it takes the place of the response.
+    /// Its hull, where one was fitted, which replaces the response.
     pub hull: Option<ScaledHull>,
     /// The coefficients of the hull.
     pub coefficients: Vec<f64>,
     /// Its steering gear.
     pub gear: SteeringGear,
-    /// What acts on it.
+    /// Its disturbances.
     pub disturbances: Disturbances,
-    /// Yaw rate that it begins with, rad/s: that of the approach, and the error of a hull.
+    /// Initial yaw rate, rad/s: that of the approach, and the error of a hull.
     pub yaw_rate: f64,
-    /// Where its random moment comes from.
+    /// Stream of its random moment.
     pub key: StreamKey,
 }
 
 impl ShipMixture {
-    /// Takes what several files say of one ship, each with its weight; fails for what no file of this program holds.
+    /// Mixture of the models of several files of one ship, each with its weight; fails for invalid models.
     pub fn new(files: Vec<(IdentifiedShip, f64)>) -> Result<Self, PredictError> {
         let total: f64 = files.iter().map(|(_, weight)| weight).sum();
         let shares: Vec<f64> = files.iter().map(|(_, weight)| weight / total).collect();
         let mut parts = Vec::new();
-        for (file, ((known, _), share)) in files.iter().zip(&shares).enumerate() {
-            let of_structures: f64 = known.members.iter().map(|member| member.weight).sum();
-            let structures = known.members.iter().map(|member| (member, member.weight / of_structures));
+        for (file, ((stored, _), share)) in files.iter().zip(&shares).enumerate() {
+            let of_structures: f64 = stored.members.iter().map(|member| member.weight).sum();
+            let structures = stored.members.iter().map(|member| (member, member.weight / of_structures));
             let structures =
-                structures.map(|(member, weight)| DrawableStructure::new(known, member, share * weight, file));
+                structures.map(|(member, weight)| DrawableStructure::new(stored, member, share * weight, file));
             let structures = structures.collect::<Result<Vec<_>, _>>()?;
-            if known.hulls.is_empty() {
+            if stored.hulls.is_empty() {
                 parts.extend(structures);
                 continue;
             }
             let beside = likeliest(structures.iter()).ok_or(PredictError::Empty)?;
-            let of_hulls: f64 = known.hulls.iter().map(|hull| hull.weight).sum();
-            for own in &known.hulls {
-                let (hull, weight) = (DrawableHull::new(own)?, checked(share * own.weight / of_hulls, own.weight)?);
+            let of_hulls: f64 = stored.hulls.iter().map(|hull| hull.weight).sum();
+            for fit in &stored.hulls {
+                let (hull, weight) = (DrawableHull::new(fit)?, checked(share * fit.weight / of_hulls, fit.weight)?);
                 parts.push(DrawableStructure { hull: Some(hull), weight, ..beside.clone() });
             }
         }
-        let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
-        let files = files.into_iter().map(|(known, _)| known).collect();
+        let timescale = files.first().and_then(|(stored, _)| stored.timescale()).ok_or(PredictError::Empty)?;
+        let files = files.into_iter().map(|(stored, _)| stored).collect();
         Ok(Self { parts, files, shares, timescale, apart: false, follows: false, wind: None })
     }
 
-    /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture,
-    /// but that of the trials where every ship has one hull and that is taken from the hull of the other.
+    /// The same ships with independent random numbers; only the errors of the trials stay common, where every ship has
+    /// a single hull that is converted from the hull of the other mixture.
     pub fn apart_from(self, other: &Self) -> Self {
-        let follows = |(own, other): (&IdentifiedShip, &IdentifiedShip)| match (&own.hulls[..], &other.hulls[..]) {
-            ([own], [other]) => own.is_from(other),
+        let follows = |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
+            ([hull], [source]) => hull.is_from(source),
             _ => false,
         };
         let follows = self.files.len() == other.files.len() && self.files.iter().zip(&other.files).all(follows);
@@ -148,7 +149,7 @@ impl ShipMixture {
         self.timescale
     }
 
-    /// What the first file says of the ship.
+    /// The ship of the first file.
     pub fn first(&self) -> &IdentifiedShip {
         &self.files[0]
     }
@@ -158,44 +159,44 @@ impl ShipMixture {
         &self.files
     }
 
-    /// The most probable ship of the most probable file, without chance.
+    /// The most probable ship of the most probable file, without disturbances.
     pub fn most_probable(&self) -> DrawnShip {
         self.draw(0, &[])
     }
 
-    /// Ship number `number`; only the given sources of doubt are at work, all else is as in the most probable ship.
+    /// Ship number `number`, drawn from the given sources of uncertainty and otherwise the most probable ship.
     pub fn draw(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.chosen(number) } else { self.likeliest() };
-        let known = &self.files[part.file];
+        let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
             true => part.drawn(&mut rng),
-            false => part.known.parameters.clone(),
+            false => part.stored.parameters.clone(),
         };
-        // Below zero it is the clock of a record, and no ship answers before its rudder moves.
+        // A negative dead time is an error of the clock; a ship does not respond before its rudder moves.
         part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
-        let mut other = key.indexed(Purpose::Specification, 1);
-        let [of_gear, of_rate, of_beginning]: [f64; 3] = std::array::from_fn(|_| other.sample(StandardNormal));
-        let doubt = |source, value: f64| if has(source) { value } else { 0.0 };
-        let gear = known.gear.map_or_else(SteeringGear::default, |gear| {
-            let rate = gear.rate_rad_s + doubt(UncertaintySource::SteeringGear, of_gear * gear.sd_rad_s);
+        let mut normals = key.indexed(Purpose::Specification, 1);
+        let [of_gear, of_rate, of_beginning]: [f64; 3] = std::array::from_fn(|_| normals.sample(StandardNormal));
+        let random_part = |source, value: f64| if has(source) { value } else { 0.0 };
+        let gear = stored.gear.map_or_else(SteeringGear::default, |gear| {
+            let rate = gear.rate_rad_s + random_part(UncertaintySource::SteeringGear, of_gear * gear.sd_rad_s);
             SteeringGear::with_rate(rate.max(0.1 * gear.rate_rad_s))
         });
-        // A hull at another loading has the draws of the hull of the trials, and some of its own.
+        // A hull at another loading shares the draws of the hull of the trials and has independent draws.
         let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
             true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
-            false => hull.known.values(),
+            false => hull.stored.values(),
         });
         let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.made_of(values));
-        let approach = doubt(UncertaintySource::InitialState, of_rate * known.approach_yaw_rate_rad_s);
-        let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.known.beginning_yaw_rate_rad_s);
-        let error = doubt(UncertaintySource::ProcessNoise, of_beginning * of_hull);
+        let approach = random_part(UncertaintySource::InitialState, of_rate * stored.approach_yaw_rate_rad_s);
+        let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.stored.beginning_yaw_rate_rad_s);
+        let error = random_part(UncertaintySource::ProcessNoise, of_beginning * of_hull);
         let is_random = has(UncertaintySource::ProcessNoise);
-        let moment = if is_random { part.moment(known) } else { RandomMoment::None };
+        let moment = if is_random { part.moment(stored) } else { RandomMoment::None };
         DrawnShip {
             response: part.model.clone().with(values),
             hull,
@@ -212,7 +213,7 @@ impl ShipMixture {
         match moment {
             RandomMoment::None => {}
             RandomMoment::White { rudder_rad_root_s } => {
-                let correlation_time = WHITE * self.timescale;
+                let correlation_time = WHITE_CORRELATION_TIME * self.timescale;
                 let sd = rudder_rad_root_s / (2.0 * correlation_time).sqrt();
                 disturbances.gusts = Some(GaussMarkov { sd, correlation_time });
             }
@@ -224,43 +225,44 @@ impl ShipMixture {
         disturbances
     }
 
-    /// The likeliest of the likeliest file, the first of several: a file does not lose by having several hulls.
+    /// The most probable structure of the most probable file, the first of equals: several hulls do not lower the rank
+    /// of a file.
     fn likeliest(&self) -> &DrawableStructure {
-        let file = (0..self.files.len()).rev().max_by(|one, other| self.shares[*one].total_cmp(&self.shares[*other]));
+        let file = (0..self.files.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
-    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
-    /// mixture that is apart follow √2, which has nothing in common with it.
+    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of an
+    /// independent mixture follow √2, which is incommensurable with it.
     pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
-        let mut left = (0.5 + number as f64 * step).fract();
+        let mut position = (0.5 + number as f64 * step).fract();
         for part in &self.parts {
-            if left < part.weight {
+            if position < part.weight {
                 return part;
             }
-            left -= part.weight;
+            position -= part.weight;
         }
         self.likeliest()
     }
 }
 
-/// The most probable one, the first of several.
+/// The most probable structure, the first of equals.
 fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a DrawableStructure>) -> Option<&'a DrawableStructure> {
-    parts.rev().max_by(|one, other| one.weight.total_cmp(&other.weight))
+    parts.rev().max_by(|a, b| a.weight.total_cmp(&b.weight))
 }
 
-/// A weight that is one; `stored` is what the file says.
+/// A valid weight; `stored` is the value in the file.
 fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
     let is_weight = weight.is_finite() && weight >= 0.0;
     if is_weight { Ok(weight) } else { Err(IdentifiedShipError::Value { key: "weight", value: stored }.into()) }
 }
 
 impl DrawableStructure {
-    fn new(ship: &IdentifiedShip, known: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
-        let weight = checked(weight, known.weight)?;
-        let model = known.model()?;
+    fn new(ship: &IdentifiedShip, stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
+        let weight = checked(weight, stored.weight)?;
+        let model = stored.model()?;
         let has_motion = !ship.hulls.is_empty();
         for (regressor, channel, option) in
             [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
@@ -270,13 +272,13 @@ impl DrawableStructure {
                 return Err(PredictError::Needs { channel, option });
             }
         }
-        let (root, dead_times) = (root_of(&known.covariance)?, known.dead_times(&model));
-        Ok(Self { weight, model, known: known.clone(), root, dead_times, hull: None, file })
+        let (root, dead_times) = (root_of(&stored.covariance)?, stored.dead_times(&model));
+        Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
     }
 
-    /// What is random in yaw: what the form of the hull leaves, or what the structures do.
+    /// Random yaw moment: of the form of the hull, or of the structure.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
-        let Some(moment) = self.hull.as_ref().map(|hull| hull.known.moment) else { return ship.noise.moment };
+        let Some(moment) = self.hull.as_ref().map(|hull| hull.stored.moment) else { return ship.noise.moment };
         let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = moment;
         match sd_rudder_rad > 0.0 {
             true => RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s },
@@ -284,22 +286,22 @@ impl DrawableStructure {
         }
     }
 
-    /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
+    /// Drawn parameters, by their covariance and inside the ranges of the effects: normal, or Student's t.
     fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
-        let WeightedStructure { parameters: known, fitted, degrees_of_freedom, .. } = &self.known;
-        let mut values = known.clone();
+        let WeightedStructure { parameters: stored, fitted, degrees_of_freedom, .. } = &self.stored;
+        let mut values = stored.clone();
         if self.root.is_empty() {
             return values;
         }
         let described: Vec<_> = self.model.parameters().collect();
-        for attempt in 0..=MOST_TRIES {
+        for attempt in 0..=MAX_TRIES {
             let normal = DVector::from_fn(fitted.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
             let freedom = degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?)));
             let wide = freedom.map_or(1.0, |(freedom, law)| (freedom / law.sample(rng)).sqrt());
             let step = &self.root * normal * wide;
             for (&place, step) in fitted.iter().zip(step.iter()) {
-                values[place] = known[place] + step;
-                if attempt == MOST_TRIES {
+                values[place] = stored[place] + step;
+                if attempt == MAX_TRIES {
                     values[place] = values[place].clamp(described[place].lowest, described[place].highest);
                 }
             }
@@ -319,36 +321,36 @@ mod tests {
 
     /// Mean and covariance of the draws are those that are known.
     #[test]
-    fn draws_have_the_law_that_is_known() {
-        let mixture = testing::mixture(testing::known());
-        let known = &mixture.first().members[0];
+    fn draws_have_the_stored_law() {
+        let mixture = testing::mixture(testing::identified_ship());
+        let stored = &mixture.first().members[0];
         let count = 4000;
         let draws: Vec<Vec<f64>> = (0..count)
             .map(|k| mixture.draw(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
             .collect();
         let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
-        for (row, &one) in known.fitted.iter().enumerate() {
-            for (column, &other) in known.fitted.iter().enumerate() {
-                let product = |draw: &Vec<f64>| (draw[one] - mean(one)) * (draw[other] - mean(other));
-                let found = draws.iter().map(product).sum::<f64>() / count as f64;
-                let scale = (known.covariance[row][row] * known.covariance[column][column]).sqrt();
-                assert!((found - known.covariance[row][column]).abs() < 0.08 * scale, "{one} {other}");
+        for (row, &first) in stored.fitted.iter().enumerate() {
+            for (column, &second) in stored.fitted.iter().enumerate() {
+                let product = |draw: &Vec<f64>| (draw[first] - mean(first)) * (draw[second] - mean(second));
+                let covariance = draws.iter().map(product).sum::<f64>() / count as f64;
+                let scale = (stored.covariance[row][row] * stored.covariance[column][column]).sqrt();
+                assert!((covariance - stored.covariance[row][column]).abs() < 0.08 * scale, "{first} {second}");
             }
         }
     }
 
     #[test]
     fn structures_are_drawn_by_their_probability() {
-        let mut known = testing::known();
-        let mut simple = known.members[0].clone();
+        let mut stored = testing::identified_ship();
+        let mut simple = stored.members[0].clone();
         simple.effects.clear();
         simple.parameters.truncate(3);
         simple.fitted.truncate(3);
         simple.covariance.truncate(3);
         simple.covariance.iter_mut().for_each(|row| row.truncate(3));
-        (simple.weight, known.members[0].weight) = (0.2, 0.6);
-        known.members.push(simple);
-        let mixture = ShipMixture::new(vec![(known, 2.0)]).expect("made up");
+        (simple.weight, stored.members[0].weight) = (0.2, 0.6);
+        stored.members.push(simple);
+        let mixture = ShipMixture::new(vec![(stored, 2.0)]).expect("made up");
         let is_simple = |k| mixture.draw(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
@@ -359,8 +361,8 @@ mod tests {
     #[test]
     fn the_most_probable_ship_is_of_the_most_probable_file() {
         let hull = |weight| StoredHull { weight, ..testing::hull("quadratic") };
-        let [several, mut alone] =
-            [vec![hull(0.4), hull(0.6)], vec![hull(1.0)]].map(|hulls| IdentifiedShip { hulls, ..testing::known() });
+        let [several, mut alone] = [vec![hull(0.4), hull(0.6)], vec![hull(1.0)]]
+            .map(|hulls| IdentifiedShip { hulls, ..testing::identified_ship() });
         alone.members[0].parameters[0] *= 1.1;
         let of_several = several.members[0].parameters.clone();
         let mixture = ShipMixture::new(vec![(several, 1.0), (alone, 1.0)]).expect("made up");
@@ -373,41 +375,41 @@ mod tests {
     fn hulls_begin_with_the_error_of_their_replays() {
         let rate = 1e-3;
         let hulls = vec![StoredHull { beginning_yaw_rate_rad_s: rate, ..testing::hull("quadratic") }];
-        let known = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::known() };
-        let of = |known: IdentifiedShip, sources: &[UncertaintySource]| {
-            let mixture = testing::mixture(known);
+        let stored = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::identified_ship() };
+        let of = |stored: IdentifiedShip, sources: &[UncertaintySource]| {
+            let mixture = testing::mixture(stored);
             let squares = (0..1000).map(|number| mixture.draw(number, sources).yaw_rate.powi(2));
             (squares.sum::<f64>() / 1000.0).sqrt()
         };
-        let found = of(known.clone(), &UncertaintySource::ALL);
+        let found = of(stored.clone(), &UncertaintySource::ALL);
         assert!((found / rate - 1.0).abs() < 0.07, "{found}");
-        assert_eq!(of(known.clone(), &[UncertaintySource::InitialState]), 0.0);
-        assert_eq!(of(known.in_calm().expect("known"), &UncertaintySource::ALL), 0.0);
+        assert_eq!(of(stored.clone(), &[UncertaintySource::InitialState]), 0.0);
+        assert_eq!(of(stored.in_calm().expect("known"), &UncertaintySource::ALL), 0.0);
     }
 
     /// A rudder that was logged late gives a negative dead time; no ship has one.
     #[test]
     fn a_rudder_logged_late_is_told_and_steered_on_time() {
-        let mut known = testing::known();
+        let mut stored = testing::identified_ship();
         let late = ship::effects::SteeringLag::DeadTime;
-        known.members[0].effects.push(document::identified_ship::StoredEffect {
+        stored.members[0].effects.push(document::identified_ship::StoredEffect {
             id: ship::effects::Effect::id(&late).into(),
             form: ship::effects::Effect::form(&late).into(),
             constants: Vec::new(),
         });
-        known.members[0].parameters.push(-3.1);
-        assert_eq!(known.rudder_logged_late(), Some(3.1));
-        assert_eq!(testing::known().rudder_logged_late(), None);
+        stored.members[0].parameters.push(-3.1);
+        assert_eq!(stored.rudder_logged_late(), Some(3.1));
+        assert_eq!(testing::identified_ship().rudder_logged_late(), None);
         let kind = "zig-zag:10/10".parse().expect("known");
-        let [own, late] = [testing::known(), known].map(|known| {
-            testing::mixture(known).predict(&kind, 40, false).expect("ships that come to the end of it").figures
+        let [own, late] = [testing::identified_ship(), stored].map(|stored| {
+            testing::mixture(stored).predict(&kind, 40, false).expect("ships that come to the end of it").figures
         });
         assert_eq!(own["first_overshoot_deg"].interval, late["first_overshoot_deg"].interval);
     }
 
     #[test]
     fn one_number_is_one_ship() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
@@ -417,19 +419,19 @@ mod tests {
     /// A term in the measured sway says nothing where there is no sway.
     #[test]
     fn a_model_that_needs_what_is_not_there_is_refused() {
-        let mut known = testing::known();
+        let mut stored = testing::identified_ship();
         let (id, form) = ("sway_coupling_measured".into(), "measured sway".into());
-        known.members[0].effects[0] = document::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
-        let error = ShipMixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
+        stored.members[0].effects[0] = document::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
+        let error = ShipMixture::new(vec![(stored, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }
 
     #[test]
     fn what_is_no_covariance_is_refused() {
-        let mut known = testing::known();
-        known.members[0].covariance[0][1] = 10.0;
-        known.members[0].covariance[1][0] = 10.0;
-        assert_eq!(ShipMixture::new(vec![(known, 1.0)]).err(), Some(PredictError::Covariance));
+        let mut stored = testing::identified_ship();
+        stored.members[0].covariance[0][1] = 10.0;
+        stored.members[0].covariance[1][0] = 10.0;
+        assert_eq!(ShipMixture::new(vec![(stored, 1.0)]).err(), Some(PredictError::Covariance));
         assert!(ShipMixture::new(Vec::new()).is_err());
     }
 }

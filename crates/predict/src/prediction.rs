@@ -1,4 +1,5 @@
-//! A manoeuvre predicted: every figure of merit with its intervals and where they come from, and bands of its curves.
+//! Prediction of a manoeuvre: every figure of merit with its intervals and their sources, and bands of its curves.
+//! Source of the method: propagation of distributions by Monte Carlo, JCGM 101:2008 (Supplement 1 to the GUM).
 
 use document::identified_ship::ValidityRange;
 use estimation::statistics::median;
@@ -17,15 +18,14 @@ use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
 use crate::steady::SteadyCurve;
 
-/// Draws for every source alone, as a share of all.
-const ALONE: usize = 4;
+/// Number of draws over that for a single source.
+const RATIO: usize = 4;
 
-/// Share of the draws that have to come to the end of a manoeuvre.
-const FEWEST: f64 = 0.5;
+/// Share of the draws that must complete a manoeuvre.
+const MIN_COMPLETED_SHARE: f64 = 0.5;
 
-/// How far beyond what was seen is still within it: a rudder overshoots its order, a largest rate is that of one
-/// record.
-const MARGIN: f64 = 1.05;
+/// Tolerance of the range of the records: a rudder overshoots its order, and a largest rate is that of a single record.
+const TOLERANCE: f64 = 1.05;
 
 /// A figure of merit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,7 +37,7 @@ pub struct Predicted {
     pub extrapolated: bool,
     /// Share of the draws that have the figure.
     pub defined: f64,
-    /// Share of every source of doubt in the spread.
+    /// Share of every source of uncertainty in the spread.
     pub shares: IndexMap<String, f64>,
     /// The draws, in the order of their numbers.
     #[serde(skip)]
@@ -45,7 +45,7 @@ pub struct Predicted {
 }
 
 impl Predicted {
-    /// Share of the drawn ships that keep within a limit; one without the figure does not.
+    /// Share of the drawn ships within a limit; a ship without the figure counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
         let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
         kept as f64 / self.draws.len() as f64
@@ -57,20 +57,20 @@ impl Predicted {
 pub struct Bands {
     /// Time from the first execute, s.
     pub time: Vec<f64>,
-    /// The most probable ship without chance, as far as it goes; NaN beyond.
+    /// The most probable ship without disturbances, to its end; NaN beyond.
     #[serde(deserialize_with = "with_gaps")]
     pub most_probable: Vec<f64>,
     /// Quantiles of 5, 25, 50, 75 and 95 % of the draws.
     pub quantiles: Vec<[f64; 5]>,
 }
 
-/// Numbers of a list in JSON, which has no word for NaN.
+/// Numbers of a list in JSON, where null represents NaN.
 fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
     let numbers = Vec::<Option<f64>>::deserialize(list)?;
     Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
 }
 
-/// A manoeuvre predicted; its curves are beside the document (PredictCurves).
+/// Prediction of a manoeuvre; its curves are in a separate file (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
@@ -79,9 +79,9 @@ pub struct Prediction {
     pub kind: Manoeuvre,
     /// Its figures by name, with the unit.
     pub figures: IndexMap<String, Predicted>,
-    /// Draws that did not come to the end.
+    /// Draws that did not complete the manoeuvre.
     pub lost: usize,
-    /// Sizes of a turning circle whose interval reaches below zero: the records do not tell them.
+    /// Sizes of a turning circle whose interval reaches below zero: the records do not determine them.
     #[serde(skip)]
     pub undetermined: Vec<(String, PredictionInterval)>,
     /// Its curves.
@@ -92,11 +92,11 @@ pub struct Prediction {
 /// The curves of a manoeuvre; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ManoeuvreCurves {
-    /// Heading, but for a spiral.
+    /// Heading; empty for a spiral.
     pub heading: Bands,
-    /// The most probable ship without chance, but for a spiral.
+    /// The most probable ship without disturbances; `None` for a spiral.
     pub most_probable: Option<SimulatedManoeuvre>,
-    /// Tracks of some of the draws, north and east, m; empty where nothing is known of speed and drift.
+    /// Tracks of some of the draws, north and east, m; empty for a model without speed and drift.
     pub tracks: Vec<Vec<[f64; 2]>>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
     #[serde(rename = "curves")]
@@ -113,14 +113,14 @@ impl Prediction {
 /// Draws whose tracks are kept.
 const TRACKS: u64 = 40;
 
-/// What is refused because too few drawn ships come to the end of it.
+/// Error for a manoeuvre that too few drawn ships complete.
 pub(crate) fn lost(what: impl ToString, made: usize, draws: usize) -> PredictError {
     PredictError::Lost { kind: what.to_string(), made, draws }
 }
 
-/// Refuses what less than half of the drawn ships come to the end of.
+/// Fails where less than half of the drawn ships complete a manoeuvre.
 pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
-    if made == 0 || (made as f64) < FEWEST * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
+    if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
 }
 
 impl ShipMixture {
@@ -129,9 +129,9 @@ impl ShipMixture {
         self.first().particulars()
     }
 
-    /// Predicts a manoeuvre from so many draws; `shares` asks for the share of every source of doubt.
+    /// Predicts a manoeuvre from so many draws; `shares` adds the share of every source of uncertainty.
     ///
-    /// Fails where less than half of the drawn ships come to the end of it.
+    /// Fails where less than half of the drawn ships complete it.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
         let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
@@ -173,7 +173,7 @@ impl ShipMixture {
         Ok(Prediction { kind: kind.clone(), figures, lost, undetermined, curves })
     }
 
-    /// Steady turns; chance has no part in them.
+    /// Prediction of the steady turns of a spiral, without disturbances.
     fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
             SteadyCurve::of(&self.draw(number, sources), kind.rudder(), self.timescale())
@@ -182,26 +182,26 @@ impl ShipMixture {
         let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
-        let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
+        let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
         let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder()));
-        let figures = predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone);
+        let figures = predicted(&values, self.is_unseen(kind.rudder(), std::iter::once(largest)), sources, alone);
         let steady = std::iter::once(most_probable).chain(all).collect();
         let curves = ManoeuvreCurves { steady, ..ManoeuvreCurves::default() };
         Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
     }
 
-    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
+    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond the range of the records.
     pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
-        let most =
-            |value: fn(&ValidityRange) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
-        rudder > MARGIN * most(|seen| seen.rudder_rad) || rate > MARGIN * most(|seen| seen.yaw_rate_rad_s)
+        let end =
+            |value: fn(&ValidityRange) -> f64| self.files().iter().map(|ship| value(&ship.seen)).fold(0.0, f64::max);
+        rudder > TOLERANCE * end(|seen| seen.rudder_rad) || rate > TOLERANCE * end(|seen| seen.yaw_rate_rad_s)
     }
 }
 
-/// What is made of so many draws, in the order of their numbers.
-pub(crate) fn drawn<T: Send>(draws: usize, one: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
-    (0..draws as u64).into_par_iter().map(one).collect()
+/// Results of so many draws, computed in parallel, in the order of their numbers.
+pub(crate) fn drawn<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+    (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
 /// Figures from the draws, with the shares of sources that are drawn alone.
@@ -211,16 +211,16 @@ fn predicted(
     sources: &[UncertaintySource],
     draw: impl Fn(u64, &[UncertaintySource]) -> Option<Figures> + Sync + Send,
 ) -> IndexMap<String, Predicted> {
-    let alone = |source: &UncertaintySource| drawn(draws.len().div_ceil(ALONE), |number| draw(number, &[*source]));
+    let alone = |source: &UncertaintySource| drawn(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
-        let of = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| *figures.get(name)?);
-        let of_draws: Vec<Option<f64>> = draws.iter().map(of).collect();
+        let value = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| *figures.get(name)?);
+        let of_draws: Vec<Option<f64>> = draws.iter().map(value).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;
         let interval = PredictionInterval::of(&mut values)?;
         let spread = |few: &[Option<Figures>]| {
-            let interval = PredictionInterval::of(&mut few.iter().filter_map(of).collect::<Vec<f64>>());
+            let interval = PredictionInterval::of(&mut few.iter().filter_map(value).collect::<Vec<f64>>());
             interval.map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
         };
         let spreads: Vec<(&str, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
@@ -232,7 +232,7 @@ fn predicted(
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
-/// Quantiles row by row, as long as nine tenths of the draws go on.
+/// Quantiles row by row, up to the end of a tenth of the draws.
 fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
     let mut bands = Bands::default();
     let mut values = Vec::with_capacity(draws.len());
@@ -244,8 +244,8 @@ fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f
         }
         bands.time.push(row as f64 * period);
         bands.quantiles.push(band(&mut values));
-        let known = most_probable.and_then(|passage| passage.heading.get(row));
-        bands.most_probable.push(known.copied().unwrap_or(f64::NAN));
+        let heading = most_probable.and_then(|passage| passage.heading.get(row));
+        bands.most_probable.push(heading.copied().unwrap_or(f64::NAN));
     }
     bands
 }
@@ -256,7 +256,7 @@ mod tests {
     use crate::testing;
 
     fn mixture(change: impl Fn(&mut document::identified_ship::IdentifiedShip)) -> ShipMixture {
-        let mut known = testing::known();
+        let mut known = testing::identified_ship();
         change(&mut known);
         testing::mixture(known)
     }
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_what_was_seen_is_said() {
+    fn extrapolation_is_reported() {
         let ship = mixture(|_| {});
         assert!(ship.predict(&kind("turning-circle:35"), 8, false).expect("a turn").is_extrapolated());
         assert!(!ship.predict(&kind("zig-zag:10/10"), 8, false).expect("a zig-zag").is_extrapolated());

@@ -1,4 +1,4 @@
-//! A recorded rudder replayed and held against its record: the record is not fitted, so it says whether intervals hold.
+//! Replay of a recorded rudder, compared with its record: the record is not fitted, so it tests the intervals.
 
 use indexmap::IndexMap;
 use rand::RngExt;
@@ -22,26 +22,25 @@ use crate::prediction::{Bands, drawn, enough, lost};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
-/// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
+/// Duration at the start of a record for the fit of its initial heading and yaw rate, in times of the ship.
 const BEGINNING: f64 = 1.0;
 
-/// Fewest readings for it.
-const FEWEST: usize = 5;
+/// Readings needed for that fit.
+const MIN_READINGS: usize = 5;
 
 /// A figure of a record with its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compared {
-    /// What the record shows.
+    /// Measured value.
     pub measured: f64,
-    /// What was predicted, with the error of what the record shows where that is known.
+    /// Predicted interval, with the error of the measured value where the record gives it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Whether the 90 % interval holds what was measured.
+    /// Whether the 90 % interval contains the measured value.
     pub inside90: bool,
 }
 
-/// A record with its prediction; its curves are beside the document
-/// (PredictCurves).
+/// A record with its prediction; its curves are in a separate file (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
     /// The file as the user named it.
@@ -50,14 +49,14 @@ pub struct RecordReplay {
     pub band_coverage_90: f64,
     /// Root mean square difference between the headings and the most probable ship.
     pub heading_rmse_deg: f64,
-    /// What was taken out of the track.
+    /// The current that was removed from the track.
     pub current: Option<Current>,
     /// Figures that the record shows, by name.
     pub figures: IndexMap<String, Compared>,
     /// Name of the record.
     #[serde(default)]
     pub name: String,
-    /// Of a turn, where it has positions.
+    /// Tracks of a turn with positions.
     #[serde(skip)]
     pub tracks: Option<TurnTracks>,
     /// Time from the first row, s, and rudder, rad.
@@ -79,10 +78,10 @@ pub fn file_of(trial: &Trial) -> &str {
     }
 }
 
-/// Difference up to which a rudder is straight between two readings, rad: a hundredth of a degree.
-const STRAIGHT: f64 = 2e-4;
+/// Tolerance of a straight rudder between two readings, rad: a hundredth of a degree.
+const STRAIGHT_TOLERANCE_RAD: f64 = 2e-4;
 
-/// The corners of a rudder (Douglas and Peucker 1973): a step of the solver ends at every one.
+/// The corners of a rudder (Douglas and Peucker 1973), at which the steps of the solver end.
 pub(crate) fn thinned(signal: &Polyline) -> Polyline {
     let (times, values) = (signal.times(), signal.values());
     let last = times.len() - 1;
@@ -92,24 +91,24 @@ pub(crate) fn thinned(signal: &Polyline) -> Polyline {
     while let Some((from, to)) = open.pop() {
         let slope = (values[to] - values[from]) / (times[to] - times[from]);
         let off = |row: usize| (values[row] - values[from] - slope * (times[row] - times[from])).abs();
-        let worst = (from + 1..to).max_by(|one, other| off(*one).total_cmp(&off(*other)));
-        if let Some(row) = worst.filter(|row| off(*row) > STRAIGHT) {
+        let worst = (from + 1..to).max_by(|a, b| off(*a).total_cmp(&off(*b)));
+        if let Some(row) = worst.filter(|row| off(*row) > STRAIGHT_TOLERANCE_RAD) {
             kept[row] = true;
             open.extend([(from, row), (row, to)]);
         }
     }
-    let only = |all: &[f64]| all.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect();
-    Polyline::new(only(times), only(values)).unwrap_or_else(|_| signal.clone())
+    let kept_values = |all: &[f64]| all.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect();
+    Polyline::new(kept_values(times), kept_values(values)).unwrap_or_else(|_| signal.clone())
 }
 
 impl ShipMixture {
-    /// Replays the rudder of a record and holds the prediction against it; the ship has to be of its scale.
+    /// Replays the rudder of a record and compares the prediction with it; the ship must be of its scale.
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
-    /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
-    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is the one that was taken
-    /// out of the positions of the record ([`without_current`](turn::without_current)). `None` where the record has too
-    /// few headings at its beginning.
+    /// of a helm that reverses the rudder at the recorded headings, because a replayed rudder does not follow the
+    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is that removed from the
+    /// positions of the record ([`without_current`](turn::without_current)). `None` where the record has too few
+    /// headings at its beginning.
     pub fn replay(
         &self,
         trial: &Trial,
@@ -124,10 +123,10 @@ impl ShipMixture {
             let mut ship = ships.draw(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
-            let doubt = if sources.is_empty() { 0.0 } else { 1.0 };
-            ship.yaw_rate = rate.0 + doubt * rate.1 * of_rate;
+            let noise_factor = if sources.is_empty() { 0.0 } else { 1.0 };
+            ship.yaw_rate = rate.0 + noise_factor * rate.1 * of_rate;
             let mut passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, self.timescale()).ok()?;
-            passage.turn_about(first.0 + doubt * first.1 * of_heading);
+            passage.turn_about(first.0 + noise_factor * first.1 * of_heading);
             Some((passage, rng))
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
@@ -147,11 +146,11 @@ impl ShipMixture {
         enough(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| lost(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-        let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|own| own[row]).collect::<Vec<_>>()));
+        let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>()));
         let heading = Bands { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
-        let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
+        let square: f64 = measured.iter().zip(&heading.most_probable).map(|(x, y)| (x - y).powi(2)).sum();
         let (figures, tracks) = match Measured::of(trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => (ships.zig_zag(trial, &zigzag, draws)?, None),
             _ => turns(trial, &most_probable, &made, self.timescale(), current),
@@ -170,7 +169,7 @@ impl ShipMixture {
         }))
     }
 
-    /// The same ships in the mean wind of a record, where it was measured; structures know nothing of it.
+    /// The same ships in the mean wind of a record, where it was measured; it acts on hulls only.
     fn in_wind_of(&self, trial: &Trial) -> Self {
         let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
         let mut ships = self.clone();
@@ -183,7 +182,7 @@ impl ShipMixture {
         ships
     }
 
-    /// Overshoots, times and period of a measured zig-zag, steered anew.
+    /// Overshoots, times and period of a measured zig-zag, compared with its simulation.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
         let Some(steered) = SteeredZigZag::of(measured, self.first().approach_yaw_rate_rad_s) else {
             return Ok(ByName::new());
@@ -194,18 +193,18 @@ impl ShipMixture {
         Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
     }
 
-    /// A figure of a measured zig-zag. V times the time of the initial turning is its way where the ship has no speed
-    /// of her own, because hers is told so, too.
+    /// A figure of a measured zig-zag. For a model without speed the distance of the initial turning is V times its
+    /// time, in the record as in the prediction.
     pub(crate) fn shown(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
-        let own = self.particulars();
+        let particulars = self.particulars();
         let has_way = !self.first().hulls.is_empty();
-        let stand_in = trial.particulars().or(own).filter(|_| !has_way);
-        helm_replay::shown(trial, measured, name, own.map(|own| own.length), stand_in)
+        let stand_in = trial.particulars().or(particulars).filter(|_| !has_way);
+        helm_replay::shown(trial, measured, name, particulars.map(|ship| ship.length), stand_in)
     }
 
-    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, as this ship explains them: a
-    /// straight line through what the readings of the beginning are away from her, when she begins on heading 0 without
-    /// a yaw rate. `None` where the record has too few headings at its beginning.
+    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, from this ship: a straight line
+    /// through the differences between the first readings and her replay from heading 0 without a yaw rate. `None`
+    /// where the record has too few headings at its beginning.
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale());
@@ -216,7 +215,7 @@ impl ShipMixture {
         };
         let rows: Vec<(f64, f64)> = trial.observed_rows().map(read).collect();
         let count = rows.iter().take_while(|(time, _)| *time <= BEGINNING * self.timescale()).count();
-        let line = StraightLine::through(rows.into_iter().take(count.max(FEWEST)));
+        let line = StraightLine::through(rows.into_iter().take(count.max(MIN_READINGS)));
         Ok(line.map(|line| [line.at_zero(), (line.slope, line.slope_sd())]))
     }
 }
@@ -224,14 +223,14 @@ impl ShipMixture {
 /// Figures by name.
 type ByName = IndexMap<String, Compared>;
 
-/// Figures that were measured, beside their draws, each read with the error that the record gives its figure.
+/// Comparison of measured figures with their draws, each draw with the error of the measured figure.
 fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
     let figure = |(number, &name): (usize, &&'static str)| {
         let Quantity { value: measured, sd, .. } = shown(name)?;
         let mut rng = StreamKey::default().indexed(Purpose::Heading, 1 + number as u32);
         let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
-        let interval = PredictionInterval::of(&mut values).filter(|own| figures::is_sound(name, own))?;
+        let interval = PredictionInterval::of(&mut values).filter(|interval| figures::is_sound(name, interval))?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
     };
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
@@ -239,7 +238,7 @@ fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByNa
 
 /// Figures of a record that is a turn, and its tracks.
 ///
-/// The doubt about a current that was taken out of its track is one of the prediction.
+/// The uncertainty of a removed current is included in the prediction.
 fn turns(
     trial: &Trial,
     most_probable: &SimulatedManoeuvre,
@@ -251,11 +250,11 @@ fn turns(
     let turn = HeldTurn::of(trial).zip(turn::recorded(trial, timescale, length));
     let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
     let measured = turn.figures(&record);
-    let doubtful = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
+    let drawn_figures = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
         None => turn.figures(passage),
         Some(current) => turn.figures(&turn::in_doubt(passage, &current, number as u64)),
     };
-    let drawn: Vec<Figures> = made.iter().enumerate().map(doubtful).collect();
+    let drawn: Vec<Figures> = made.iter().enumerate().map(drawn_figures).collect();
     let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare));
     (figures, TurnTracks::of(&turn, &record, most_probable, made))
 }
@@ -271,7 +270,7 @@ mod tests {
     /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
         let records = 40;
         for number in 0..records {
@@ -290,7 +289,7 @@ mod tests {
     /// A helm that is late reverses the rudder at 11.5° in a 10/10 zig-zag; the initial turning ends at 10°.
     #[test]
     fn the_initial_turning_ends_at_the_nominal_heading() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let trial = testing::record(&mixture, "zig-zag:10/11.5", 0, from_deg(0.001), 0.5);
         let replayed = mixture.replay(&trial, 100, None).expect("it sails").expect("it begins");
         let [turning, second] = ["initial_turning_time_s", "second_execute_s"].map(|name| &replayed.figures[name]);
@@ -307,14 +306,14 @@ mod tests {
         let signal = Polyline::new(times.clone(), times.iter().map(|t| angle(*t)).collect()).expect("increasing");
         let thin = thinned(&signal);
         assert!(thin.times().len() <= 8, "{:?}", thin.times());
-        assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT));
+        assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT_TOLERANCE_RAD));
     }
 
     /// A hull meets the mean wind of a record from off the course of the approach, a structure meets none, and in a
     /// calm the wind does nothing.
     #[test]
     fn hulls_meet_the_wind_of_a_record() {
-        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::known() };
+        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };
         let wind = [(Channel::WindTrueSpeed, 9.0), (Channel::WindTrueFrom, 0.5), (Channel::Speed, 6.0)];
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
@@ -324,13 +323,13 @@ mod tests {
         let of = |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw(1, &UncertaintySource::ALL);
         let met = of(known.clone()).disturbances.wind.expect("a wind");
         assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
-        assert_eq!(of(testing::known()).disturbances.wind, None);
+        assert_eq!(of(testing::identified_ship()).disturbances.wind, None);
         assert_eq!(of(known.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }
 
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
-        let mixture = testing::mixture(testing::known());
+        let mixture = testing::mixture(testing::identified_ship());
         let trial = testing::record(&mixture, "turning-circle:-15", 3, from_deg(0.1), 1.0);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&String> = replayed.figures.keys().collect();

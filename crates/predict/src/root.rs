@@ -1,10 +1,11 @@
-//! The square root of a covariance.
+//! Square root of a covariance, by its eigenvalues.
 
 use nalgebra::DMatrix;
 
 use crate::error::PredictError;
 
-/// The square root of a covariance: U √Λ of its eigenvalues, which may be zero but for rounding.
+/// The square root of a covariance: U √Λ of its eigenvalues, of which small negative values count as zero. Fails with
+/// [`PredictError::Covariance`] for a matrix that is not a covariance.
 pub(crate) fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     let count = covariance.len();
     if count == 0 {
@@ -14,7 +15,7 @@ pub(crate) fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictEr
         return Err(PredictError::Covariance);
     }
     let matrix = DMatrix::from_fn(count, count, |i, j| covariance[i][j]);
-    // Parameters have units of their own: what counts are correlations.
+    // Parameters have different units, so the test uses correlations.
     let sd: Vec<f64> = (0..count).map(|k| matrix[(k, k)].max(0.0).sqrt()).collect();
     let scale = |k: usize| if sd[k] > 0.0 { sd[k] } else { 1.0 };
     let correlation =

@@ -1,4 +1,4 @@
-//! One drawn ship through one manoeuvre.
+//! Simulation of one manoeuvre of a drawn ship.
 
 use std::sync::Arc;
 
@@ -14,19 +14,19 @@ use trial::{Channel, Trial};
 use crate::mixture::DrawnShip;
 
 /// Rows per time of the ship.
-const ROWS: f64 = 20.0;
+const ROWS_PER_TIMESCALE: f64 = 20.0;
 
 /// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the
 /// response.
-const STEPS: f64 = 6.0;
+const STEPS_PER_TIME_CONSTANT: f64 = 6.0;
 
 /// Shortest step, s.
-const SHORTEST_STEP: f64 = 1e-3;
+const MIN_STEP_S: f64 = 1e-3;
 
-/// Longest wait for a heading, in times of the ship: a circle of 540° with very little rudder.
-const LONGEST_WAIT: f64 = 500.0;
+/// Limit on the wait for a heading, in times of the ship: a circle of 540° with very little rudder.
+const MAX_WAIT_TIMESCALES: f64 = 500.0;
 
-/// What a ship did; time in s from the first execute, angles in rad.
+/// Motion of a ship; time in s from the first execute, angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedManoeuvre {
     /// Time between rows, s.
@@ -40,7 +40,7 @@ pub struct SimulatedManoeuvre {
     /// Orders of the helm; not written to a file.
     #[serde(skip)]
     pub executes: Vec<HelmOrder>,
-    /// The way over ground; none where nothing is known of speed and drift.
+    /// Velocity and track; none for a model without speed and drift.
     pub way: Option<PlanarMotion>,
 }
 
@@ -51,12 +51,12 @@ pub struct PlanarMotion {
     pub length: f64,
     /// Surge, and sway to starboard, m/s.
     pub velocity: Vec<[f64; 2]>,
-    /// North and east, m, 0 at the first execute; north is the course of the approach. Empty where drift is not known.
+    /// North and east, m, 0 at the first execute; north is the course of the approach. Empty for a model without drift.
     pub track: Vec<[f64; 2]>,
 }
 
 impl PlanarMotion {
-    /// The way of a ship of this length, m, where her record has speed and sway.
+    /// Velocity and track of a ship of this length, m, where her record has speed and sway.
     fn of(length: f64, trial: &Trial, heading: &[f64]) -> Option<Self> {
         let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
         let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
@@ -68,15 +68,15 @@ impl PlanarMotion {
 
 /// Time between rows, s.
 pub(crate) fn period(timescale: f64) -> f64 {
-    (timescale / ROWS).clamp(2e-3, 900.0)
+    (timescale / ROWS_PER_TIMESCALE).clamp(2e-3, 900.0)
 }
 
-/// Longest cell of the weather, s, and its share of a correlation time: what turns a ship is then within 2 % of the
-/// process.
-const LONGEST_CELL: f64 = 60.0;
-const SHARE_OF_CORRELATION: f64 = 0.5;
+/// Limits on the time step of the weather: in s, and relative to its correlation time, so that the moment is within 2 %
+/// of the process.
+const MAX_CELL_S: f64 = 60.0;
+const MAX_CORRELATION_SHARE: f64 = 0.5;
 
-/// What is steered.
+/// The simulated vessel of a drawn ship.
 fn vessel(ship: &DrawnShip) -> Vessel {
     match &ship.hull {
         Some(hull) => Vessel::hull(Arc::new(hull.clone()))
@@ -86,12 +86,12 @@ fn vessel(ship: &DrawnShip) -> Vessel {
 }
 
 impl SimulatedManoeuvre {
-    /// North and east, m; `None` where nothing is known of drift.
+    /// North and east, m; `None` for a model without drift.
     pub fn track(&self) -> Option<&[[f64; 2]]> {
         self.way.as_ref().map(|way| way.track.as_slice()).filter(|track| !track.is_empty())
     }
 
-    /// A series on the rows of the passage at a time, s.
+    /// Value of a series on the rows at a time, s, linear between rows.
     pub(crate) fn at(&self, values: &[f64], time: f64) -> f64 {
         let place = (time / self.period).clamp(0.0, (values.len() - 1) as f64);
         let (low, share) = (place.floor() as usize, place.fract());
@@ -99,7 +99,7 @@ impl SimulatedManoeuvre {
         values[low] + share * (values[high] - values[low])
     }
 
-    /// Way through the water until `time` s, m; `None` where nothing is known of the speed.
+    /// Distance through the water until `time` s, m; `None` for a model without speed.
     pub fn distance(&self, time: f64) -> Option<f64> {
         let velocity = &self.way.as_ref()?.velocity;
         let speed = |row: usize| velocity[row][0].hypot(velocity[row][1]);
@@ -110,8 +110,8 @@ impl SimulatedManoeuvre {
 
     /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
     ///
-    /// Fails where the ship does not reach a heading that the helm waits for, turns for ever, or becomes so fast that
-    /// the equations of a hull are not those of a ship.
+    /// Fails where the ship does not reach a heading that the helm waits for, turns for ever, or exceeds the speeds for
+    /// which the equations of a hull are valid.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
@@ -119,16 +119,16 @@ impl SimulatedManoeuvre {
         }
         simulation.approach.yaw_rate = ship.yaw_rate;
         simulation.disturbances = ship.disturbances;
-        // As fine as the rows, because a ship does not answer to what is quicker.
+        // As fine as the rows, because a ship does not respond to faster changes.
         let correlation = ship.disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
-        simulation.weather_grid = period(timescale).min(SHARE_OF_CORRELATION * correlation).min(LONGEST_CELL);
+        simulation.weather_grid = period(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
             None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),
         };
         if let Some(shortest) = shortest {
-            let step = (shortest / STEPS).min(period(timescale));
-            simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
+            let step = (shortest / STEPS_PER_TIME_CONSTANT).min(period(timescale));
+            simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
         let passage = Self::of(simulation, &ship.key, timescale)?;
         match ship.hull.as_ref().and_then(|hull| passage.runs_away(FASTEST * hull.speed)) {
@@ -141,26 +141,25 @@ impl SimulatedManoeuvre {
         }
     }
 
-    /// First row in which the ship is faster than any, m/s.
+    /// First row in which the ship exceeds the speed `fastest`, m/s.
     fn runs_away(&self, fastest: f64) -> Option<usize> {
         self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
-    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the
-    /// ship, s.
+    /// Motion of any simulated ship; sampling period and longest wait follow from `timescale`, a time of the ship, s.
     ///
     /// Fails as the simulation does.
     pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
         simulation.recording = Recording::every(period(timescale));
-        simulation.longest_wait = LONGEST_WAIT * timescale;
+        simulation.longest_wait = MAX_WAIT_TIMESCALES * timescale;
         let Simulated { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
-        let length = simulation.vessel.particulars().map(|own| own.length);
+        let length = simulation.vessel.particulars().map(|particulars| particulars.length);
         let way = length.and_then(|length| PlanarMotion::of(length, &trial, &heading));
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 
-    /// The same on another course: every heading is larger by `angle` (rad).
+    /// Rotates the motion to another course: every heading increases by `angle` (rad).
     pub fn turn_about(&mut self, angle: f64) {
         self.heading.iter_mut().for_each(|heading| *heading += angle);
         let (sin, cos) = angle.sin_cos();
@@ -170,7 +169,7 @@ impl SimulatedManoeuvre {
         }
     }
 
-    /// The same without what comes after `time` s.
+    /// The same motion up to `time` s.
     pub fn until(&self, time: f64) -> Self {
         let rows = (time / self.period).floor() as usize + 1;
         let mut cut = self.clone();

@@ -1,20 +1,19 @@
-//! The manoeuvres that are predicted: those of the IMO criteria, and what the helm does in one whose ends are left
-//! open.
+//! The predicted manoeuvres: those of the IMO criteria, and the end of a manoeuvre that does not specify it.
 
 use ship::angle::from_deg;
 use simulate::Manoeuvre;
 
-/// Executes of a predicted zig-zag; four overshoots are whole.
+/// Executes of a predicted zig-zag, which give four complete overshoots.
 pub(crate) const EXECUTES: usize = 6;
 
 /// Change of heading of a predicted turning circle, rad: a little more than the 540° after which speed, drift and pivot
 /// of a steady turn can be read.
 const TURN: f64 = 3.05 * std::f64::consts::PI;
 
-/// Times of the ship that a turn of a pull-out is held, and that is waited after it.
+/// Duration of the turn of a pull-out, and of the time after it, in times of the ship.
 const PULL_OUT: f64 = 40.0;
 
-/// Times of the ship after the last order of a Williamson turn.
+/// Duration after the last order of a Williamson turn, in times of the ship.
 const AFTER_WILLIAMSON: f64 = 20.0;
 
 /// The manoeuvres of the IMO criteria, to starboard.
@@ -23,10 +22,10 @@ pub fn of_imo() -> Vec<Manoeuvre> {
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// A manoeuvre as it was asked for with what ends it, for a ship with this time, s; `None` for a spiral, which is a
-/// curve of steady turns.
-pub fn steered(asked: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
-    let mut manoeuvre = asked.clone();
+/// The manoeuvre with its end, for a ship with this timescale, s; `None` for a spiral, which is a curve of steady
+/// turns.
+pub fn steered(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
+    let mut manoeuvre = requested.clone();
     match &mut manoeuvre {
         Manoeuvre::ZigZag { executes, .. } => *executes = Some(EXECUTES),
         Manoeuvre::TurningCircle { heading_change, .. } => *heading_change = Some(TURN),

@@ -1,5 +1,5 @@
-//! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship
-//! that is not stable on a straight course.
+//! Steady turns: the yaw rate of every rudder angle, on stable and unstable branches, and the loop of a course-unstable
+//! ship. Source of the curve: the reverse spiral of Bech (1968), The reverse spiral test as applied to large ships.
 
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -10,7 +10,7 @@ use crate::mixture::DrawnShip;
 /// Points to either side of a straight course.
 const POINTS: usize = 24;
 
-/// Doublings in which a rate is looked for that needs more than the largest rudder, and halvings to come near to it.
+/// Doublings of the search for a rate beyond the largest rudder, and halvings to approach it.
 const DOUBLINGS: usize = 12;
 
 /// Rudder (rad) over yaw rate (rad/s) of steady turns, in the order of the yaw rate.
@@ -18,7 +18,7 @@ const DOUBLINGS: usize = 12;
 pub struct SteadyCurve {
     /// Yaw rates, rad/s.
     pub yaw_rate: Vec<f64>,
-    /// The rudder each needs, rad.
+    /// Rudder of each rate, rad.
     pub rudder: Vec<f64>,
 }
 
@@ -33,7 +33,7 @@ pub struct Loop {
 
 impl SteadyCurve {
     /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates
-    /// that no rudder makes are left out.
+    /// without a rudder are left out.
     pub fn of(ship: &DrawnShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull.steady_rudder(rate),
@@ -87,7 +87,7 @@ impl SteadyCurve {
         if rudder < 0.0 { rates.next() } else { rates.next_back() }
     }
 
-    /// The loop, where there is one.
+    /// The loop of a course-unstable ship; `None` for a stable ship.
     pub fn instability(&self) -> Option<Loop> {
         let falls = |pair: &[f64]| pair[1] < pair[0];
         let from = self.rudder.windows(2).position(falls)?;
@@ -105,8 +105,8 @@ impl SteadyCurve {
         Figures::from([
             ("rate_starboard_deg_s", self.outer(rudder).map(to_deg)),
             ("rate_port_deg_s", self.outer(-rudder).map(to_deg)),
-            ("loop_width_deg", of_loop(|found| found.width)),
-            ("loop_height_deg_s", of_loop(|found| found.height)),
+            ("loop_width_deg", of_loop(|unstable| unstable.width)),
+            ("loop_height_deg_s", of_loop(|unstable| unstable.height)),
         ])
     }
 }
@@ -129,11 +129,11 @@ mod tests {
     #[test]
     fn the_loop_of_an_unstable_ship_is_that_of_its_cubic() {
         let curve = curve(-0.02);
-        let found = curve.instability().expect("unstable");
+        let unstable = curve.instability().expect("unstable");
         let rate = (0.02f64 / 900.0).sqrt();
         let width = 2.0 * (2.0 / 3.0) * 0.02 / 6e-3 * rate;
-        assert!((found.width / width - 1.0).abs() < 0.02, "{} {width}", found.width);
-        assert!((found.height / (2.0 * (0.02f64 / 300.0).sqrt()) - 1.0).abs() < 0.02, "{}", found.height);
+        assert!((unstable.width / width - 1.0).abs() < 0.02, "{} {width}", unstable.width);
+        assert!((unstable.height / (2.0 * (0.02f64 / 300.0).sqrt()) - 1.0).abs() < 0.02, "{}", unstable.height);
     }
 
     #[test]

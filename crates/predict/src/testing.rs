@@ -1,4 +1,4 @@
-//! A ship that tests know.
+//! Synthetic ships and records for tests.
 
 use document::{
     HeadingNoise, IdentifiedShip, KnownGear, RandomMoment, RandomYawMoment, StoredCoefficient, StoredEffect,
@@ -15,7 +15,7 @@ use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::standard;
 
 /// A ship of K = 0.1 1/s and T = 16.3 s whose damping grows with the cube of its yaw rate, 75 m long at 6 m/s.
-pub(crate) fn known() -> IdentifiedShip {
+pub(crate) fn identified_ship() -> IdentifiedShip {
     let parameters = vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 60.0];
     let sd = [2e-3, 1.5e-4, 1e-3, 6.0];
     let correlation = |i: usize, j: usize| match (i, j) {
@@ -46,22 +46,22 @@ pub(crate) fn known() -> IdentifiedShip {
     }
 }
 
-/// A hull of a form as it is expected of the ship of [`known`], with a tenth of the expected deviations.
+/// A hull of a form as it is expected of the ship of [`identified_ship`], with a tenth of the expected deviations.
 pub(crate) fn hull(form: &str) -> StoredHull {
     let (length_m, speed_m_s) = (75.0, 6.0);
     let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
     let forms = HullForm::of_ship(Some(&particulars)).into_iter();
-    let own = forms.filter(|own| own.as_str() == form).flat_map(|own| own.coefficients().to_vec());
-    let coefficients: Vec<StoredCoefficient> = own
-        .map(|own| StoredCoefficient {
-            key: own.key.into(),
-            symbol: own.symbol.into(),
-            value: own.mean,
-            expected: own.mean,
-            expected_sd: own.sd,
+    let priors = forms.filter(|candidate| candidate.as_str() == form).flat_map(|form| form.coefficients().to_vec());
+    let coefficients: Vec<StoredCoefficient> = priors
+        .map(|prior| StoredCoefficient {
+            key: prior.key.into(),
+            symbol: prior.symbol.into(),
+            value: prior.mean,
+            expected: prior.mean,
+            expected_sd: prior.sd,
         })
         .collect();
-    let variance = |own: &StoredCoefficient| (0.1 * own.expected_sd).powi(2);
+    let variance = |coefficient: &StoredCoefficient| (0.1 * coefficient.expected_sd).powi(2);
     let row =
         |i: usize| (0..coefficients.len()).map(|j| if i == j { variance(&coefficients[i]) } else { 0.0 }).collect();
     StoredHull {
@@ -80,12 +80,12 @@ pub(crate) fn hull(form: &str) -> StoredHull {
 }
 
 /// A hull taken from another one to the same loading, with deviations so many times those of the other.
-pub(crate) fn at_same_loading(own: &StoredHull, factor: f64) -> StoredHull {
-    let form = own.form().expect("made up");
-    let size = own.coefficients.len();
-    let covariance = DMatrix::from_fn(size, size, |i, j| factor * factor * own.covariance[i][j]);
-    let ship = HullParticulars { length: own.length_m, speed: own.speed_m_s, ..HullParticulars::default() };
-    own.at_loading(&ship, form.coefficients(), [covariance, DMatrix::identity(size, size)])
+pub(crate) fn at_same_loading(hull: &StoredHull, factor: f64) -> StoredHull {
+    let form = hull.form().expect("made up");
+    let size = hull.coefficients.len();
+    let covariance = DMatrix::from_fn(size, size, |i, j| factor * factor * hull.covariance[i][j]);
+    let ship = HullParticulars { length: hull.length_m, speed: hull.speed_m_s, ..HullParticulars::default() };
+    hull.at_loading(&ship, form.coefficients(), [covariance, DMatrix::identity(size, size)])
 }
 
 /// The ships of what is known.
@@ -97,8 +97,8 @@ pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
 /// probable one in a calm.
 pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
     let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
-    let asked: Manoeuvre = kind.parse().expect("known");
-    let manoeuvre = standard::steered(&asked, mixture.timescale()).expect("steered");
+    let requested: Manoeuvre = kind.parse().expect("known");
+    let manoeuvre = standard::steered(&requested, mixture.timescale()).expect("steered");
     let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
     simulation.gear = ship.gear;
     simulation.disturbances = ship.disturbances;

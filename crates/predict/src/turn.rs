@@ -1,5 +1,4 @@
-//! A rudder that is put over and held, as a record shows it: its figures, and those of drawn ships under the same
-//! rudder.
+//! A recorded turn with a held rudder: its figures, and those of drawn ships under the same rudder.
 
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -11,35 +10,35 @@ use trial::{Channel, Trial, ZigZag};
 use crate::figures::{self, Figures};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
-/// Share of the largest angle above which a rudder is held.
-const HELD: f64 = 0.8;
+/// Rudder angle, relative to the largest, above which the rudder counts as held.
+const MIN_HELD: f64 = 0.8;
 
-/// How much longer a rudder is held for ships that turn more slowly than that of the record, as a share of its time.
-const LONGER: f64 = 2.0;
+/// Extension of the held rudder for ships that turn more slowly than that of the record, relative to its time.
+const EXTENSION: f64 = 2.0;
 
-/// Change of heading after which a track is not drawn on, rad: one and a half circles.
-const LONGEST_TRACK: f64 = 3.0 * std::f64::consts::PI;
+/// Change of heading at which a track ends, rad: one and a half circles.
+const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
 
-/// Times of a ship that a record of unknown length and speed is taken for.
-const ROWS: f64 = 40.0;
+/// Assumed duration of a record of unknown length and speed, in times of the ship.
+const DEFAULT_TIMESCALES: f64 = 40.0;
 
 /// Drawn ships whose tracks are kept.
 const DRAWN_TRACKS: usize = 40;
 
-/// The uniform current that a circle of 720° or more shows; `None` for any other record, and without positions.
+/// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
 pub fn current_of(trial: &Trial) -> Option<Current> {
     let turn = HeldTurn::of(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
-    let is_there = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
+    let has_position = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
     let is_turning = |row: &usize| (turn.execute..=turn.until).contains(&trial.time()[*row]);
-    let rows: Vec<usize> = trial.observed_rows().filter(is_there).filter(is_turning).collect();
-    let of = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
+    let rows: Vec<usize> = trial.observed_rows().filter(has_position).filter(is_turning).collect();
+    let at_rows = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
-    simulate::motion::current(&of(trial.time()), &of(trial.heading()), &track)
+    simulate::motion::current(&at_rows(trial.time()), &at_rows(trial.heading()), &track)
 }
 
-/// A record whose positions no current has moved, and the current that was taken out: the one that is given, else the
-/// one that the record shows, where it shows one.
+/// The record with the current removed from its positions, and that current: the given current, or else that of the
+/// record, if it determines one.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
     match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
         Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
@@ -47,7 +46,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
     }
 }
 
-/// A drawn ship with what is not known of a current, from her execute on.
+/// The motion of a drawn ship with a random error of the removed current, from the first row on.
 pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
@@ -64,11 +63,11 @@ pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: 
 pub struct HeldTurn {
     /// First row of the record.
     start: f64,
-    /// When it leaves its beginning.
+    /// Time of the execute.
     pub execute: f64,
-    /// Until when it is held.
+    /// End of the held rudder.
     pub until: f64,
-    /// Side it is put to, ±1.
+    /// Side of the rudder, ±1.
     pub side: f64,
     /// Largest rudder angle to that side, rad.
     pub rudder: f64,
@@ -81,11 +80,11 @@ impl HeldTurn {
     pub fn of(trial: &Trial) -> Option<Self> {
         let (times, values) = (trial.rudder_signal().times(), trial.rudder_signal().values());
         let away = |value: f64| value - values[0];
-        let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
+        let largest = values.iter().copied().map(away).max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         let side = largest.signum();
         let share = |row: usize| away(values[row]) * side / largest.abs();
-        let mut first = (0..values.len()).find(|&row| share(row) > HELD)?;
-        let until = (first..values.len()).find(|&row| share(row) < HELD).map_or(values.len() - 1, |row| row - 1);
+        let mut first = (0..values.len()).find(|&row| share(row) > MIN_HELD)?;
+        let until = (first..values.len()).find(|&row| share(row) < MIN_HELD).map_or(values.len() - 1, |row| row - 1);
         // Back along the ramp.
         while first > 0 && share(first - 1) > 0.01 {
             first -= 1;
@@ -100,17 +99,17 @@ impl HeldTurn {
         })
     }
 
-    /// From the first row to the execute, s.
+    /// Duration from the first row to the execute, s.
     pub(crate) fn approach(&self) -> f64 {
         self.execute - self.start
     }
 
-    /// Figures of a turn that goes on as long as that of the record.
+    /// Figures of a turn up to the end of that of the record.
     pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         self.whole_figures(&passage.until(self.until - self.start))
     }
 
-    /// Figures of a turn that goes on to the end; its clock begins with the record.
+    /// Figures of a turn up to its end; its clock starts with the record.
     pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         let first = (self.approach() / passage.period).round() as usize;
         let begin = passage.at(&passage.heading, self.approach());
@@ -132,15 +131,15 @@ impl HeldTurn {
             let [north, east] = [0, 1].map(|axis| (track[row][axis] - begin[axis]) / length);
             [north * cos + east * sin, east * cos - north * sin]
         };
-        let is_shown = |row: &usize| (passage.heading[*row] - course).abs() < LONGEST_TRACK;
+        let is_shown = |row: &usize| (passage.heading[*row] - course).abs() < MAX_TRACK_RAD;
         Some((first..track.len()).take_while(is_shown).map(place).collect())
     }
 
-    /// The rudder of the record up to the end of the turn, and held on from there.
+    /// The rudder of the record up to the end of the turn, and held from there.
     pub(crate) fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
-        times.push(self.until + LONGER * (self.until - self.execute));
+        times.push(self.until + EXTENSION * (self.until - self.execute));
         values.push(*values.last()?);
         Polyline::new(times, values).ok()
     }
@@ -167,7 +166,7 @@ impl MeasuredCircle {
         let (trial, _) = without_current(trial.clone(), None);
         let turn = HeldTurn::of(&trial)?;
         let ship = trial.particulars();
-        let timescale = ship.map_or_else(|| trial.duration() / ROWS, |ship| ship.length / ship.speed);
+        let timescale = ship.map_or_else(|| trial.duration() / DEFAULT_TIMESCALES, |ship| ship.length / ship.speed);
         let passage = recorded(&trial, timescale, ship.map(|ship| ship.length))?;
         let figures = turn.figures(&passage);
         figures.get("time_to_90_s").copied().flatten()?;
@@ -180,16 +179,16 @@ impl MeasuredCircle {
 /// on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnTracks {
-    /// As it was recorded.
+    /// Recorded track.
     pub measured: Vec<[f64; 2]>,
-    /// Of the most probable ship.
+    /// Track of the most probable ship.
     pub most_probable: Vec<[f64; 2]>,
-    /// Of some drawn ships.
+    /// Tracks of some drawn ships.
     pub drawn: Vec<Vec<[f64; 2]>>,
 }
 
 impl TurnTracks {
-    /// Those of a recorded turn; `None` without positions, and where no drift is predicted.
+    /// Tracks of a recorded turn; `None` without positions, and for a model without drift.
     pub(crate) fn of(
         turn: &HeldTurn,
         record: &SimulatedManoeuvre,
@@ -204,8 +203,8 @@ impl TurnTracks {
     }
 }
 
-/// A record on rows of a time of the ship, s; with its way where it has a track and the length is known, m. `None`
-/// without headings.
+/// A record resampled to the rows of a simulation with this timescale, s; with velocity and track where it has
+/// positions and a length, m. `None` without headings.
 pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
     let period = simulated_manoeuvre::period(timescale);
     let count = (trial.duration() / period) as usize + 1;
@@ -218,11 +217,11 @@ pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Op
     };
     let heading = on_rows(&mut trial.observed_rows(), trial.heading())?;
     let channel = |channel: Channel| on_rows(&mut (0..trial.len()), trial.channel(channel)?);
-    let pairs = |one: Vec<f64>, other: Vec<f64>| one.into_iter().zip(other).map(|(a, b)| [a, b]).collect();
+    let pairs = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
     let way = || {
         let (length, track) = (length?, pairs(channel(Channel::North)?, channel(Channel::East)?));
         let [surge, sway] =
-            [Channel::Surge, Channel::Sway].map(|own| channel(own).unwrap_or_else(|| vec![f64::NAN; count]));
+            [Channel::Surge, Channel::Sway].map(|axis| channel(axis).unwrap_or_else(|| vec![f64::NAN; count]));
         Some(PlanarMotion { length, velocity: pairs(surge, sway), track })
     };
     let slope = |row: usize| match count {
@@ -262,6 +261,6 @@ mod tests {
         let row = |angle: f64| track[((angle / rate + 1.0) / record.period).round() as usize];
         let (quarter, half) = (row(std::f64::consts::FRAC_PI_2), row(std::f64::consts::PI));
         assert!((quarter[0] - 5.1).abs() < 0.03 && (half[1] - 10.0).abs() < 0.03, "{quarter:?} {half:?}");
-        assert!((track.len() as f64 * record.period * rate - LONGEST_TRACK).abs() < 0.1);
+        assert!((track.len() as f64 * record.period * rate - MAX_TRACK_RAD).abs() < 0.1);
     }
 }

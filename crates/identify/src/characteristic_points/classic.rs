@@ -1,20 +1,21 @@
-//! K and δ_r between instants with r = 0, then T from such an instant to a passage of the base course.
+//! The traditional solution: K and δ_r between instants with r = 0, then T from such an instant to a passage of the
+//! base course. Source: Nomoto (1960), see the module above.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
-use super::found::{Analysed, PointsFit};
 use super::points::{Point, Points};
+use super::points_fit::{AnalysedTrial, PointsFit};
 use crate::error::IdentifyError;
 use estimation::column::extremes;
 use estimation::least_squares::LeastSquares;
 
-/// The points one trial contributes.
-struct Used<'a> {
+/// The points of one trial that enter the solution.
+struct SelectedPoints<'a> {
     still: &'a [Point],
     crossings: Vec<Point>,
 }
 
-/// From one point to the next: ψ(t) − ψ(s) + T [r(t) − r(s)] = K (rudder + δ_r duration).
+/// Differences between two points: ψ(t) − ψ(s) + T [r(t) − r(s)] = K (rudder + δ_r duration).
 #[derive(Debug, Clone, Copy)]
 struct Interval {
     duration: f64,
@@ -52,7 +53,7 @@ struct GainFit {
 
 /// The traditional method on all points, or on the first three peaks of every trial.
 pub(super) fn identify(
-    trials: &[Analysed],
+    trials: &[AnalysedTrial],
     bias: Option<f64>,
     condition_limit: f64,
     three_peaks: bool,
@@ -69,13 +70,13 @@ pub(super) fn identify(
         .iter()
         .flat_map(|trial| trial.crossings.iter().filter_map(|crossing| to_crossing(trial.still, crossing)))
         .collect();
-    let gain = GainFit::of(&swings, bias, condition_limit)?;
+    let gain = GainFit::from_swings(&swings, bias, condition_limit)?;
     let flat: Vec<Interval> = swings.into_iter().flatten().collect();
     let squares: f64 = rises.iter().map(|rise| rise.rate * rise.rate).sum();
     if rises.is_empty() {
-        return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, found: 0 });
+        return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, count: 0 });
     }
-    // The ratio of sums is steadier than the mean of ratios: it weighs by r².
+    // The ratio of sums has less variance than the mean of ratios: it weighs by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
     Ok(PointsFit {
         parameters: [gain.gain, gain.gain_bias, time],
@@ -84,22 +85,22 @@ pub(super) fn identify(
     })
 }
 
-fn all(points: &Points) -> Used<'_> {
-    Used { still: &points.still, crossings: points.crossings.clone() }
+fn all(points: &Points) -> SelectedPoints<'_> {
+    SelectedPoints { still: &points.still, crossings: points.crossings.clone() }
 }
 
-fn first_three_peaks(points: &Points) -> Result<Used<'_>, IdentifyError> {
+fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyError> {
     let extrema = points.extrema();
     let still = extrema.get(..3).ok_or(IdentifyError::TooFewPoints {
         what: "heading extrema",
         needed: 3,
-        found: extrema.len(),
+        count: extrema.len(),
     })?;
     let inside = |crossing: &&Point| crossing.time > still[0].time && crossing.time < still[2].time;
-    Ok(Used { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
+    Ok(SelectedPoints { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
 }
 
-/// From the last instant with r = 0 before a passage, or from the first after it where there is none before.
+/// Interval from the last instant with r = 0 before a passage, or from the first after it where there is none before.
 fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
     let after = still.partition_point(|point| point.time < crossing.time);
     let from = still.get(after.saturating_sub(1))?;
@@ -107,7 +108,7 @@ fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
 }
 
 impl GainFit {
-    fn of(swings: &[Vec<Interval>], bias: Option<f64>, condition_limit: f64) -> Result<Self, IdentifyError> {
+    fn from_swings(swings: &[Vec<Interval>], bias: Option<f64>, condition_limit: f64) -> Result<Self, IdentifyError> {
         let flat = || swings.iter().flatten();
         let count = flat().count();
         let needed = if bias.is_some() { 1 } else { 2 };
@@ -115,7 +116,7 @@ impl GainFit {
             return Err(IdentifyError::TooFewPoints {
                 what: "swings between instants without yaw rate",
                 needed,
-                found: count,
+                count,
             });
         }
         let rudder: Vec<f64> = flat().map(|swing| swing.rudder + bias.unwrap_or(0.0) * swing.duration).collect();
@@ -141,8 +142,8 @@ impl GainFit {
     }
 }
 
-/// Covariance of the solution when the errors belong to the points, so that successive differences share one:
-/// G Xᵀ Ω X G s² with Ω = tridiag(−1, 2, −1) in every trial and s² = rss / tr(M Ω), M the residual maker.
+/// Covariance of the solution for independent errors of the points, which correlate successive differences: G Xᵀ Ω X G
+/// s² with Ω = tridiag(−1, 2, −1) in every trial and s² = rss / tr(M Ω), M the residual maker.
 fn difference_covariance(
     design: &DMatrix<f64>,
     solution: &LeastSquares,
@@ -172,29 +173,28 @@ fn covariance(
     time: f64,
     squares: f64,
 ) -> Result<(Matrix3<f64>, f64), &'static str> {
-    let (of_gain, gain_freedom) = gain.covariance.ok_or("no more swings than unknowns")?;
+    let (gain_covariance, gain_freedom) = gain.covariance.ok_or("no more swings than unknowns")?;
     let time_freedom = rises.len() as f64 - 1.0;
     if time_freedom < 1.0 {
         return Err("a single passage of the base course");
     }
     let scatter: f64 = rises.iter().map(|rise| (rise.rate_moment(gain) - time * rise.rate).powi(2)).sum();
-    // T follows K and K δ_r through the right-hand side.
-    let follows = Vector2::new(
+    // Derivative of T with respect to (K, K δ_r), through the right-hand side.
+    let sensitivity = Vector2::new(
         rises.iter().map(|rise| rise.rate * rise.rudder).sum::<f64>() / squares,
         rises.iter().map(|rise| rise.rate * rise.duration).sum::<f64>() / squares,
     );
-    let shared = of_gain * follows;
-    let own = scatter / time_freedom / squares;
+    let cross = gain_covariance * sensitivity;
+    let scatter_variance = scatter / time_freedom / squares;
     let mut matrix = Matrix3::zeros();
-    matrix.fixed_view_mut::<2, 2>(0, 0).copy_from(&of_gain);
-    matrix.fixed_view_mut::<2, 1>(0, 2).copy_from(&shared);
-    matrix.fixed_view_mut::<1, 2>(2, 0).copy_from(&shared.transpose());
-    matrix[(2, 2)] = follows.dot(&shared) + own;
+    matrix.fixed_view_mut::<2, 2>(0, 0).copy_from(&gain_covariance);
+    matrix.fixed_view_mut::<2, 1>(0, 2).copy_from(&cross);
+    matrix.fixed_view_mut::<1, 2>(2, 0).copy_from(&cross.transpose());
+    matrix[(2, 2)] = sensitivity.dot(&cross) + scatter_variance;
     Ok((matrix, gain_freedom.min(time_freedom)))
 }
 
-/// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left
-/// out.
+/// Diagnostics: K and T by side, K without the first swing and the range of T; undefined figures are omitted.
 fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(&'static str, f64)> {
     let gain_of = |swings: &[Interval], chosen: &dyn Fn(&Interval) -> bool| {
         let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();
@@ -228,15 +228,15 @@ fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(
 mod tests {
     use super::*;
 
-    /// After the first swing the rudder is amidships: what the others say of K does not exist.
+    /// After the first swing the rudder is amidships: K of the later swings is undefined.
     #[test]
     fn swings_without_a_rudder_have_no_gain_of_their_own() {
         let swing = |rudder, heading| Interval { duration: 20.0, rudder, heading, rate: 0.0 };
         let swings = [swing(3.0, 0.3), swing(0.0, -0.1), swing(0.0, 0.05)];
         let rises = [Interval { rate: 0.01, ..swing(1.0, 0.1) }];
         let gain = GainFit { gain: 0.1, gain_bias: 0.0, covariance: None, condition: 1.0 };
-        let found = diagnostics(&swings, &rises, &gain);
-        assert!(found.iter().all(|(_, value)| value.is_finite()), "{found:?}");
-        assert!(!found.iter().any(|(name, _)| *name == "K_without_first_swing_per_s"), "{found:?}");
+        let figures = diagnostics(&swings, &rises, &gain);
+        assert!(figures.iter().all(|(_, value)| value.is_finite()), "{figures:?}");
+        assert!(!figures.iter().any(|(name, _)| *name == "K_without_first_swing_per_s"), "{figures:?}");
     }
 }

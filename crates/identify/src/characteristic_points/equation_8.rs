@@ -1,11 +1,12 @@
 //! The once-integrated equation at chosen instants: T [r(t) − r(0)] + ψ(t) − ψ(0) = K [δ_r t + ∫δ].
 //!
-//! Source: Ge, Hu, Yin and Sun, equation (8), whose printed + r(0) is a slip.
+//! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, equation (8), with
+//! the sign of r(0) corrected.
 
 use nalgebra::Matrix3;
 
-use super::found::{Analysed, PointsFit};
 use super::points::rudder_integral;
+use super::points_fit::{AnalysedTrial, PointsFit};
 use crate::error::IdentifyError;
 use crate::savitzky_golay::local_polynomial;
 use estimation::least_squares::LeastSquares;
@@ -21,22 +22,23 @@ struct Equations {
     ends: Vec<usize>,
 }
 
-/// Heading (rad) and yaw rate (rad/s) of a cubic through the rows within `half_width` of `about`, evaluated at `at`.
-fn local(trial: &Analysed, about: f64, at: f64) -> Option<[f64; 2]> {
+/// Heading (rad) and yaw rate (rad/s) of a cubic through the rows within `half_width` of `centre`, evaluated at
+/// `instant`.
+fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2]> {
     let reach = trial.points.half_width * (1.0 + 1e-9);
     let time = &trial.samples.time;
-    let rows = time.partition_point(|t| *t < about - reach)..time.partition_point(|t| *t <= about + reach);
+    let rows = time.partition_point(|t| *t < centre - reach)..time.partition_point(|t| *t <= centre + reach);
     // More rows than coefficients, or the fit smooths nothing.
     if rows.len() < 5 {
         return None;
     }
-    local_polynomial(&time[rows.clone()], &trial.samples.heading[rows], at, 3).map(|fit| [fit[0], fit[1]])
+    local_polynomial(&time[rows.clone()], &trial.samples.heading[rows], instant, 3).map(|fit| [fit[0], fit[1]])
 }
 
 /// The equation at instants one window apart, so that no row serves two of them. ψ(0) + T r(0) is an unknown of every
 /// trial, which spares the one-sided slope at the first row.
 pub(super) fn identify_spread(
-    trials: &[Analysed],
+    trials: &[AnalysedTrial],
     bias: Option<f64>,
     condition_limit: f64,
 ) -> Result<PointsFit, IdentifyError> {
@@ -45,12 +47,12 @@ pub(super) fn identify_spread(
         let (width, last) = (trial.points.half_width, trial.samples.time[trial.samples.len() - 1]);
         // Windows must not touch: a row at the end of one would belong to the next as well.
         let step = 2.0 * width + last / (trial.samples.len() - 1) as f64;
-        let mut at = width;
-        while at + width <= last {
-            if let Some([heading, rate]) = local(trial, at, at) {
-                equations.push(-rate, rudder_integral(&trial.samples, at), at, heading, bias);
+        let mut time = width;
+        while time + width <= last {
+            if let Some([heading, rate]) = local_fit(trial, time, time) {
+                equations.push(-rate, rudder_integral(&trial.samples, time), time, heading, bias);
             }
-            at += step;
+            time += step;
         }
         equations.ends.push(equations.heading.len());
     }
@@ -60,20 +62,20 @@ pub(super) fn identify_spread(
 
 /// The equation as printed, at the heading extrema: r(t) = 0, so that T stands with r(0) alone.
 pub(super) fn identify_at_vertices(
-    trials: &[Analysed],
+    trials: &[AnalysedTrial],
     bias: Option<f64>,
     condition_limit: f64,
 ) -> Result<PointsFit, IdentifyError> {
     let mut equations = Equations::default();
     for trial in trials {
         let [start_heading, start_rate] = if trial.points.from_rest {
-            let rest = trial.points.still[0];
-            [rest.heading + trial.points.base, 0.0]
+            let origin = trial.points.still[0];
+            [origin.heading + trial.points.base, 0.0]
         } else {
-            local(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
+            local_fit(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
                 what: "headings in the first window",
                 needed: 5,
-                found: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.half_width),
+                count: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.half_width),
             })?
         };
         for point in trial.points.extrema() {
@@ -82,8 +84,8 @@ pub(super) fn identify_at_vertices(
         }
         equations.ends.push(equations.heading.len());
     }
-    let found = equations.solve(&[], bias, condition_limit)?;
-    Ok(PointsFit { covariance: Err("all of T rests on one slope, whose error no residual shows"), ..found })
+    let fit = equations.solve(&[], bias, condition_limit)?;
+    Ok(PointsFit { covariance: Err("T depends on a single slope, whose error the residuals do not show"), ..fit })
 }
 
 impl Equations {
@@ -118,8 +120,8 @@ impl Equations {
                     (1, None) => (2, 1.0),
                     _ => (1, 1.0),
                 };
-                let ((p, by), (q, and)) = (column(i), column(j));
-                by * and * variance * solution.unscaled_covariance[(p, q)]
+                let ((p, p_factor), (q, q_factor)) = (column(i), column(j));
+                p_factor * q_factor * variance * solution.unscaled_covariance[(p, q)]
             };
             (Matrix3::from_fn(entry), solution.degrees_of_freedom)
         });

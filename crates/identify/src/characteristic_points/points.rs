@@ -13,24 +13,24 @@ use crate::savitzky_golay::local_polynomial;
 /// Rudder within this share of its largest angle is amidships; heading within this share of its largest departure is
 /// on course. In a zig-zag the rudder passes amidships only near the reversals, where the heading is far off: both
 /// together are the approach.
-const APPROACH: f64 = 0.2;
+const APPROACH_SHARE: f64 = 0.2;
 
-/// Moves of the window after which an extremum that will not settle is left where it was found.
-const MOVES: usize = 10;
+/// Window moves after which an extremum that does not settle keeps its first position.
+const MAX_WINDOW_MOVES: usize = 10;
 
-/// Fewest intervals in half a window.
-const FEWEST_INTERVALS: f64 = 3.0;
+/// Sampling intervals that half a window holds at least.
+const MIN_INTERVALS: f64 = 3.0;
 
-/// Where a base course comes from.
+/// Origin of the base course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BaseHeadingOrigin {
     /// The settings.
     Given,
     /// The mean heading before the first execute.
     Approach,
-    /// Nowhere: heading 0 was taken.
+    /// No approach: heading 0 was taken.
     Zero,
-    /// Nowhere, and 0 is outside the swings: the middle of the headings was taken.
+    /// No approach, and 0 is outside the swings: the middle of the headings was taken.
     Middle,
 }
 
@@ -58,7 +58,7 @@ pub struct Points {
     pub from_rest: bool,
     /// Base course, rad.
     pub base: f64,
-    /// Where it comes from.
+    /// Origin of the base course.
     pub base_from: BaseHeadingOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
@@ -71,7 +71,7 @@ impl Points {
     }
 
     /// Leaves a start at rest out of the instants with r = 0.
-    pub fn forget_rest(&mut self) {
+    pub fn drop_rest(&mut self) {
         if std::mem::take(&mut self.from_rest) {
             self.still.remove(0);
         }
@@ -93,8 +93,8 @@ impl Points {
         };
         let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
-        let half_width = half_width
-            .unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(FEWEST_INTERVALS * interval));
+        let half_width =
+            half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
         let point =
             |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
         let mut still: Vec<Point> = points::extrema(time, &off_course, half_width)
@@ -125,11 +125,11 @@ impl Points {
 /// Rows before the first execute, rudder amidships and heading on course.
 fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<Range<usize>> {
     let largest = samples.rudder.iter().fold(0.0_f64, |largest, delta| largest.max(delta.abs()));
-    let end = samples.rudder.iter().position(|delta| delta.abs() > APPROACH * largest)?;
+    let end = samples.rudder.iter().position(|delta| delta.abs() > APPROACH_SHARE * largest)?;
     let course = samples.heading[..end].iter().sum::<f64>() / end as f64;
     // A record that starts in the middle of the manoeuvre starts near one end of its headings.
     let off = (course - base.unwrap_or(0.5 * (lo + hi))).abs();
-    let limit = if base.is_some() { APPROACH } else { 0.5 } * 0.5 * (hi - lo);
+    let limit = if base.is_some() { APPROACH_SHARE } else { 0.5 } * 0.5 * (hi - lo);
     (end > 0 && off < limit).then_some(0..end)
 }
 
@@ -147,10 +147,11 @@ fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
 /// Vertex (s, rad) of the parabola through the rows within `half_width` of itself.
 ///
 /// An extremum is first looked for around the largest heading, which noise picks: a window there holds high values on
-/// purpose. Moving the window to its own vertex until it stays there takes this bias away. `None` when it wanders off.
+/// purpose. Moving the window to its own vertex until it stays there removes this bias. `None` when the window leaves
+/// the neighbourhood of the start.
 fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option<(f64, f64)> {
     let mut vertex = start;
-    for _ in 0..MOVES {
+    for _ in 0..MAX_WINDOW_MOVES {
         // Centred on a row, so that the window does not lose one side of an even record.
         let next = time.partition_point(|t| *t < vertex).clamp(1, time.len() - 1);
         let centre = if vertex - time[next - 1] < time[next] - vertex { time[next - 1] } else { time[next] };
@@ -174,6 +175,6 @@ pub fn rudder_integral(samples: &Samples, time: f64) -> f64 {
     let next = samples.time.partition_point(|t| *t <= time).clamp(1, samples.len() - 1);
     let (k, h) = (next - 1, samples.time[next] - samples.time[next - 1]);
     let u = time - samples.time[k];
-    let rest = samples.rudder_integral[next] - samples.rudder_integral[k] - samples.rudder[k] * h;
-    samples.rudder_integral[k] + samples.rudder[k] * u + rest * (u / h) * (u / h)
+    let curvature = samples.rudder_integral[next] - samples.rudder_integral[k] - samples.rudder[k] * h;
+    samples.rudder_integral[k] + samples.rudder[k] * u + curvature * (u / h) * (u / h)
 }

@@ -35,7 +35,7 @@ fn turned(case: &Case, course_deg: f64, approach: usize) -> Trial {
 }
 
 #[test]
-fn three_peaks_have_no_error_of_their_own() {
+fn three_peaks_have_no_uncertainty() {
     let settings = Settings { variant: Variant::ThreePeaks, ..four_seconds() };
     for start in [Start::Mid, Start::Rest] {
         let estimate = identify(settings.clone(), &[Case { start, ..Case::default() }.trial()]);
@@ -82,7 +82,7 @@ fn vertices_cannot_give_the_time_constant_from_rest() {
 }
 
 #[test]
-fn trials_are_pooled_and_the_bias_is_found() {
+fn trials_are_pooled_and_the_bias_is_identified() {
     let small = Case { bias_deg: 1.5, samples: 401, ..Case::default() };
     let large = Case { rudder_deg: -20.0, heading_deg: 20.0, start: Start::Rest, ..small };
     let both = identify(four_seconds(), &[small.trial(), large.trial()]);
@@ -91,9 +91,9 @@ fn trials_are_pooled_and_the_bias_is_found() {
     assert_abs_diff_eq!(to_deg(both.response.rudder_bias), 1.5, epsilon = 0.02);
     let swapped = identify(four_seconds(), &[large.trial(), small.trial()]);
     assert_abs_diff_eq!(swapped.response.K(), both.response.K(), epsilon = 1e-9);
-    let known = Settings { rudder_bias_deg: Some(1.5), ..four_seconds() };
+    let given = Settings { rudder_bias_deg: Some(1.5), ..four_seconds() };
     for variant in [Variant::LeastSquares, Variant::ThreePeaks, Variant::Equation8] {
-        let estimate = identify(Settings { variant, ..known.clone() }, &[small.trial()]);
+        let estimate = identify(Settings { variant, ..given.clone() }, &[small.trial()]);
         assert_abs_diff_eq!(to_deg(estimate.response.rudder_bias), 1.5, epsilon = 1e-9);
         let [k, t] = errors(&estimate);
         assert!(k.abs() < 1.0 && t.abs() < 1.0, "{variant:?}: K {k:+.2} %, T {t:+.2} %");
@@ -101,7 +101,7 @@ fn trials_are_pooled_and_the_bias_is_found() {
 }
 
 #[test]
-fn swings_to_either_side_are_told_apart() {
+fn figures_by_side_are_reported() {
     let estimate = identify(four_seconds(), &[Case { samples: 401, ..Case::default() }.trial()]);
     let figure = |name| estimate.diagnostic(name).expect("present");
     for name in ["K_to_starboard_per_s", "K_to_port_per_s", "K_without_first_swing_per_s"] {
@@ -114,7 +114,7 @@ fn swings_to_either_side_are_told_apart() {
 }
 
 #[test]
-fn the_base_course_is_read_off_the_approach_or_owned_up_to() {
+fn a_missing_approach_is_reported() {
     let rest = Case { start: Start::Rest, noise_deg: 0.1, ..Case::default() };
     let straight = identify(four_seconds(), &[turned(&rest, 350.0, 20)]);
     assert!(straight.warnings.is_empty(), "{:?}", straight.warnings);

@@ -1,5 +1,5 @@
-//! The basis 1, cos n w t, sin n w t (n = 1..N) on the instants of one record, orthogonalised once and used for as many
-//! signals as are wanted. It does not choose w: see [`super::fundamental`].
+//! The basis 1, cos n w t, sin n w t (n = 1..N) on the instants of one record, orthogonalised once for any number of
+//! signals. It does not choose w: see [`super::fundamental`].
 
 use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -16,7 +16,7 @@ use crate::error::IdentifyError;
 /// each other. On even steps they are orthogonal: every instant has a mirror image, and sum and difference of the two,
 /// over √2, turn X into a part with the cosines and another with the sines, half as long each.
 #[derive(Debug, Clone)]
-pub struct Nested {
+pub struct NestedBases {
     fundamental: f64,
     harmonics: usize,
     centre: f64,
@@ -26,24 +26,24 @@ pub struct Nested {
     parts: Vec<OrthogonalPart>,
 }
 
-/// Columns of X that are orthogonal to all others.
+/// Group of columns of X that is orthogonal to the other groups.
 #[derive(Debug, Clone)]
 struct OrthogonalPart {
-    /// Which, in rising order.
+    /// Column numbers, in rising order.
     places: Vec<usize>,
     qr: QR<f64, Dyn, Dyn>,
 }
 
-/// The basis of one of the `Nested` series.
+/// Basis of a single series of [`NestedBases`].
 #[derive(Debug, Clone)]
 pub struct Basis {
     harmonics: usize,
-    series: Nested,
-    /// Of the triangle of every part.
+    series: NestedBases,
+    /// Singular value decompositions of the triangles of the parts.
     svd: Vec<SVD<f64, Dyn, Dyn>>,
 }
 
-/// A signal on a [`Basis`]: coefficients in centred time and what is left over.
+/// Projection of a signal on a [`Basis`]: coefficients in centred time and the residual.
 #[derive(Debug, Clone)]
 pub struct Projection {
     /// Coefficients in the order 1, cos 1, sin 1, cos 2, …, in the time of the basis.
@@ -61,7 +61,7 @@ impl OrthogonalPart {
         Self { places, qr }
     }
 
-    /// Those of the columns that belong to a series of `harmonics` harmonics.
+    /// The columns that belong to a series of `harmonics` harmonics.
     fn places(&self, harmonics: usize) -> &[usize] {
         &self.places[..self.places.partition_point(|&place| place <= 2 * harmonics)]
     }
@@ -73,15 +73,15 @@ impl OrthogonalPart {
     }
 }
 
-impl Nested {
+impl NestedBases {
     /// The bases with up to `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
     ///
     /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns of the widest.
     pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
         let (rows, width) = (time.len(), 2 * harmonics + 1);
         if rows <= width {
-            let (needed, found) = (width + 1, rows);
-            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, found });
+            let (needed, count) = (width + 1, rows);
+            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
         }
         let centre = 0.5 * (time[0] + time[rows - 1]);
         // Without harmonics there are no sines.
@@ -102,7 +102,7 @@ impl Nested {
             columns.push(c.clone());
             columns.push(s.clone());
         }
-        let places = |holds: fn(usize) -> bool| (0..width).filter(|&place| holds(place)).collect::<Vec<_>>();
+        let places = |includes: fn(usize) -> bool| (0..width).filter(|&place| includes(place)).collect::<Vec<_>>();
         let parts = if folded {
             let [even, odd] =
                 [places(|place| place == 0 || place % 2 == 1), places(|place| place > 0 && place % 2 == 0)];
@@ -134,7 +134,7 @@ impl Nested {
         Basis { svd: self.parts.iter().map(triangle).collect(), harmonics, series: self }
     }
 
-    /// A signal given at the instants, as the parts see it.
+    /// Even and odd halves of a signal given at the instants, or the signal itself without folding.
     fn split(&self, values: &[f64]) -> Vec<DVector<f64>> {
         if self.parts.len() == 1 {
             return vec![DVector::from_column_slice(values)];
@@ -175,7 +175,7 @@ impl Basis {
     ///
     /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns.
     pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
-        Ok(Nested::new(time, fundamental, harmonics)?.basis(harmonics))
+        Ok(NestedBases::new(time, fundamental, harmonics)?.basis(harmonics))
     }
 
     /// Number of harmonics N.
@@ -183,7 +183,7 @@ impl Basis {
         self.harmonics
     }
 
-    /// Condition number of X, columns as they are (√2 for whole periods); infinite when X has no full rank.
+    /// Condition number of X, columns as they are (√2 for whole periods); infinite when X is rank-deficient.
     pub fn condition(&self) -> f64 {
         let largest = self.largest_singular_value();
         let smallest = self.svd.iter().map(|svd| svd.singular_values.min()).fold(f64::INFINITY, f64::min);
@@ -201,8 +201,8 @@ impl Basis {
 
     /// Least-squares projection of a signal given at the instants of the basis.
     ///
-    /// Directions whose singular value is below 1e-14 of the largest are left out, so that a basis that is singular to
-    /// rounding still gives the smallest of its solutions.
+    /// Directions with a singular value below 1e-14 of the largest are left out, so that a basis that is singular to
+    /// rounding gives its minimum-norm solution.
     pub fn project(&self, values: &[f64]) -> Projection {
         let floor = 1e-14 * self.largest_singular_value();
         let mut coefficients = DVector::zeros(2 * self.harmonics + 1);
@@ -338,7 +338,7 @@ mod tests {
     fn nested_residuals_are_those_of_the_shorter_series() {
         let time: Vec<f64> = (0..120).map(f64::from).collect();
         let values: Vec<f64> = time.iter().map(|t| (0.002 * t * t).sin()).collect();
-        let nested = Nested::new(&time, 0.045, 6).expect("enough instants").rss(&values);
+        let nested = NestedBases::new(&time, 0.045, 6).expect("enough instants").rss(&values);
         assert_eq!(nested.len(), 7);
         for (harmonics, rss) in nested.into_iter().enumerate() {
             let alone = Basis::new(&time, 0.045, harmonics).expect("enough instants").project(&values);
@@ -346,15 +346,14 @@ mod tests {
         }
     }
 
-    /// What a projection leaves is orthogonal to every function, of the record whole or in halves, and derivatives and
-    /// their sums are those of the curve.
+    /// Residuals are orthogonal to every function of the basis, and derivatives agree with the curve.
     #[test]
     fn residuals_are_orthogonal_and_derivatives_agree_with_the_curve() {
         let even = |rows: i32| (0..rows).map(|i| 1.5 * f64::from(i)).collect::<Vec<f64>>();
         let uneven = (0..157).map(|i| 1.5 * i as f64 + (i as f64).sin()).collect();
         for time in [even(156), even(157), uneven] {
             let values: Vec<f64> = time.iter().map(|t| (0.0004 * t * t).sin()).collect();
-            let basis = Nested::new(&time, 0.03, 7).expect("enough instants").basis(5);
+            let basis = NestedBases::new(&time, 0.03, 7).expect("enough instants").basis(5);
             let projection = basis.project(&values);
             let left = basis.moments(&projection.residual);
             assert_abs_diff_eq!(left.norm(), 0.0, epsilon = 1e-11);
@@ -390,7 +389,7 @@ mod tests {
         let error = Basis::new(&time, 0.1, 8).expect_err("17 columns on 17 rows");
         assert_eq!(
             error,
-            IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed: 18, found: 17 }
+            IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed: 18, count: 17 }
         );
     }
 }

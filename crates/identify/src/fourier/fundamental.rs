@@ -1,7 +1,7 @@
 //! The fundamental w of the series: by local search, by the lowest RSS of all or by a rule.
 //!
-//! Reasons to prefer a rule: RSS is nearly the same in several minima while derivatives and conditioning are not, so
-//! the lowest RSS says little about which w serves best.
+//! A rule is preferable: RSS is nearly the same in several minima while derivatives and conditioning are not, so the
+//! lowest RSS is a poor criterion for w.
 
 use estimation::statistics::median;
 use serde::{Deserialize, Serialize};
@@ -27,12 +27,12 @@ pub enum Fundamental {
     Global,
     /// One period of the series is the median period between zero crossings of the heading about its mean.
     ZeroCrossings,
-    /// One period of the series is the record and this many zig-zag periods more (periods by ZeroCrossings):
-    /// room in which the series joins the end of the record to its beginning, so that it need not be periodic.
+    /// One period of the series is the record and this many zig-zag periods more (periods by ZeroCrossings): the added
+    /// time lets the series join the end of the record to its beginning, so that the record need not be periodic.
     RecordAndPeriods(f64),
 }
 
-/// A fundamental and how it was found.
+/// A fundamental and how its search stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChosenFundamental {
     /// w, rad/s.
@@ -44,20 +44,20 @@ pub struct ChosenFundamental {
 }
 
 /// Lowest fundamental of a scan, periods a record: below it 17 columns are one polynomial to rounding.
-const FEWEST_PERIODS: f64 = 0.35;
+const MIN_PERIODS: f64 = 0.35;
 
 /// Highest fundamental of a scan over the peak of the transform.
-const HIGHEST_OVER_PEAK: f64 = 1.5;
+const MAX_OVER_PEAK: f64 = 1.5;
 
 /// The highest harmonic must reach past the peak of the transform, else the series cannot follow the record.
-const LEAST_REACH: f64 = 1.25;
+const MIN_REACH: f64 = 1.25;
 
 /// Steps as a share of π/(N T_rec), the change of w that moves the highest harmonic by half a period over the record.
 const SCAN_STEP: f64 = 0.3;
 const DESCENT_STEP: f64 = 0.15;
 
 impl Fundamental {
-    /// Refuses settings that cannot mean anything.
+    /// Checks the settings; fails for a number of periods outside 0 to 2.
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self::RecordAndPeriods(periods) = self else { return Ok(()) };
         let holds = (0.0..=2.0).contains(periods);
@@ -88,14 +88,14 @@ fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) 
     let mut profile = Profile::new(time, heading, harmonics);
     let ends: Vec<(f64, ChosenFundamental)> =
         starts.iter().map(|&start| descend(&mut profile, start, length, harmonics)).collect();
-    let (_, choice) = ends.into_iter().min_by(|one, other| one.0.total_cmp(&other.0)).expect("there is a start");
+    let (_, choice) = ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("there is a start");
     ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
 /// Walks downhill from `from` in steps too small to leave a basin, then closes in on the minimum.
 fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (f64, ChosenFundamental) {
     let step = DESCENT_STEP * PI / (harmonics as f64 * length);
-    let (floor, ceiling) = (FEWEST_PERIODS * TAU / length, from.max(TAU / length) * 2.0);
+    let (floor, ceiling) = (MIN_PERIODS * TAU / length, from.max(TAU / length) * 2.0);
     let start = from.max(floor);
     let value = profile.rss(start);
     let direction = if profile.rss(start + step) < value { step } else { -step };
@@ -176,9 +176,9 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
 fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
     let peak = peak_of_transform(time, heading);
-    let lowest = (FEWEST_PERIODS * TAU / length).max(LEAST_REACH * peak / harmonics as f64);
+    let lowest = (MIN_PERIODS * TAU / length).max(MIN_REACH * peak / harmonics as f64);
     let step = SCAN_STEP * PI / (harmonics as f64 * length);
-    let last = ((HIGHEST_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize;
+    let last = ((MAX_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize;
     let mut profile = Profile::new(time, heading, harmonics);
     let rss = profile.scan(lowest, step, last + 1);
     let best = (0..=last).min_by(|&p, &q| rss[p].total_cmp(&rss[q])).expect("a scan is not empty");
@@ -215,7 +215,7 @@ pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
 /// when there are only two.
 ///
 /// A crossing counts once the heading has gone a quarter of its amplitude to the other side, so that noise near zero
-/// makes none of its own; its time is the middle between the first and the last change of sign on the way.
+/// makes no crossing; its time is the middle between the first and the last change of sign on the way.
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than two crossings.
 pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, IdentifyError> {
@@ -244,7 +244,7 @@ pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, Identi
     }
     if crossings.len() < 2 {
         let what = "zero crossings of the heading";
-        return Err(IdentifyError::TooFewPoints { what, needed: 2, found: crossings.len() });
+        return Err(IdentifyError::TooFewPoints { what, needed: 2, count: crossings.len() });
     }
     let mut periods: Vec<f64> = if crossings.len() == 2 {
         vec![2.0 * (crossings[1] - crossings[0])]

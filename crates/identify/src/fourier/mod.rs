@@ -1,8 +1,10 @@
 //! A heading record as a Fourier series with a free fundamental: ψ(t) = a₀ + Σ (aₙ cos n w t + bₙ sin n w t), n = 1..N.
+//! Source of the form: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, equation
+//! (9).
 //!
 //! Shared by `fourier-published` and `fourier-projected`, and by figures that show a fit. Because w is free this is a
 //! nonlinear regression, not a Fourier analysis: RSS(w) has many local minima, and the lowest often has a period longer
-//! than the record, large cancelling coefficients and poor derivatives. [`Fundamental`] names the ways to choose.
+//! than the record, large cancelling coefficients and poor derivatives. [`Fundamental`] lists the rules to choose w.
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -24,17 +26,17 @@ pub(crate) mod triples;
 pub use basis::{Basis, Projection};
 pub use curve::FourierFit;
 pub use fundamental::Fundamental;
-pub use profile::MOST_HARMONICS;
+pub use profile::MAX_HARMONICS;
 
 use document::{Code, Warning};
 
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 
-/// Condition number of the basis above which derivatives of the curve are not to be trusted.
+/// Largest condition number of the basis at which derivatives of the curve are used.
 pub const TRUSTED_CONDITION: f64 = 1e4;
 
-/// A fit with what a method needs beside the curve.
+/// Fourier fit of a heading: the curve with its basis and projection.
 #[derive(Debug, Clone)]
 pub struct Fitted {
     /// The curve.
@@ -53,16 +55,16 @@ pub struct Fitted {
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] when there are not more headings than coefficients or no period can be
 /// seen by a rule that needs one. Settings are expected to be valid ([`Fundamental::check`], 1 ≤ N ≤
-/// [`MOST_HARMONICS`]).
+/// [`MAX_HARMONICS`]).
 pub fn fit(
     time: &[f64],
     heading: &[f64],
     harmonics: usize,
     fundamental: &Fundamental,
 ) -> Result<Fitted, IdentifyError> {
-    let (needed, found) = (2 * harmonics + 2, time.len());
-    if found < needed {
-        return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, found });
+    let (needed, count) = (2 * harmonics + 2, time.len());
+    if count < needed {
+        return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
     }
     let choice = fundamental.choose(time, heading, harmonics)?;
     let basis = Basis::new(time, choice.fundamental, harmonics)?;
@@ -71,7 +73,7 @@ pub fn fit(
     Ok(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
 }
 
-/// Figures of the fits: w and N of the first trial, R² and condition number of the worst.
+/// Diagnostics of the fits: w and N of the first trial, smallest R² and largest condition number of all.
 pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
     let first = fits.first().map(|fit| &fit.curve);
     let r_squared = fits.iter().fold(1.0f64, |least, fit| least.min(fit.curve.r_squared));
@@ -84,19 +86,19 @@ pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
     all
 }
 
-/// What a reader should know of the fits.
+/// Warnings on a fundamental at the edge of its search and on ill-conditioned bases.
 pub(crate) fn warnings(fits: &[Fitted]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for Fitted { curve, stop, .. } in fits {
         if *stop == StopReason::RangeLimit {
             warnings.push(Code::AtBound.warning(format!(
-                "the best fundamental, {:.5} rad/s, lies at the end of the searched range",
+                "the best fundamental, {:.5} rad/s, lies at the edge of the search range",
                 curve.fundamental
             )));
         }
         if curve.condition > TRUSTED_CONDITION {
             warnings.push(Code::IllConditioned.warning(format!(
-                "the basis is ill-conditioned (condition number {:.1e}, one period of the series is {:.0} s): its \
+                "the Fourier basis is ill-conditioned (condition number {:.1e}, period of the series {:.0} s): its \
                  coefficients cancel each other and its derivatives are poor near the ends",
                 curve.condition,
                 std::f64::consts::TAU / curve.fundamental

@@ -1,12 +1,12 @@
-//! A record folded about its middle: of rows in even steps every one has its mirror image, so that sums of even and odd
-//! functions of time run over half of them. It knows no model of the signal.
+//! A record folded about its middle: every row of a record in even steps has its mirror image, so that sums of even and
+//! odd functions of time run over half of them. It knows no model of the signal.
 
 /// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as
 /// few as stay in registers.
 pub const LANES: usize = 4;
 
 /// Deviation from even steps, as a share of the step, that is rounding of the clock.
-const EVEN: f64 = 1e-7;
+const EVEN_STEP_TOLERANCE: f64 = 1e-7;
 
 /// Instants u ≥ 0 from the middle of a record, such that for f = fₑ + fₒ, even and odd in u,
 /// Σ f = Σ weight fₑ + skew fₒ and Σ y f = Σ even fₑ + odd fₒ, left sums over the rows of the record.
@@ -32,7 +32,7 @@ pub struct Nodes {
 
 impl Nodes {
     /// The rows of a record of `values` at `time` (s, increasing, equal lengths, at least 2).
-    pub fn of_rows(time: &[f64], values: &[f64]) -> Self {
+    pub fn from_rows(time: &[f64], values: &[f64]) -> Self {
         let rows = time.len();
         let centre = 0.5 * (time[0] + time[rows - 1]);
         let is_symmetric = has_even_steps(time);
@@ -74,7 +74,7 @@ impl Nodes {
 /// image about the middle.
 pub fn has_even_steps(time: &[f64]) -> bool {
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN * step)
+    time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN_STEP_TOLERANCE * step)
 }
 
 /// The block of a padded column from `start` on.
@@ -84,13 +84,13 @@ pub fn lanes<T>(values: &[T], start: usize) -> &[T; LANES] {
 
 /// Σ x y of columns of one length, [`LANES`] sums at a time.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
+    let ((x, x_tail), (y, y_tail)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
     let mut sums = [0.0; LANES];
     for (x, y) in x.iter().zip(y) {
         for i in 0..LANES {
             sums[i] += x[i] * y[i];
         }
     }
-    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
-    sums.iter().sum::<f64>() + rest
+    let tail: f64 = x_tail.iter().zip(y_tail).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + tail
 }

@@ -1,5 +1,5 @@
 //! The residual sum of squares as a function of the fundamental alone, the coefficients eliminated: cheap enough to
-//! scan. The problem has many local minima in w, so a search from one start is only as good as its start.
+//! scan. It has many local minima in w, so the result of a search depends on its start.
 //!
 //! With time u from the middle of a record of length L, cos k w u is a polynomial of degree k in cos w u, and sin k w u
 //! is sin w u times one of degree k − 1. Over less than one period cos w u runs through a part of [−1, 1] only and its
@@ -15,10 +15,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::nodes::{LANES, Nodes, lanes};
 
-/// Below this pivot against its column QR is used. A pivot of size p leaves an error of about ε/p in the pivots after
-/// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear. It happens
-/// where gaps leave too little of the record, and where the highest harmonics are beyond the sampling.
-const SMALLEST_PIVOT: f64 = 1e-6;
+/// Smallest pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
+/// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error
+/// and false minima appear. It happens where gaps leave too little of the record, and where the highest harmonics are
+/// beyond the sampling.
+const MIN_PIVOT: f64 = 1e-6;
 
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
 const ANCHOR_STEPS: usize = 32;
@@ -55,12 +56,12 @@ struct Sums {
 }
 
 impl Profile {
-    /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MOST_HARMONICS`]
+    /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MAX_HARMONICS`]
     /// harmonics.
     pub fn new(time: &[f64], values: &[f64], harmonics: usize) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
-        let rows = Nodes::of_rows(time, &centred);
+        let rows = Nodes::from_rows(time, &centred);
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
@@ -117,7 +118,7 @@ impl Profile {
         let (cosines, width) = (n + 1, 2 * n + 1);
         let sum = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
         // Σ Tₖ, Σ sin w u Tₖ and Σ sin² w u Tₖ.
-        let (mut plain, mut sine) = ([0.0; MOST_COLUMNS], [0.0; MOST_COLUMNS]);
+        let (mut plain, mut sine) = ([0.0; MAX_COLUMNS], [0.0; MAX_COLUMNS]);
         for (k, sums) in self.sums.iter().enumerate() {
             (plain[k], sine[k]) = (sum(sums.weight), sum(sums.skew));
         }
@@ -158,11 +159,11 @@ impl Profile {
         let part = |signal: &[f64]| DVector::from_fn(*used, |row, _| signal[row] / root[row]);
         if *is_symmetric {
             // The cosines see only the even part of the record, the sines only the odd part.
-            return left_over(cosines, part(even)) + left_over(sines, part(odd));
+            return residual_sum_of_squares(cosines, part(even)) + residual_sum_of_squares(sines, part(odd));
         }
         let mut design = cosines.resize_horizontally(2 * n + 1, 0.0);
         design.columns_mut(n + 1, n).copy_from(&sines);
-        left_over(design, part(even))
+        residual_sum_of_squares(design, part(even))
     }
 }
 
@@ -193,10 +194,10 @@ impl Walk<'_> {
     }
 }
 
-/// Most harmonics a series may have; far beyond what a zig-zag record can carry.
-pub const MOST_HARMONICS: usize = 64;
+/// Limit on the harmonics of a series; far beyond what a zig-zag record can carry.
+pub const MAX_HARMONICS: usize = 64;
 
-const MOST_COLUMNS: usize = 2 * MOST_HARMONICS + 1;
+const MAX_COLUMNS: usize = 2 * MAX_HARMONICS + 1;
 
 /// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
 fn cosine_share(fundamental: f64, length: f64) -> f64 {
@@ -251,9 +252,9 @@ fn add(total: &mut [f64; LANES], factor: &[f64; LANES], term: &[f64; LANES]) {
 
 /// Σ sin² w u Tₖ from Σ Tₖ, for two orders less: sin² w u = x (2 − x), x = 1 − cos w u = `share` (1 − ξ), and
 /// (1 − ξ) Tₖ = Tₖ − ½ (Tₖ₊₁ + T_|k−1|).
-fn with_square_of_sine(sums: &[f64], share: f64) -> [f64; MOST_COLUMNS] {
+fn with_square_of_sine(sums: &[f64], share: f64) -> [f64; MAX_COLUMNS] {
     let by_x = |sums: &[f64], orders: usize| {
-        let mut product = [0.0; MOST_COLUMNS];
+        let mut product = [0.0; MAX_COLUMNS];
         for k in 0..orders {
             product[k] = share * (sums[k] - 0.5 * (sums[k + 1] + sums[k.abs_diff(1)]));
         }
@@ -267,8 +268,8 @@ fn with_square_of_sine(sums: &[f64], share: f64) -> [f64; MOST_COLUMNS] {
     twice
 }
 
-/// Squared length of what a design leaves of a signal.
-fn left_over(design: DMatrix<f64>, mut signal: DVector<f64>) -> f64 {
+/// Residual sum of squares of a signal after projection on the columns of a design.
+fn residual_sum_of_squares(design: DMatrix<f64>, mut signal: DVector<f64>) -> f64 {
     let width = design.ncols();
     design.qr().q_tr_mul(&mut signal);
     signal.rows_range(width..).norm_squared()
@@ -277,22 +278,22 @@ fn left_over(design: DMatrix<f64>, mut signal: DVector<f64>) -> f64 {
 /// bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` when a pivot is down to rounding.
 fn explained(gram: &mut [f64], right: &mut [f64]) -> Option<f64> {
     let width = right.len();
-    let mut diagonal = [0.0; MOST_COLUMNS];
+    let mut diagonal = [0.0; MAX_COLUMNS];
     for p in 0..width {
         diagonal[p] = gram[p * width + p];
     }
     let mut explained = 0.0;
     for p in 0..width {
-        let (done, rest) = gram.split_at_mut((p + 1) * width);
-        let row = &done[p * width..];
+        let (eliminated, remaining) = gram.split_at_mut((p + 1) * width);
+        let row = &eliminated[p * width..];
         let pivot = row[p];
-        if pivot <= SMALLEST_PIVOT * diagonal[p] || pivot.is_nan() {
+        if pivot <= MIN_PIVOT * diagonal[p] || pivot.is_nan() {
             return None;
         }
         let inverse = 1.0 / pivot;
-        for (i, below) in (p + 1..).zip(rest.chunks_exact_mut(width)) {
+        for (i, below) in (p + 1..).zip(remaining.chunks_exact_mut(width)) {
             let factor = row[i] * inverse;
-            // On even steps cosines and sines have nothing in common.
+            // On even steps cosines and sines are orthogonal.
             if factor == 0.0 {
                 continue;
             }

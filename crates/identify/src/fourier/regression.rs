@@ -1,5 +1,6 @@
-//! K, T and δ_r by least squares on T r' + r = K (δ + δ_r), with r and r' taken from Fourier curves, and the covariance
-//! that white heading noise gives them. It does not fit the curves.
+//! K, T and δ_r by least squares on T r' + r = K (δ + δ_r), with r and r' taken from Fourier curves, and their
+//! covariance under white heading noise. It does not fit the curves. Source of the equation: Ge, Hu, Yin and Sun,
+//! equation (10).
 
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
@@ -36,11 +37,11 @@ pub struct Equations {
     trials: Vec<Block>,
 }
 
-/// Places of the rudder and of 1 among the signals of [`Block::moments`].
+/// Places of the rudder and of the constant 1 among the signals of [`Block::moments`].
 const RUDDER: usize = 2;
 const ONE: usize = 3;
 
-/// What noise on the heading of one trial does to its equations.
+/// Sensitivity of the equations of one trial to noise on its heading.
 #[derive(Debug, Clone)]
 struct Block {
     /// Σ f ∂r/∂θ and Σ f ∂r'/∂θ over the equations, θ the 2N+1 coefficients, for f = r, r', δ and 1.
@@ -108,10 +109,10 @@ impl Equations {
     /// `condition_limit`, with [`IdentifyError::TooFewPoints`] below three equations, and with
     /// [`IdentifyError::NotAShip`] when K/T is not positive.
     pub fn solve(&self, response: RegressionForm, condition_limit: f64) -> Result<Solution, IdentifyError> {
-        let one = vec![1.0; self.len()];
+        let constant = vec![1.0; self.len()];
         let (left, right) = self.sides(response);
         let minus_right: Vec<f64> = right.iter().map(|x| -x).collect();
-        let fit = LeastSquares::solve(&[&minus_right, &self.rudder, &one], left, condition_limit)?;
+        let fit = LeastSquares::solve(&[&minus_right, &self.rudder, &constant], left, condition_limit)?;
         let parameters = Vector3::new(fit.parameters[0], fit.parameters[1], fit.parameters[2]);
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
         // (1/T, K/T, δ_r) and its derivative by the parameters.
@@ -160,9 +161,9 @@ impl Equations {
                 RegressionForm::YawRate => (by_rate, by_acceleration, 0, 1),
             };
             let with_equation = |signal: usize| &dy[signal] + p * &dx[signal];
-            let with_rest = &dx[y] + p * &dx[x] - q * &dx[RUDDER] - s * &dx[ONE];
+            let noise = &dx[y] + p * &dx[x] - q * &dx[RUDDER] - s * &dx[ONE];
             let gradient =
-                DMatrix::from_columns(&[-with_equation(x) - with_rest, with_equation(RUDDER), with_equation(ONE)]);
+                DMatrix::from_columns(&[-with_equation(x) - noise, with_equation(RUDDER), with_equation(ONE)]);
             let spread = gradient.transpose() * covariance * &gradient;
             total += Matrix3::from_fn(|i, j| spread[(i, j)]);
         }
@@ -170,7 +171,7 @@ impl Equations {
     }
 }
 
-/// Variance of white noise in a residual that may also hold something smooth: mean square of every value about the
+/// Variance of the white part of a residual that may also have a smooth part: mean square of every value about the
 /// straight line through its neighbours, per unit variance (Gasser, Sroka and Jennen-Steinmetz 1986).
 ///
 /// For even steps it has 18/35 degrees of freedom a value. `time` and `residual` have the same length, at least 3.
@@ -197,15 +198,15 @@ mod tests {
         let Truth { yaw_rate, yaw_acceleration, rudder, .. } = case.truth();
         let equations = Equations { yaw_acceleration, yaw_rate, rudder, trials: Vec::new() };
         for response in [RegressionForm::YawAcceleration, RegressionForm::YawRate] {
-            let found = equations.solve(response, 1e4).expect("well conditioned").response;
-            assert_relative_eq!(found.K(), case.K, max_relative = 1e-9);
-            assert_relative_eq!(found.T(), case.T, max_relative = 1e-9);
-            assert_relative_eq!(found.rudder_bias, case.ship().rudder_bias, max_relative = 1e-8);
+            let solved = equations.solve(response, 1e4).expect("well conditioned").response;
+            assert_relative_eq!(solved.K(), case.K, max_relative = 1e-9);
+            assert_relative_eq!(solved.T(), case.T, max_relative = 1e-9);
+            assert_relative_eq!(solved.rudder_bias, case.ship().rudder_bias, max_relative = 1e-8);
         }
     }
 
     #[test]
-    fn a_smooth_rest_does_not_pass_for_noise() {
+    fn a_smooth_residual_is_not_counted_as_noise() {
         let quiet = Case::default().trial();
         let noisy = Case { noise_deg: 0.1, samples: 1201, ..Case::default() };
         let noise: Vec<f64> =

@@ -2,7 +2,7 @@
 //!
 //! The determinant of the three equations is the area of the triangle that the instants make in the plane of rudder and
 //! r': zero for three instants with one rudder angle, small for a thin triangle, and then the error of r' decides the
-//! answer. It draws triples and solves them; what is made of the answers is up to the method.
+//! answer. This module draws triples and solves them; the method combines the estimates.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use nalgebra::Matrix3;
@@ -12,17 +12,17 @@ use serde::{Deserialize, Serialize};
 use crate::error::IdentifyError;
 
 /// Area over the product of standard deviations below which three instants lie on one line to rounding.
-const SMALLEST_AREA: f64 = 1e-9;
+const MIN_AREA: f64 = 1e-9;
 
 /// Draws allowed for every triple asked for.
 const DRAWS_PER_TRIPLE: usize = 1000;
 
-/// Most triples: ten million draws where none of them is usable.
-pub const MOST_TRIPLES: usize = 10_000;
+/// Limit on the triples: ten million draws where no triple is usable.
+pub const MAX_TRIPLES: usize = 10_000;
 
 /// Largest condition number of the equations of a well-conditioned triple, columns divided by the standard deviations
 /// of r' and δ.
-const CONDITION_LIMIT: f64 = 10.0;
+const MAX_CONDITION: f64 = 10.0;
 
 /// Which triples are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -47,9 +47,9 @@ pub struct EquationInstant {
     pub yaw_acceleration: f64,
 }
 
-/// The answer of one triple.
+/// Parameters that solve the three equations of a triple.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct TripleEstimate {
     /// K, 1/s.
     pub K: f64,
     /// T, s.
@@ -58,11 +58,11 @@ pub struct Answer {
     pub rudder_bias: f64,
 }
 
-/// Answers of the triples that were kept, and the count of those that were not.
+/// Estimates of the triples that were kept, and counts of the triples that were not.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Drawn {
-    /// One answer a triple.
-    pub answers: Vec<Answer>,
+pub struct DrawnTriples {
+    /// Estimate of every kept triple.
+    pub answers: Vec<TripleEstimate>,
     /// Triples drawn.
     pub tried: usize,
     /// Left out: three points on a line, as with three equal rudder angles.
@@ -82,18 +82,18 @@ pub fn draw(
     selection: Selection,
     count: usize,
     seed: u64,
-) -> Result<Drawn, IdentifyError> {
+) -> Result<DrawnTriples, IdentifyError> {
     if instants.len() < 3 {
         let what = "instants with the rudder at rest";
-        return Err(IdentifyError::TooFewPoints { what, needed: 3, found: instants.len() });
+        return Err(IdentifyError::TooFewPoints { what, needed: 3, count: instants.len() });
     }
-    let scale = [deviation(instants, |i| i.yaw_acceleration), deviation(instants, |i| i.rudder)];
+    let scale = [standard_deviation(instants, |i| i.yaw_acceleration), standard_deviation(instants, |i| i.rudder)];
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut drawn = Drawn { answers: Vec::with_capacity(count), ..Drawn::default() };
+    let mut drawn = DrawnTriples { answers: Vec::with_capacity(count), ..DrawnTriples::default() };
     while drawn.answers.len() < count {
         if drawn.tried == count * DRAWS_PER_TRIPLE {
-            let found = drawn.answers.len();
-            return Err(IdentifyError::TooFewPoints { what: "usable triples of instants", needed: count, found });
+            let (needed, count) = (count, drawn.answers.len());
+            return Err(IdentifyError::TooFewPoints { what: "usable triples of instants", needed, count });
         }
         let chosen: [usize; 3] = std::array::from_fn(|_| generator.random_range(0..instants.len()));
         if chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2] {
@@ -105,7 +105,7 @@ pub fn draw(
             drawn.singular += 1;
             continue;
         };
-        if selection == Selection::WellConditioned && condition(&triple, scale) >= CONDITION_LIMIT {
+        if selection == Selection::WellConditioned && condition(&triple, scale) >= MAX_CONDITION {
             drawn.ill_conditioned += 1;
             continue;
         }
@@ -115,9 +115,9 @@ pub fn draw(
     Ok(drawn)
 }
 
-/// The answer of three instants; `None` when they lie on a line in the plane of rudder and r' (to rounding), both
+/// Parameters from three instants; `None` when they lie on a line in the plane of rudder and r' (to rounding), both
 /// measured in `scale` (standard deviations of r' and δ).
-pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<Answer> {
+pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
     let [first, second, third] = triple;
     // Differences against the third instant eliminate K δ_r.
     let difference = |i: &EquationInstant| {
@@ -125,12 +125,12 @@ pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<Answer> {
     };
     let ((a1, r1, d1), (a2, r2, d2)) = (difference(first), difference(second));
     let area = d1 * a2 - a1 * d2;
-    if area.abs() <= SMALLEST_AREA * scale[0] * scale[1] || area.is_nan() {
+    if area.abs() <= MIN_AREA * scale[0] * scale[1] || area.is_nan() {
         return None;
     }
     let (T, K) = ((r1 * d2 - r2 * d1) / area, (a2 * r1 - a1 * r2) / area);
     let rudder_bias = (T * third.yaw_acceleration + third.yaw_rate) / K - third.rudder;
-    rudder_bias.is_finite().then_some(Answer { K, T, rudder_bias })
+    rudder_bias.is_finite().then_some(TripleEstimate { K, T, rudder_bias })
 }
 
 /// Condition number of the three equations with scaled columns.
@@ -145,10 +145,10 @@ fn condition(triple: &[EquationInstant; 3], scale: [f64; 2]) -> f64 {
     values.max() / values.min()
 }
 
-fn deviation(instants: &[EquationInstant], of: impl Fn(&EquationInstant) -> f64) -> f64 {
+fn standard_deviation(instants: &[EquationInstant], quantity: impl Fn(&EquationInstant) -> f64) -> f64 {
     let count = instants.len() as f64;
-    let mean = instants.iter().map(&of).sum::<f64>() / count;
-    (instants.iter().map(|i| (of(i) - mean).powi(2)).sum::<f64>() / count).sqrt()
+    let mean = instants.iter().map(&quantity).sum::<f64>() / count;
+    (instants.iter().map(|i| (quantity(i) - mean).powi(2)).sum::<f64>() / count).sqrt()
 }
 
 #[cfg(test)]
@@ -185,7 +185,7 @@ mod tests {
     /// Three equal rudder angles: 14 to 20 % of random triples in 10/10 and 10/20 (independent computation; 0.162 and
     /// 0.190 by counting rows, and the draw has a standard deviation of 0.006).
     #[test]
-    fn the_share_of_singular_triples_is_known() {
+    fn the_share_of_singular_triples_is_that_of_a_count() {
         for (heading_deg, counted) in [(10.0, 0.162), (20.0, 0.190)] {
             let instants = exact(&Case { heading_deg, ..Case::default() });
             let drawn = draw(&instants, Selection::Uniform, 4000, 1).expect("most triples are usable");
@@ -207,6 +207,6 @@ mod tests {
         let mut instants = exact(&Case::default());
         instants.retain(|i| (i.rudder - 10f64.to_radians()).abs() < 1e-12);
         let error = draw(&instants, Selection::Uniform, 10, 1).expect_err("one rudder angle");
-        assert_eq!(error, IdentifyError::TooFewPoints { what: "usable triples of instants", needed: 10, found: 0 });
+        assert_eq!(error, IdentifyError::TooFewPoints { what: "usable triples of instants", needed: 10, count: 0 });
     }
 }

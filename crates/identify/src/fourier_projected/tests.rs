@@ -1,4 +1,4 @@
-//! Anchors, bias, calibration of the covariance and refusals of the mended Fourier method.
+//! Anchors, bias, calibration of the covariance and refusals of the corrected Fourier method.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 
@@ -81,7 +81,7 @@ fn noise_lowers_the_order() {
 }
 
 #[test]
-fn truncation_is_told_from_noise() {
+fn truncation_is_distinguished_from_noise() {
     let warned = |noise_deg: f64| {
         let case = Case { noise_deg, ..zigzag(10.0, 20.0) };
         let settings = Settings { harmonics: Order::Fixed(8), ..Settings::default() };
@@ -112,7 +112,7 @@ fn averaging_a_dense_record_changes_next_to_nothing() {
     let trial = Case { samples: 120_000, period_s: 0.005, noise_deg: 0.5, bias_deg: 0.5, ..Case::default() }.trial();
     let method = build(Settings::default());
     let averaged = method.identify(std::slice::from_ref(&trial)).expect("identified");
-    let whole = FourierProjected { most_rows: usize::MAX, ..method }.identify(&[trial]).expect("identified");
+    let whole = FourierProjected { max_rows: usize::MAX, ..method }.identify(&[trial]).expect("identified");
     assert!(averaged.diagnostic("equations") < Some(40_000.0) && whole.diagnostic("equations") > Some(100_000.0));
     let pairs = [(averaged.K(), whole.K()), (averaged.T(), whole.T()), (averaged.rudder_bias(), whole.rudder_bias())];
     for (averaged, whole) in pairs {
@@ -127,9 +127,9 @@ fn averaging_a_dense_record_changes_next_to_nothing() {
 #[test]
 fn a_record_of_more_zig_zags_than_the_series_can_follow_is_refused() {
     let long = |samples: usize| Case { samples, noise_deg: 0.1, ..Case::default() };
-    let most = estimate(Settings::default(), &long(2300)).response;
-    assert_relative_eq!(most.K(), 0.1, max_relative = 0.02);
-    assert_relative_eq!(most.T(), 16.3, max_relative = 0.05);
+    let longest = estimate(Settings::default(), &long(2300)).response;
+    assert_relative_eq!(longest.K(), 0.1, max_relative = 0.02);
+    assert_relative_eq!(longest.T(), 16.3, max_relative = 0.05);
     for samples in [2600, 8000, 40_000] {
         let error = build(Settings::default()).identify(&[long(samples).trial()]).expect_err("beyond 64 harmonics");
         assert_eq!(error.kind(), "too-few-points");

@@ -28,7 +28,7 @@ fn uniform_triples_are_useless() {
     let fitted = method.fit(&samples).expect("fits");
     let instants = method.instants(&trial, &samples, &fitted);
     let drawn = triples::draw(&instants, Selection::Uniform, 2000, 0).expect("most are usable");
-    let share = |holds: &dyn Fn(&Answer) -> bool| {
+    let share = |holds: &dyn Fn(&TripleEstimate) -> bool| {
         drawn.answers.iter().filter(|answer| holds(answer)).count() as f64 / drawn.answers.len() as f64
     };
     let negative = share(&|a| a.K < 0.0 || a.T < 0.0);

@@ -1,13 +1,12 @@
-//! Whether records contradict what was expected of a hull.
+//! Check of the prior of a hull against its records.
 //!
-//! If what was expected, N(μ, C₀), is true, the values that a fit finds depart from μ by Δ with the covariance C₀ −
-//! C, C that of the fit: the predictive check of Box (1980, doi:10.2307/2982063) in the form that Evans and Moshonov
-//! (2006, doi:10.1214/06-BA129) give it for a prior against data. In the directions w that diagonalise both, C₀ → 1,
-//! C → λ,
+//! If the prior N(μ, C₀) is true, the fitted values depart from μ by Δ with the covariance C₀ − C, C that of the fit:
+//! the predictive check of Box (1980, doi:10.2307/2982063) in the form that Evans and Moshonov (2006,
+//! doi:10.1214/06-BA129) give it for a prior against data. In the directions w that diagonalise both, C₀ → 1, C → λ,
 //!
-//! χ² = Σ z²/(1 − λ), z = w·Δ, over the directions in which the records tell something, λ < 0.9.
+//! χ² = Σ z²/(1 − λ), z = w·Δ, over the directions in which the records add information, λ < 0.9.
 //!
-//! It is exact for a linear model with a known error. A hull is neither: read a p of 0.01 as a reason to look.
+//! It is exact for a linear model with a given noise law. A hull has neither: read a p of 0.01 as a reason to look.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::is_of_trial;
@@ -15,34 +14,33 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::expected::ExpectedHull;
 
-/// Share of the variance of a direction that is left where the records tell too little of it.
-const UNTOLD: f64 = 0.9;
+/// Largest ratio of posterior to prior variance of an informed direction.
+const MAX_RATIO: f64 = 0.9;
 
-/// A p below this is a conflict.
-const CONFLICT: f64 = 0.01;
+/// p value below which the check reports a conflict.
+const CONFLICT_P_VALUE: f64 = 0.01;
 
-/// The check of what was expected of a hull against its records.
+/// Result of the check of a prior against records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectationCheck {
     /// χ².
     pub chi_square: f64,
-    /// Directions that were looked at.
+    /// Directions of the check.
     pub degrees_of_freedom: usize,
-    /// Probability of so large a χ² where the expectation holds.
+    /// Probability of a larger χ² if the prior is true.
     pub p_value: f64,
-    /// Key and departure, in standard deviations of what was expected, of every coefficient of the ship; the farthest
-    /// first.
+    /// Key and departure, in standard deviations of the prior, of every coefficient of the ship; the largest first.
     pub moved: Vec<(&'static str, f64)>,
 }
 
 impl ExpectationCheck {
-    /// Whether records and expectation contradict each other.
+    /// `true` if the records contradict the prior.
     pub fn is_conflict(&self) -> bool {
-        self.p_value < CONFLICT
+        self.p_value < CONFLICT_P_VALUE
     }
 
-    /// What a fit found against what was expected of the ship; what belongs to a trial has no part in it. `None`
-    /// where the records tell nothing new.
+    /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` where
+    /// the records add no information.
     pub(super) fn of(expected: &ExpectedHull, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
             (0..values.len()).filter(|&place| !is_of_trial(expected.coefficients[place].key)).collect();
@@ -54,16 +52,16 @@ impl ExpectationCheck {
         let shift = root.solve_lower_triangular(&DVector::from_fn(places.len(), |i, _| shift[places[i]]))?;
         let half = root.solve_lower_triangular(&of_ship(covariance))?;
         let eigen = SymmetricEigen::new(root.solve_lower_triangular(&half.transpose())?);
-        let told = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|(left, _)| **left < UNTOLD);
-        let squares: Vec<f64> = told.map(|(left, own)| own.dot(&shift).powi(2) / (1.0 - left)).collect();
+        let pairs = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|pair| *pair.0 < MAX_RATIO);
+        let squares: Vec<f64> = pairs.map(|(ratio, axis)| axis.dot(&shift).powi(2) / (1.0 - ratio)).collect();
         let chi_square: f64 = squares.iter().sum();
         let law = ChiSquared::new(squares.len() as f64).ok()?;
         let departure = |&place: &usize| {
-            let own = &expected.coefficients[place];
-            (own.key, (values[place] - own.mean) / own.sd)
+            let coefficient = &expected.coefficients[place];
+            (coefficient.key, (values[place] - coefficient.mean) / coefficient.sd)
         };
         let mut moved: Vec<(&'static str, f64)> = places.iter().map(departure).collect();
-        moved.sort_by(|one, other| other.1.abs().total_cmp(&one.1.abs()));
+        moved.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         Some(Self { chi_square, degrees_of_freedom: squares.len(), p_value: law.sf(chi_square), moved })
     }
 }

@@ -1,4 +1,4 @@
-//! What earlier trials tell of the next: made-up numbers, and KVLCC2 as she is simulated.
+//! Priors from earlier trials: synthetic numbers, and simulated trials of KVLCC2.
 
 use document::earlier_trials::Likeness;
 use nalgebra::DVector;
@@ -30,9 +30,11 @@ const SHIP: HullParticulars = HullParticulars {
 /// A hull whose every coefficient is a deviation above what was expected, known to a tenth of the deviation in every
 /// direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
-    let form = HullForm::of_ship(Some(&particulars)).into_iter().find(|own| own.as_str() == form).expect("known");
-    let own = form.coefficients();
-    let values = DVector::from_iterator(own.len(), own.iter().map(|one| one.mean + one.sd));
+    let form =
+        HullForm::of_ship(Some(&particulars)).into_iter().find(|candidate| candidate.as_str() == form).expect("known");
+    let coefficients = form.coefficients();
+    let shifted = coefficients.iter().map(|coefficient| coefficient.mean + coefficient.sd);
+    let values = DVector::from_iterator(coefficients.len(), shifted);
     let covariance = form.covariance() * 0.01;
     EarlierHull { form, particulars, values, covariance }
 }
@@ -161,7 +163,7 @@ fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
     let track = |trial: &Trial| HullTrack::of(trial, &estimate.reference).expect("a record");
     let tracks: Vec<HullTrack> = others.iter().map(track).collect();
     let mut problem = HullObjective::new(&estimate.expected, &tracks);
-    let left = problem.left(estimate.values.as_slice()).expect("a ship");
+    let left = problem.misfits(estimate.values.as_slice()).expect("a ship");
     left.iter().map(|own| own.whole).sum::<f64>() / left.len() as f64
 }
 

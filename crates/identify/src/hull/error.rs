@@ -1,30 +1,30 @@
-//! Why there is no hull.
+//! Reasons why no hull is fitted.
 
 use thiserror::Error;
 
-/// Fewest headings that a record has to hold.
-pub(super) const FEWEST: usize = 20;
+/// Headings that a record needs.
+pub(super) const MIN_HEADINGS: usize = 20;
 
-/// Farthest that rows may be apart, L/U₀: in two lengths a ship turns and comes back.
-pub(super) const COARSEST: f64 = 2.0;
+/// Largest interval between rows, L/U₀: within two lengths a ship turns and comes back.
+pub(super) const MAX_INTERVAL_LENGTHS: f64 = 2.0;
 
-/// Longest record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it, and the time of
-/// a fit grows with it.
-pub(super) const LONGEST: f64 = 1000.0;
+/// Longest duration of a record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it,
+/// and the time of a fit grows with it.
+pub(super) const MAX_DURATION_LENGTHS: f64 = 1000.0;
 
 /// Why no hull is fitted.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HullFitError {
     /// Length or speed are not declared.
-    #[error("length and approach speed of the ship are not known")]
+    #[error("length and approach speed of the ship are missing; declare both in the sidecar of the record")]
     Particulars,
     /// The record of this name is too short.
-    #[error("{0} has fewer than {FEWEST} headings")]
+    #[error("{0} has fewer than {MIN_HEADINGS} headings")]
     Short(String),
     /// Rows, or the ends of a record, that are farther apart than in any trial of a ship.
     #[error(
-        "{trial} has a row every {row:.3} L/U over {whole:.0} L/U; expected at most {COARSEST} L/U and {LONGEST} L/U; check the \
-         clock, length and speed"
+        "{trial} has a row every {row:.3} L/U over {whole:.0} L/U; expected at most {MAX_INTERVAL_LENGTHS} L/U and \
+         {MAX_DURATION_LENGTHS} L/U; check the clock, length and speed"
     )]
     Clock {
         /// Name of the record.
@@ -34,7 +34,7 @@ pub enum HullFitError {
         /// Its length, L/U₀.
         whole: f64,
     },
-    /// A record begins near rest, which no prior of a hull is about.
+    /// A record begins near rest, where the priors of a hull do not apply.
     #[error("{trial} begins at {share:.2} of the approach speed; begin it in steady approach")]
     GathersWay {
         /// Name of the record.
@@ -42,7 +42,7 @@ pub enum HullFitError {
         /// Speed in its first row over that of the approach.
         share: f64,
     },
-    /// No values near the expected ones can be replayed.
-    #[error("no hull near the expected one can be replayed")]
+    /// No values near the prior can be replayed.
+    #[error("no hull near its prior can be replayed; check length, speed and rudder sign")]
     NoReplay,
 }

@@ -1,48 +1,47 @@
-//! What is expected of the coefficients of a hull before its records are seen: what its form or its particulars say,
-//! and what earlier trials have told of her, or of a ship like her.
+//! Prior of the coefficients of a hull: from its form or its particulars, and from earlier trials of the ship or of a
+//! similar ship.
 //!
-//! An earlier trial left values θ₁ with a covariance C₁; before it μ₁ was expected with the precision Λ₁. What the
-//! trial itself told has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. Expected of the next trial
-//! are
+//! An earlier trial gave values θ₁ with a covariance C₁, from a prior of mean μ₁ and precision Λ₁. The information of
+//! the trial itself has the precision D₁ = C₁⁻¹ − Λ₁ and the vector h₁ = C₁⁻¹ θ₁ − Λ₁ μ₁. The prior of the next trial
+//! is
 //!
 //! Λ = Λ₀ + Σ D₁/f², Λ μ = Λ₀ μ₀ + Σ (h₁ + D₁ s)/f²
 //!
-//! with what her own particulars say, μ₀ and Λ₀, counted once however many trials there are; s = μ₀ − μ₁ is the
-//! difference that the formulas make of other particulars, and f widens by the likeness of the ships ([`Likeness`]):
-//! a power prior (Ibrahim and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². Where the earlier trial told
-//! nothing, the prior is that of the particulars. Coefficients have no dimension, so scale changes none of them at
-//! the same Froude number.
+//! with the prior of her particulars, μ₀ and Λ₀, counted once for any number of trials; s = μ₀ − μ₁ is the change of
+//! the formulas with the particulars, and f widens by the likeness of the ships ([`Likeness`]): a power prior (Ibrahim
+//! and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². Where the earlier trial has no information, the prior is
+//! that of the particulars. Coefficients have no dimension, so scale changes none of them at the same Froude number.
 
 use document::earlier_trials::Likeness;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
 use ship::vessel::prior::HullParticulars;
 
-/// Froude numbers that differ by less than this share are alike.
-const FROUDE: f64 = 0.1;
+/// Relative tolerance of equal Froude numbers.
+const FROUDE_TOLERANCE: f64 = 0.1;
 
-/// What an earlier trial told in a direction counts from this share of what was expected before it.
-const TOLD: f64 = 1e-6;
+/// Smallest information of an earlier trial in a direction, relative to its prior, that is used.
+const MIN_INFORMATION: f64 = 1e-6;
 
-/// What is expected of the coefficients of a form: a normal law.
+/// Prior of the coefficients of a form: a normal law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedHull {
     /// The form.
     pub form: HullForm,
-    /// Particulars of the ship that the form is of, where they are known.
+    /// Particulars of the ship, where they are declared.
     pub particulars: Option<HullParticulars>,
-    /// The coefficients, each with its own mean and standard deviation.
+    /// The coefficients, each with its prior mean and standard deviation.
     pub coefficients: Vec<HullCoefficient>,
-    /// Inverse of the covariance of all.
+    /// Inverse of the covariance of all coefficients.
     pub precision: DMatrix<f64>,
-    /// Whether earlier trials are in it.
+    /// `true` if the prior includes earlier trials.
     pub has_trials: bool,
 }
 
-/// A hull that earlier trials left.
+/// Hull estimate from earlier trials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EarlierHull {
-    /// Its form, about what its particulars say.
+    /// Its form, with the prior of its particulars.
     pub form: HullForm,
     /// Particulars of its ship.
     pub particulars: HullParticulars,
@@ -52,27 +51,27 @@ pub struct EarlierHull {
     pub covariance: DMatrix<f64>,
 }
 
-/// Whether two ships sail at so different Froude numbers, by more than a tenth, that coefficients of one say less of
-/// the other: waves and squat are others.
+/// `true` if the Froude numbers of two ships differ by more than a tenth, so that waves and squat differ and the
+/// coefficients carry over less well.
 pub fn is_other_froude_number(earlier: &HullParticulars, ship: &HullParticulars) -> bool {
-    (earlier.froude_number() / ship.froude_number() - 1.0).abs() > FROUDE
+    (earlier.froude_number() / ship.froude_number() - 1.0).abs() > FROUDE_TOLERANCE
 }
 
 impl ExpectedHull {
-    /// What a form says by itself.
+    /// Prior from the form alone.
     pub fn of_form(form: HullForm) -> Self {
         let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
         Self { form, particulars: None, coefficients, precision, has_trials: false }
     }
 
-    /// The same of all forms that a ship can be fitted with, those with earlier trials after these. What is missing of
-    /// her particulars is that of the earlier ships.
+    /// Priors of all forms that can be fitted to a ship, updated with earlier trials. Missing particulars are taken
+    /// from the earlier ships.
     pub fn of_ship(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
-        let particulars =
-            particulars.map(|own| earlier.iter().fold(*own, |ship, one| ship.filled_from(&one.particulars)));
+        let particulars = particulars
+            .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.filled_from(&trial.particulars)));
         let after_trials = |form: HullForm| {
             let mut expected = Self { particulars, ..Self::of_form(form) };
-            let same_form = earlier.iter().filter(|own| own.form.as_str() == expected.form.as_str());
+            let same_form = earlier.iter().filter(|hull| hull.form.as_str() == expected.form.as_str());
             if let Some(ship) = particulars {
                 let all: Vec<&EarlierHull> = same_form.collect();
                 expected.add(&ship, &all);
@@ -82,34 +81,34 @@ impl ExpectedHull {
         HullForm::of_ship(particulars.as_ref()).into_iter().map(after_trials).collect()
     }
 
-    /// Expected values.
+    /// Mean values.
     pub fn mean(&self) -> DVector<f64> {
-        DVector::from_iterator(self.coefficients.len(), self.coefficients.iter().map(|own| own.mean))
+        DVector::from_iterator(self.coefficients.len(), self.coefficients.iter().map(|coefficient| coefficient.mean))
     }
 
-    /// Covariance C of the coefficients, and how far they follow those of the one earlier hull that is in them,
-    /// G = C (Λ − Λ₀): the identity where its trials told all, 0 where these told nothing. `None` without trials.
+    /// Covariance C of the coefficients, and their gain G = C (Λ − Λ₀) on the coefficients of the earlier hull: the
+    /// identity where its trials dominate, 0 where they have no information. `None` without trials.
     pub fn law(&self) -> Option<[DMatrix<f64>; 2]> {
         let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
         let gain = &covariance * (&self.precision - precision_of(&self.form));
         Some([covariance, gain])
     }
 
-    /// Adds what earlier trials told. What makes no normal law is left out.
+    /// Adds the information of earlier trials; a hull whose covariance is not positive definite is left out.
     pub(super) fn add(&mut self, ship: &HullParticulars, earlier: &[&EarlierHull]) {
         let mut precision = self.precision.clone();
         let mut vector = &precision * self.mean();
         let mut has_trials = false;
-        for own in earlier {
-            let Some((told, of_told)) = own.told(self, ship) else { continue };
-            precision += told;
-            vector += of_told;
+        for hull in earlier {
+            let Some((added_precision, added_vector)) = hull.information(self, ship) else { continue };
+            precision += added_precision;
+            vector += added_vector;
             has_trials = true;
         }
         let Some(factor) = Cholesky::new(precision.clone()).filter(|_| has_trials) else { return };
         let (mean, covariance) = (factor.solve(&vector), factor.inverse());
-        for (place, own) in self.coefficients.iter_mut().enumerate() {
-            (own.mean, own.sd) = (mean[place].clamp(own.ends[0], own.ends[1]), covariance[(place, place)].sqrt());
+        for (place, HullCoefficient { mean: value, sd, ends, .. }) in self.coefficients.iter_mut().enumerate() {
+            (*value, *sd) = (mean[place].clamp(ends[0], ends[1]), covariance[(place, place)].sqrt());
         }
         (self.precision, self.has_trials) = (precision, true);
     }
@@ -121,64 +120,62 @@ fn precision_of(form: &HullForm) -> DMatrix<f64> {
 }
 
 impl EarlierHull {
-    /// D/f² and (h + D s)/f² of the trials of this hull, in the places of the coefficients of another ship. `None`
-    /// where its covariance is none.
+    /// Information of the trials of this hull, D/f² and (h + D s)/f², in the places of the coefficients of another
+    /// ship. `None` where its covariance is not positive definite.
     ///
-    /// What belongs to a trial is not told; nor at another scale what depends on friction, but by what is correlated
-    /// with it.
-    fn told(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    /// Coefficients of a single trial are left out; so are those of friction at another scale, except through their
+    /// correlations.
+    fn information(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();
         let of_ship = |key: &str| !is_of_trial(key) && (likeness == Likeness::SameShip || !is_of_friction(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();
         let count = kept.len();
-        // In standard deviations of what was expected before, so that every direction is measured alike: L with L Lᵀ
-        // its covariance.
-        let of = |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(kept[i], kept[j])]);
-        let root = Cholesky::new(of(self.form.covariance()))?.l();
+        // In standard deviations of the prior, so that every direction is measured alike: L with L Lᵀ its covariance.
+        let kept_block = |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(kept[i], kept[j])]);
+        let root = Cholesky::new(kept_block(self.form.covariance()))?.l();
         let in_root = |vector: DVector<f64>| root.solve_lower_triangular(&vector);
-        let half = root.solve_lower_triangular(&of(&self.covariance))?;
+        let half = root.solve_lower_triangular(&kept_block(&self.covariance))?;
         let after = Cholesky::new(root.solve_lower_triangular(&half.transpose())?)?.inverse();
         let departure = in_root(DVector::from_fn(count, |i, _| self.values[kept[i]] - before[kept[i]].mean))?;
-        // h − D μ₁ = C₁⁻¹ (θ₁ − μ₁): what was told of the departure from what was expected.
-        let of_departure = &after * departure;
+        // h − D μ₁ = C₁⁻¹ (θ₁ − μ₁): the information on the departure from the prior.
+        let departure_information = &after * departure;
         let eigen = SymmetricEigen::new(after - DMatrix::identity(count, count));
-        let mut told = DMatrix::zeros(count, count);
+        let mut precision = DMatrix::zeros(count, count);
         let mut vector = DVector::zeros(count);
         for (value, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > TOLD {
-                told.ger(*value, &direction, &direction, 1.0);
-                vector.axpy(direction.dot(&of_departure), &direction, 1.0);
+            if *value > MIN_INFORMATION {
+                precision.ger(*value, &direction, &direction, 1.0);
+                vector.axpy(direction.dot(&departure_information), &direction, 1.0);
             }
         }
-        // About the other ship the same departure is counted from what her own particulars say: D s + D μ₁ = D μ₀.
-        let about = self.carried(expected, ship, before);
-        vector += &told * in_root(DVector::from_fn(count, |i, _| about[kept[i]]))?;
+        // For the other ship the same departure counts from the prior of her particulars: D s + D μ₁ = D μ₀.
+        let carried = self.carried(expected, ship, before);
+        vector += &precision * in_root(DVector::from_fn(count, |i, _| carried[kept[i]]))?;
         let weight = likeness.factor().powi(-2);
         let vector = root.tr_solve_lower_triangular(&vector)? * weight;
-        let half = root.tr_solve_lower_triangular(&told)?;
-        let told = root.tr_solve_lower_triangular(&half.transpose())? * weight;
+        let half = root.tr_solve_lower_triangular(&precision)?;
+        let precision = root.tr_solve_lower_triangular(&half.transpose())? * weight;
         let size = before.len();
         let (mut matrix, mut all) = (DMatrix::zeros(size, size), DVector::zeros(size));
         for i in 0..count {
             all[kept[i]] = vector[i];
             for j in 0..count {
-                matrix[(kept[i], kept[j])] = told[(i, j)];
+                matrix[(kept[i], kept[j])] = precision[(i, j)];
             }
         }
         Some((matrix, all))
     }
 
-    /// What was expected before the earlier trials, moved by the difference that the formulas make of other
-    /// particulars.
+    /// Prior means before the earlier trials, moved by the change of the formulas with the particulars.
     fn carried(&self, expected: &ExpectedHull, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
-        // What is known of one ship only is no difference.
+        // A particular that only one of the ships declares makes no difference.
         let filled = self.particulars.filled_from(ship);
         let forms = HullForm::of_ship(Some(&filled));
         let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullForm::coefficients);
         let generic = expected.form.coefficients();
-        let moved = |(place, own): (usize, &HullCoefficient)| {
-            own.mean + of_filled.as_ref().map_or(0.0, |filled| generic[place].mean - filled[place].mean)
+        let moved = |(place, coefficient): (usize, &HullCoefficient)| {
+            coefficient.mean + of_filled.as_ref().map_or(0.0, |filled| generic[place].mean - filled[place].mean)
         };
         before.iter().enumerate().map(moved).collect()
     }

@@ -1,26 +1,27 @@
-//! A hull of three degrees of freedom fitted to records of heading and rudder, about what is expected of it.
+//! A hull of three degrees of freedom fitted to records of heading and rudder, with a prior of its coefficients.
 //!
-//! The rudder that was recorded is replayed through the hull ([`ship::vessel::prime`]), over the whole record and over
-//! windows of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach
-//! speed) and run on. Positions give the speed of a record that has none. Minimised is
+//! The recorded rudder is replayed through the hull ([`ship::vessel::prime`]), over the whole record and over windows
+//! of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach speed)
+//! and run on. Positions give the speed of a record without a speed. The fit minimises
 //!
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
 //! recorded]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: no hull of ten
-//! or twenty numbers is the ship. They start large and follow what is left of every record, to 1°, 0.2° and 0.1 U₀.
-//! A sway velocity is not fitted: logs do not say of which point of the ship it is. Nor is a yaw rate beside the
-//! heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it made the heading error on other records of
-//! KVLCC2 0.96 ± 0.02 times what it is without, and smaller in 5 of 11 sets.
+//! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: a hull of ten
+//! or twenty numbers only approximates the ship. They start large and follow the residual of every record, down to 1°,
+//! 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. Nor is a yaw rate beside
+//! the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the heading error on other
+//! records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
 //!
-//! The n records of a ship count as one of their mean length: the error of the form is much the same in all of them.
-//! The turn is one that nearly every ship makes; zig-zags say little of it, and a form fitted to them may do anything
-//! there.
+//! The n records of a ship weigh as much as a single record of their mean length: the error of the form is much the
+//! same in all of them. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to
+//! them is arbitrary there.
 //!
-//! The covariance is the inverse of the second derivatives of J/2, so it holds the error of the form as far as that is
-//! another in every ship length of a record. Firm priors are what lets one record tell so many coefficients; without
-//! them the fitted hull is unstable as often as not.
+//! The covariance is the inverse of the second derivatives of J/2, so it includes the error of the form as far as that
+//! error is independent from ship length to ship length. Firm priors make so many coefficients identifiable from a
+//! single record; without them the fitted hull is often unstable. Sources: Yasukawa and Yoshimura (2015) for the MMG
+//! form; output error with priors as in Ljung (1999), System Identification: Theory for the User.
 
 mod conflict;
 mod error;
@@ -52,7 +53,7 @@ pub use track::HullReference;
 use track::HullTrack;
 pub use weighed::after_earlier;
 
-/// How a search proceeds.
+/// Rules of the Levenberg-Marquardt search.
 const RULES: Rules = Rules {
     steps: 40,
     damping: 1e-2,
@@ -66,10 +67,10 @@ const RULES: Rules = Rules {
     in_a_row: 2,
 };
 
-/// Times the records are believed anew from what is left of them.
-const REWEIGHED: usize = 3;
+/// Rounds in which the deviations follow the residuals.
+const REWEIGHTINGS: usize = 3;
 
-/// What is left of one record.
+/// Residual of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HullResidual {
     /// Name of the record.
@@ -82,85 +83,85 @@ pub struct HullResidual {
     pub begins_with: f64,
 }
 
-/// A hull with what is known of its coefficients.
+/// Estimate of the coefficients of a hull, with their covariance.
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
-    /// The form, and what was expected of its coefficients.
+    /// The form, and the prior of its coefficients.
     pub expected: ExpectedHull,
-    /// Length, speed and propeller that it is measured with.
+    /// Length, speed and propeller rate that make its quantities dimensionless.
     pub reference: HullReference,
     /// The coefficients.
     pub values: DVector<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// Its records.
+    /// Residuals of its records.
     pub records: Vec<HullResidual>,
-    /// What the form leaves of them, as a random moment.
+    /// Error of the form, as a random moment.
     pub moment: FormMoment,
 }
 
-/// Fits a hull about what is expected of its coefficients to records of one ship.
+/// Fits a hull to records of one ship, with a prior of its coefficients.
 ///
-/// Fails where length or speed of the ship are not known, where a record has fewer than twenty headings, rows or a
-/// length that no trial of a ship has or begins near rest, and where no values near the expected ones can be replayed.
+/// Fails where length or speed of the ship are missing, where a record has fewer than twenty headings, rows too far
+/// apart, an impossible duration or a start near rest, and where no values near the prior can be replayed.
 pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;
     let mut problem = HullObjective::new(expected, &tracks);
-    let mut at = expected.mean();
-    let mut found = minimise(&mut problem, at, &RULES);
-    // Each record is believed the more the nearer the hull has come: the way down avoids far minima.
-    for _ in 0..REWEIGHED {
-        problem.reweigh(found.at.as_slice());
-        at = found.at;
-        found = minimise(&mut problem, at, &RULES);
+    let mut start = expected.mean();
+    let mut search = minimise(&mut problem, start, &RULES);
+    // The weight of a record grows as the hull approaches it, which avoids distant minima.
+    for _ in 0..REWEIGHTINGS {
+        problem.reweigh(search.at.as_slice());
+        start = search.at;
+        search = minimise(&mut problem, start, &RULES);
     }
-    if found.end == End::NotFinite {
+    if search.end == End::NotFinite {
         return Err(HullFitError::NoReplay);
     }
-    let covariance = Cholesky::new(found.normal.matrix.clone()).map(|factor| factor.inverse());
+    let covariance = Cholesky::new(search.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullFitError::NoReplay)?;
-    let left = problem.left(found.at.as_slice()).unwrap_or_default();
-    let residual = |(trial, left): (&Trial, objective::Left)| HullResidual {
+    let misfits = problem.misfits(search.at.as_slice()).unwrap_or_default();
+    let residual = |(trial, misfit): (&Trial, objective::Misfit)| HullResidual {
         name: trial.name().to_owned(),
-        whole: left.whole.sqrt(),
-        window: left.window.sqrt(),
-        begins_with: left.begins_with / reference.time(),
+        whole: misfit.whole.sqrt(),
+        window: misfit.window.sqrt(),
+        begins_with: misfit.initial_yaw_rate / reference.time(),
     };
-    let moment = FormMoment::of(&form.with(found.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &left);
+    let moment = FormMoment::of(&form.with(search.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &misfits);
     let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
-    let records = trials.iter().zip(left).map(residual).collect();
+    let records = trials.iter().zip(misfits).map(residual).collect();
     let expected = expected.clone();
-    Ok(HullEstimate { expected, reference, values: found.at, covariance, records, moment })
+    Ok(HullEstimate { expected, reference, values: search.at, covariance, records, moment })
 }
 
-/// Why no hull can be fitted to some records of one ship; `None` where one can.
+/// Reason why no hull can be fitted to these records of one ship; `None` where a fit is possible.
 pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
     tracks(trials).err()
 }
 
-/// The records of one ship without dimension, and what they are measured with.
+/// The dimensionless records of one ship, and their reference quantities.
 fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
     let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
     let tracks = trials.iter().map(|trial| HullTrack::of(trial, &reference)).collect::<Result<_, _>>()?;
     Ok((reference, tracks))
 }
 
-/// A hull that leaves this many times what another model leaves takes no part.
-const FAR: f64 = 3.0;
+/// Largest residual of a member, relative to the smallest of all hulls and another model.
+const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
-/// The hulls of all forms that can be fitted to records of one ship, about what earlier trials told of her.
+/// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
     let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
-    expected.par_iter().filter_map(|own| fit(trials, own).ok()).collect()
+    expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 
-/// Those of some hulls that their records speak for: they leave no more than three times what the best of them leaves
-/// of whole records, or another model (`rival`, rad; infinite without one).
-pub fn members(found: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
-    let left = |hull: &HullEstimate| hull.mean_square().sqrt();
-    let least = found.iter().map(left).fold(rival, f64::min);
-    found.into_iter().filter(|hull| left(hull) <= FAR * least).collect()
+/// The hulls supported by their records: their residual of whole records is at most three times the smallest of all
+/// hulls and of another model (`rival`, rad; infinite without another model).
+pub fn members(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
+    let residual = |hull: &HullEstimate| hull.mean_square().sqrt();
+    let smallest = hulls.iter().map(residual).fold(rival, f64::min);
+    hulls.into_iter().filter(|hull| residual(hull) <= MAX_RESIDUAL_RATIO * smallest).collect()
 }
 
 impl HullEstimate {
@@ -168,30 +169,30 @@ impl HullEstimate {
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
-        let hull = self.expected.form.with(&values).expect("it was replayed");
+        let hull = self.expected.form.with(&values).expect("the fit has replayed it");
         ScaledHull { hull, length, speed, propeller }
     }
 
-    /// Variance of the heading of the replay of a record over time (s), rad²: by the covariance of the coefficients,
-    /// and by what the form has left of the records of the fit. `None` for a record that cannot be replayed, and where
-    /// the standard deviation is more than half a turn, which no linear law says.
+    /// Variance of the replayed heading of a record over time (s), rad²: from the covariance of the coefficients and
+    /// from the mean square residual of the fit. `None` for a record that cannot be replayed, and where the standard
+    /// deviation exceeds half a turn, beyond the range of a linear law.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;
         let [time, mut variance] = variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
-        let left = self.mean_square();
-        variance.iter_mut().for_each(|own| *own += left);
-        if variance.iter().any(|own| *own > PI * PI) {
+        let residual = self.mean_square();
+        variance.iter_mut().for_each(|value| *value += residual);
+        if variance.iter().any(|value| *value > PI * PI) {
             return None;
         }
         Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
     }
 
-    /// The records against what was expected of the ship; `None` where they tell nothing new.
+    /// Check of the prior against the records; `None` where the records add no information.
     pub fn check(&self) -> Option<ExpectationCheck> {
         ExpectationCheck::of(&self.expected, &self.values, &self.covariance)
     }
 
-    /// Mean square of what it leaves of whole records, rad².
+    /// Mean square residual of whole records, rad².
     pub fn mean_square(&self) -> f64 {
         self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
     }

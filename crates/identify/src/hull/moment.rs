@@ -1,4 +1,4 @@
-//! The error of the form of a hull, as a random yaw moment that leaves of a record what the hull has left of it.
+//! The error of the form of a hull, as a random yaw moment that reproduces the residual of the fit.
 
 use estimation::number::Dual;
 use rand::rngs::ChaCha8Rng;
@@ -6,22 +6,22 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use ship::vessel::prime::PrimeHull;
 
-use super::objective::{Left, left_of_windows};
+use super::objective::{Misfit, window_mean};
 use super::replayed::replayed;
 use super::track::HullTrack;
 
-/// Correlation time, in L/U₀: what a form gets wrong changes with the manoeuvre and not with a gust.
-const CORRELATION: f64 = 2.0;
+/// Correlation time, in L/U₀: the error of a form changes with the manoeuvre and not with a gust.
+const CORRELATION_TIME_LENGTHS: f64 = 2.0;
 
-/// Deviation of the first moments that are tried, rad, and times they are scaled: a hull is nearly linear in them.
-const FIRST: f64 = 5e-3;
-const SCALED: usize = 2;
+/// Deviation of the first trial moments, rad, and the number of rescalings: a hull is nearly linear in them.
+const FIRST_DEVIATION_RAD: f64 = 5e-3;
+const SCALINGS: usize = 2;
 
-/// Draws for every record, from this seed.
+/// Draws for every record, and their first seed.
 const DRAWS: u64 = 6;
 const SEED: u64 = 2_210_105;
 
-/// What is random in yaw: an Ornstein–Uhlenbeck process.
+/// Random yaw moment of a form: an Ornstein–Uhlenbeck process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormMoment {
     /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
@@ -31,41 +31,41 @@ pub struct FormMoment {
 }
 
 impl FormMoment {
-    /// The moment, in units of L and U₀, under which the hull departs from itself in windows of 3.5 L/U₀ as far as the
-    /// records do, which have `left` so much.
-    pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], left: &[Left]) -> Self {
+    /// The moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
+    /// L/U₀ as far as the records do, whose residuals are `misfits`.
+    pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
         let hull = hull.constant::<Dual<1>>();
         let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;
-        let wanted = mean(&mut left.iter().map(|left| left.window));
-        let mut deviation = FIRST;
-        for _ in 0..SCALED {
+        let target = mean(&mut misfits.iter().map(|misfit| misfit.window));
+        let mut deviation = FIRST_DEVIATION_RAD;
+        for _ in 0..SCALINGS {
             let of_track = |track| (0..DRAWS).map(|draw| departure(&hull, track, deviation, SEED + draw)).sum::<f64>();
-            let found = mean(&mut tracks.iter().map(of_track)) / DRAWS as f64;
-            if !(found > 0.0 && found.is_finite()) {
-                return Self { deviation: 0.0, correlation_time: CORRELATION };
+            let simulated = mean(&mut tracks.iter().map(of_track)) / DRAWS as f64;
+            if !(simulated > 0.0 && simulated.is_finite()) {
+                return Self { deviation: 0.0, correlation_time: CORRELATION_TIME_LENGTHS };
             }
-            deviation *= (wanted / found).sqrt();
+            deviation *= (target / simulated).sqrt();
         }
-        Self { deviation, correlation_time: CORRELATION }
+        Self { deviation, correlation_time: CORRELATION_TIME_LENGTHS }
     }
 }
 
-/// Mean square heading error in windows of a replay under one random moment, as of a record.
+/// Mean square heading error in windows of a replay under a random moment, computed as for a record.
 fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed: u64) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut disturbed = track.clone();
     let mut moment = deviation * random.sample::<f64, _>(StandardNormal);
-    for (row, own) in disturbed.moment.iter_mut().enumerate() {
+    for (row, value) in disturbed.moment.iter_mut().enumerate() {
         if row > 0 {
-            let kept = (-(track.time[row] - track.time[row - 1]) / CORRELATION).exp();
+            let kept = (-(track.time[row] - track.time[row - 1]) / CORRELATION_TIME_LENGTHS).exp();
             moment = kept * moment + (1.0 - kept * kept).sqrt() * deviation * random.sample::<f64, _>(StandardNormal);
         }
-        *own = moment;
+        *value = moment;
     }
     let start = [track.start[0], track.start[1], 0.0].map(Dual::from);
     let rows = replayed(hull, &disturbed, track.whole, start).rows;
     let heading = rows.iter().zip(&track.heading);
     let heading = heading.map(|(row, read)| if read.is_finite() { row[0].value } else { f64::NAN }).collect();
     let mut rates = vec![0.0; track.cuts.len() - 1];
-    left_of_windows(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
+    window_mean(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
 }

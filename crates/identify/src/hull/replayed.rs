@@ -5,10 +5,10 @@ use ship::vessel::prime::PrimeHull;
 
 use super::track::HullTrack;
 
-/// Longest step of the solver, in L/U₀.
-const LONGEST: f64 = 0.08;
+/// Largest step of the solver, in L/U₀.
+const MAX_STEP_LENGTHS: f64 = 0.08;
 
-/// A window replayed: rows of states, each (ψ, u, v).
+/// Replay of a window: rows of states, each (ψ, u, v).
 pub(super) struct Replayed<R> {
     pub rows: Vec<[R; 3]>,
     /// State at the first row after it.
@@ -29,14 +29,14 @@ pub(super) fn replayed<R: Real>(
     let last = to.min(track.time.len() - 1);
     for row in from + 1..=last {
         let span = track.time[row] - track.time[row - 1];
-        let pieces = (span / LONGEST).ceil().max(1.0);
+        let pieces = (span / MAX_STEP_LENGTHS).ceil().max(1.0);
         let step = span / pieces;
         let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
         for piece in 0..pieces as usize {
             let rates = |state: [R; 3], piece: usize| {
                 let share = piece as f64 / pieces;
                 let rudder = R::from(between(&track.rudder, share));
-                let wind = track.wind.as_ref().map_or([0.0; 3], |own| own.each_ref().map(|axis| between(axis, share)));
+                let wind = track.wind.as_ref().map_or([0.0; 3], |xyz| xyz.each_ref().map(|axis| between(axis, share)));
                 hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share), wind)
             };
             let first = rates(state, piece);

@@ -78,24 +78,28 @@ fn quadratic(trials: &[Trial]) -> HullEstimate {
 /// All come back to within 2.5 standard deviations, and the moment of the rudder to within 15 %.
 #[test]
 fn a_hull_of_the_form_comes_back() {
-    let found = quadratic(&records(|_| 0.0));
-    for (place, (own, truth)) in found.expected.coefficients.iter().zip(TRUTH).enumerate() {
-        let (value, sd) = (found.values[place], found.covariance[(place, place)].sqrt());
-        assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", own.symbol);
-        assert!(own.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", own.symbol);
+    let estimate = quadratic(&records(|_| 0.0));
+    for (place, (coefficient, truth)) in estimate.expected.coefficients.iter().zip(TRUTH).enumerate() {
+        let (value, sd) = (estimate.values[place], estimate.covariance[(place, place)].sqrt());
+        assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", coefficient.symbol);
+        assert!(
+            coefficient.key != "Nd" || (value / truth - 1.0).abs() < 0.15,
+            "{}: {value} {truth}",
+            coefficient.symbol
+        );
     }
-    for left in &found.records {
+    for left in &estimate.records {
         assert!(to_deg(left.whole) < 0.2, "{}: {}°", left.name, to_deg(left.whole));
     }
-    assert!(found.moment.deviation < from_deg(0.2), "{:?}", found.moment);
+    assert!(estimate.moment.deviation < from_deg(0.2), "{:?}", estimate.moment);
 }
 
 /// Rudder, heading and speed of a record, and channels that do not vary.
 fn beside_constants(trial: &Trial, constants: &[(Channel, f64)]) -> Trial {
-    let own = [Channel::Rudder, Channel::Heading, Channel::Speed];
-    let own = own.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
+    let recorded = [Channel::Rudder, Channel::Heading, Channel::Speed];
+    let recorded = recorded.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
     let constants = constants.iter().map(|&(channel, value)| (channel, vec![value; trial.len()]));
-    let channels = own.into_iter().chain(constants).collect();
+    let channels = recorded.into_iter().chain(constants).collect();
     let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
     let ship = trial.particulars().expect("declared");
     Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
@@ -157,7 +161,7 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
         let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
         let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
         let mut problem = HullObjective::new(&expected, &tracks);
-        let left = to_deg(problem.left(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
+        let left = to_deg(problem.misfits(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
         assert!(left < 3.5, "{}: {left}", expected.form.as_str());
     }
 }
@@ -166,11 +170,11 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
 fn the_mirrored_records_give_the_mirrored_hull() {
     let trials = records(|_| 0.0);
     let mirrored: Vec<Trial> = trials.iter().map(in_the_mirror).collect();
-    let (one, other) = (quadratic(&trials), quadratic(&mirrored));
-    for (place, own) in one.expected.coefficients.iter().enumerate() {
-        let side = if ["b", "delta_r"].contains(&own.key) { -1.0 } else { 1.0 };
-        let [value, other] = [one.values[place], side * other.values[place]];
-        assert!((value - other).abs() < 1e-3 * own.sd, "{}: {value} {other}", own.symbol);
+    let (original, reflected) = (quadratic(&trials), quadratic(&mirrored));
+    for (place, coefficient) in original.expected.coefficients.iter().enumerate() {
+        let side = if ["b", "delta_r"].contains(&coefficient.key) { -1.0 } else { 1.0 };
+        let [value, other] = [original.values[place], side * reflected.values[place]];
+        assert!((value - other).abs() < 1e-3 * coefficient.sd, "{}: {value} {other}", coefficient.symbol);
     }
 }
 
@@ -241,7 +245,10 @@ fn the_hulls_that_records_speak_for_are_near_them() {
     // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|own| *own <= 3.0 * least), "{left:?}");
+    assert!(
+        found[0].expected.form.as_str() == "quadratic" && left.iter().all(|residual| *residual <= 3.0 * least),
+        "{left:?}"
+    );
     assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
@@ -259,7 +266,8 @@ fn records_that_tell_no_hull_are_refused() {
     let expected = ExpectedHull::of_form(form());
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
-        let channels = [Channel::Heading, Channel::Speed].map(|own| (own, trial.channel(own).expect("one").to_vec()));
+        let channels = [Channel::Heading, Channel::Speed]
+            .map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
         let rudder = (Channel::Rudder, trial.rudder().to_vec());
         let channels = channels.into_iter().chain([rudder]).collect();
         let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };

@@ -1,26 +1,26 @@
-//! A record without dimension, as a hull is fitted to it.
+//! Dimensionless record for the fit of a hull.
 
 use estimation::statistics::upper_median;
 use ship::vessel::prime::wind_accelerations;
 use trial::{Channel, Trial};
 
-use super::error::{COARSEST, FEWEST, HullFitError, LONGEST};
+use super::error::{HullFitError, MAX_DURATION_LENGTHS, MAX_INTERVAL_LENGTHS, MIN_HEADINGS};
 
-/// Time between two rows that is fine enough, in L/U₀.
+/// Interval between averaged rows, in L/U₀.
 const SPACING: f64 = 0.05;
 
-/// Length of the windows after which a replay is restarted, in L/U₀: about half a period of a zig-zag.
+/// Length of the windows of a restarted replay, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
-/// Time over which a speed is read off positions, in L/U₀: over a ship length errors of a position weigh little, and
-/// the way is nearly straight.
-const WAY: f64 = 1.0;
+/// Time over which positions are differenced for a speed, in L/U₀: over a ship length errors of a position weigh
+/// little, and the path is nearly straight.
+const SPEED_BASE: f64 = 1.0;
 
-/// Share of the approach speed below which a ship has hardly begun to gather way at the start of a record: no priors
-/// are about her there.
-const SLOW: f64 = 0.4;
+/// Smallest speed at the start of a record, relative to the approach speed: the priors do not apply to a ship that
+/// gathers way.
+const MIN_START_SPEED: f64 = 0.4;
 
-/// What a hull is measured with.
+/// Reference quantities that make a record dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullReference {
     /// Length L, m.
@@ -32,12 +32,12 @@ pub struct HullReference {
 }
 
 impl HullReference {
-    /// That of a trial; `None` where its length or speed is not known.
+    /// Reference of a trial; `None` where its length or speed is not declared.
     pub fn of(trial: &Trial) -> Option<Self> {
-        let own = trial.particulars()?;
+        let particulars = trial.particulars()?;
         let rates = trial.channel(Channel::PropellerRate);
         let propeller = rates.and_then(|rates| upper_median(rates.iter().copied())).filter(|rate| *rate > 0.0);
-        Some(Self { length: own.length, speed: own.speed, propeller })
+        Some(Self { length: particulars.length, speed: particulars.speed, propeller })
     }
 
     /// L/U₀, s.
@@ -56,19 +56,19 @@ pub(super) struct HullTrack {
     pub heading: Vec<f64>,
     /// rad.
     pub rudder: Vec<f64>,
-    /// Rate of the propeller over that of the approach.
+    /// Propeller rate over that of the approach.
     pub turning: Vec<f64>,
-    /// Yaw moment as rudder angle, rad: none of a record.
+    /// Yaw moment as rudder angle, rad: zero for a record.
     pub moment: Vec<f64>,
-    /// What the relative wind does over Y_w, where it was recorded: surge, sway and yaw.
+    /// Accelerations of the relative wind over Y_w, where it was recorded: surge, sway and yaw.
     pub wind: Option<[Vec<f64>; 3]>,
-    /// Speed, where it was recorded or positions tell it.
+    /// Speed, where it was recorded or follows from positions.
     pub speed: Option<Vec<f64>>,
     /// Surge and sway in the first row.
     pub start: [f64; 2],
     /// First rows of the windows, and the number of rows.
     pub cuts: Vec<usize>,
-    /// The number of rows, as the end of the one window that is the record.
+    /// First row and number of rows of the record, as a single window.
     pub whole: [usize; 2],
 }
 
@@ -78,21 +78,21 @@ impl HullTrack {
     pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
         let second = reference.time();
         let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
-        if row > COARSEST || whole > LONGEST {
+        if row > MAX_INTERVAL_LENGTHS || whole > MAX_DURATION_LENGTHS {
             return Err(HullFitError::Clock { trial: trial.name().to_owned(), row, whole });
         }
         let short = || HullFitError::Short(trial.name().to_owned());
         let track = Self::cut(trial, reference).ok_or_else(short)?;
-        // Of her approach at this rate of the propeller, which may be another than that of the reference.
-        let approach = trial.particulars().map_or(reference.speed, |own| own.speed);
+        // Approach speed at the propeller rate of this record, which may differ from that of the reference.
+        let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
         let share = track.start[0] * reference.length / (track.second * approach);
-        match share < SLOW {
+        match share < MIN_START_SPEED {
             true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share }),
             false => Ok(track),
         }
     }
 
-    /// A rudder (rad) that is put over at once on a steady approach and held for `length` (L/U₀); no heading is read.
+    /// Track of a rudder (rad) put over instantly on a steady approach and held for `length` (L/U₀), without headings.
     pub fn of_rudder(rudder: f64, length: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
@@ -112,10 +112,10 @@ impl HullTrack {
     fn cut(trial: &Trial, reference: &HullReference) -> Option<Self> {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let (first, last) = (*rows.first()?, *rows.last()?);
-        let own = HullReference::of(trial).unwrap_or(*reference);
-        // Without a rate of the propeller a record is measured with its own speed.
-        let known = reference.propeller.zip(own.propeller).map(|(reference, _)| reference);
-        let speed_unit = if known.is_some() { reference.speed } else { own.speed };
+        let record_reference = HullReference::of(trial).unwrap_or(*reference);
+        // Without a propeller rate the unit of speed is that of the record.
+        let approach_rate = reference.propeller.zip(record_reference.propeller).map(|(reference, _)| reference);
+        let speed_unit = if approach_rate.is_some() { reference.speed } else { record_reference.speed };
         let second = reference.length / speed_unit;
         let group = ((SPACING * second / trial.sampling_period()) as usize).max(1);
         let take = |values: &[f64]| -> Vec<f64> { values[first..=last].chunks(group).map(mean_of_read).collect() };
@@ -130,22 +130,22 @@ impl HullTrack {
         });
         let time: Vec<f64> = take(trial.time()).into_iter().map(|t| t / second).collect();
         let speed = speed.or_else(|| {
-            let [north, east] = [Channel::North, Channel::East].map(|own| trial.channel(own).map(take));
+            let [north, east] = [Channel::North, Channel::East].map(|axis| trial.channel(axis).map(take));
             filled(over_ground(&time, &north?, &east?))
-                .map(|way| way.iter().map(|own| own / reference.length).collect())
+                .map(|speed| speed.iter().map(|speed| speed / reference.length).collect())
         });
         let drift = sway.as_ref().map_or(0.0, |sway| sway[0]);
         let surge = speed.as_ref().map_or(1.0, |speed| (speed[0] * speed[0] - drift * drift).max(0.0).sqrt());
-        let turning = known.and_then(|reference| channel(Channel::PropellerRate, reference));
+        let turning = approach_rate.and_then(|reference| channel(Channel::PropellerRate, reference));
         let wind = trial.relative_wind().and_then(|[speed, from]| {
             let blown: Vec<[f64; 3]> =
                 speed.iter().zip(&from).map(|(wind, from)| wind_accelerations(wind / speed_unit, *from)).collect();
-            let [surge, sway, yaw] =
-                [0, 1, 2].map(|axis| filled(take(&blown.iter().map(|own| own[axis]).collect::<Vec<f64>>())));
+            let [surge, sway, yaw] = [0, 1, 2]
+                .map(|axis| filled(take(&blown.iter().map(|accelerations| accelerations[axis]).collect::<Vec<f64>>())));
             Some([surge?, sway?, yaw?])
         });
         let count = time.len();
-        (rows.len() >= FEWEST).then(|| Self {
+        (rows.len() >= MIN_HEADINGS).then(|| Self {
             heading: take(trial.heading()),
             rudder: take(trial.rudder()),
             turning: turning.unwrap_or_else(|| vec![1.0; count]),
@@ -166,26 +166,26 @@ impl HullTrack {
     }
 }
 
-/// Speed over ground of every row: the straight way between the first and the last position within half a [`WAY`] of
-/// it, over the time between them. NaN where there are no two.
+/// Speed over ground of every row: the distance between the first and the last position within half a [`SPEED_BASE`] of
+/// it, over the time between them. NaN with fewer than two positions.
 ///
-/// A current is part of it. A usual one is below 0.1 U₀, the least deviation of a speed; with a stronger one the
-/// replay begins at a wrong speed.
+/// It includes the current. A usual current is below 0.1 U₀, the smallest deviation of a speed; with a stronger current
+/// the replay begins at a wrong speed.
 fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
     let read: Vec<usize> = (0..time.len()).filter(|&row| north[row].is_finite() && east[row].is_finite()).collect();
-    let of = |now: &f64| {
-        let first = read.partition_point(|&row| time[row] < now - 0.5 * WAY);
-        let after = read.partition_point(|&row| time[row] <= now + 0.5 * WAY);
+    let speed_at = |now: &f64| {
+        let first = read.partition_point(|&row| time[row] < now - 0.5 * SPEED_BASE);
+        let after = read.partition_point(|&row| time[row] <= now + 0.5 * SPEED_BASE);
         match read[first..after] {
             [from, .., to] => (north[to] - north[from]).hypot(east[to] - east[from]) / (time[to] - time[from]),
             _ => f64::NAN,
         }
     };
-    time.iter().map(of).collect()
+    time.iter().map(speed_at).collect()
 }
 
-/// First rows of windows that follow one another, and the number of rows; what is less than half a window belongs to
-/// the one before.
+/// First rows of successive windows, and the number of rows; a remainder of less than half a window belongs to the
+/// window before.
 fn cuts(time: &[f64]) -> Vec<usize> {
     let mut cuts = vec![0];
     let mut from = 0;
@@ -197,7 +197,7 @@ fn cuts(time: &[f64]) -> Vec<usize> {
     cuts
 }
 
-/// Mean of the values that were read; NaN without any.
+/// Mean of the finite values; NaN without any.
 fn mean_of_read(values: &[f64]) -> f64 {
     let read = || values.iter().filter(|value| value.is_finite());
     read().sum::<f64>() / read().count() as f64

@@ -1,5 +1,5 @@
-//! What nearly every ship does with her rudder hard over: a zig-zag says little of it, and a fitted form may do
-//! anything.
+//! Prior of the steady turn with the rudder hard over: a zig-zag hardly determines it, and without this prior a fitted
+//! form is arbitrary there.
 
 use estimation::number::Real;
 use ship::angle::DEGREE;
@@ -8,15 +8,15 @@ use ship::vessel::prime::PrimeHull;
 use super::replayed::replayed;
 use super::track::HullTrack;
 
-/// Rudder, rad, and how long it is held, in L/U₀: two circles, after which a turn is steady or runs away.
-const HARD_OVER: f64 = 35.0 * DEGREE;
-const HELD: f64 = 24.0;
+/// Rudder, rad, and the time it is held, in L/U₀: two circles, after which a turn is steady or runs away.
+const RUDDER_RAD: f64 = 35.0 * DEGREE;
+const DURATION_LENGTHS: f64 = 24.0;
 
 /// Mean and standard deviation of r L/U in the turn.
 ///
-/// Ships have tactical diameters of 2.5 L to 5 L, which is the limit of IMO MSC.137(76), and steady turns of about 0.8
-/// of that: r L/U of 0.5 to 1.0. The hulls of this project lie between 0.29 (Mariner) and 1.14 (SEIUN-like, in part
-/// estimated), so half of that range is the standard deviation.
+/// Ships have tactical diameters of 2.5 L to 5 L (the limit of IMO MSC.137(76)), and steady turns of about 0.8 of that:
+/// r L/U of 0.5 to 1.0. The hulls of this project lie between 0.29 (Mariner) and 1.14 (SEIUN-like, in part estimated),
+/// so half of that range is the standard deviation.
 const CURVATURE: [f64; 2] = [0.75, 0.25];
 
 /// Mean and standard deviation of −v/r in the turn, L: how far ahead of midship the pivot point lies.
@@ -31,18 +31,17 @@ pub(super) struct HardTurn([HullTrack; 2]);
 
 impl HardTurn {
     pub fn new() -> Self {
-        Self([HARD_OVER, -HARD_OVER].map(|rudder| HullTrack::of_rudder(rudder, HELD)))
+        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::of_rudder(rudder, DURATION_LENGTHS)))
     }
 
-    /// How far r L/U and the pivot point, means of both sides, are from what is expected, in standard deviations of
-    /// that.
+    /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.
     pub fn departures<R: Real>(&self, hull: &PrimeHull<R>) -> [R; 2] {
         let [starboard, port] = self.0.each_ref().map(|track| {
             let [u, v, r] = replayed(hull, track, track.whole, [1.0, 0.0, 0.0].map(R::from)).end;
             [r / u.hypot(v), -v / r]
         });
         let mean = [(starboard[0] - port[0]) * 0.5, (starboard[1] + port[1]) * 0.5];
-        let departure = |own: R, [expected, sd]: [f64; 2]| (own - expected) * (1.0 / sd);
+        let departure = |value: R, [expected, sd]: [f64; 2]| (value - expected) * (1.0 / sd);
         [departure(mean[0], CURVATURE), departure(mean[1], PIVOT)]
     }
 }
@@ -58,31 +57,34 @@ mod tests {
     /// Published hulls turn as is expected, to within 2.5 standard deviations; so do the forms before any record.
     #[test]
     fn hulls_turn_as_ships_do() {
-        let found: Vec<(String, [f64; 2])> = ship::ships::all().iter().filter_map(steady).collect();
-        assert!(found.len() > 3);
-        let departs = |own: f64, [mean, sd]: [f64; 2]| (own - mean).abs() > 2.5 * sd;
-        for (name, own) in found {
-            assert!(!departs(own[0], CURVATURE) && !departs(own[1], PIVOT), "{name}: {own:?}");
+        let turns: Vec<(String, [f64; 2])> = ship::ships::all().iter().filter_map(steady).collect();
+        assert!(turns.len() > 3);
+        let departs = |value: f64, [mean, sd]: [f64; 2]| (value - mean).abs() > 2.5 * sd;
+        for (name, figures) in turns {
+            assert!(!departs(figures[0], CURVATURE) && !departs(figures[1], PIVOT), "{name}: {figures:?}");
         }
         for form in HullForm::of_ship(None) {
-            let values: Vec<f64> = form.coefficients().iter().map(|own| own.mean).collect();
+            let values: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
             let departures = HardTurn::new().departures(&form.with(&values).expect("a ship"));
-            assert!(departures.iter().all(|own| own.abs() < 2.5), "{}: {departures:?}", form.as_str());
+            assert!(departures.iter().all(|departure| departure.abs() < 2.5), "{}: {departures:?}", form.as_str());
         }
     }
 
     /// r L/U of a hull in the steady turn, and its pivot point ahead of midship in L.
     fn steady(ship: &Ship) -> Option<(String, [f64; 2])> {
-        let (Model::Hull(hull), Some(own)) = (&ship.model, ship.particulars) else { return None };
-        let step = 0.02 * own.length / own.speed;
+        let (Model::Hull(hull), Some(particulars)) = (&ship.model, ship.particulars) else { return None };
+        let step = 0.02 * particulars.length / particulars.speed;
         let mut state = vec![0.0; hull.dimension()];
         hull.approach(0.0, 0.0, &mut state);
         let mut solver = RungeKutta4::new(hull.dimension());
         for row in 0..600 {
-            let input = |_: f64| Input { rudder: HARD_OVER, ..Input::default() };
+            let input = |_: f64| Input { rudder: RUDDER_RAD, ..Input::default() };
             solver.step(hull.as_ref(), f64::from(row) * step, step, &mut state, input);
         }
         let [rate, surge, sway] = [1, 2, 3].map(|place| state[place]);
-        Some((ship.name.to_string(), [rate * own.length / surge.hypot(sway), -sway / (rate * own.length)]))
+        Some((
+            ship.name.to_string(),
+            [rate * particulars.length / surge.hypot(sway), -sway / (rate * particulars.length)],
+        ))
     }
 }

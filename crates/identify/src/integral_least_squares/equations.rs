@@ -23,8 +23,8 @@ pub(super) struct IntegratedStretch<'a> {
 }
 
 impl<'a> IntegratedStretch<'a> {
-    /// Takes the rows of a stretch with origins of its own: what is linear in time belongs to the initial state, so
-    /// that nothing but lost digits depends on them.
+    /// Equations of a stretch, with time and heading measured from its first row: terms linear in time belong to the
+    /// initial state, so the origins affect only rounding.
     pub(super) fn new(samples: &'a Samples, range: Range<usize>) -> Self {
         let (time, heading) = (&samples.time[range.clone()], &samples.heading[range.clone()]);
         let once = samples.rudder_integral[range.start];
@@ -86,7 +86,7 @@ pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     integral
 }
 
-/// The least-squares solution and what the noise needs of it.
+/// The least-squares solution, its normal matrix and its condition number.
 #[derive(Debug)]
 pub(super) struct Solution {
     /// a, b, b δ_r.

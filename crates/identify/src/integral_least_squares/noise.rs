@@ -1,25 +1,25 @@
-//! White heading noise as the doubly integrated equation sees it, e = n + a ∫n, and what it does to the estimate.
+//! White heading noise in the doubly integrated equation, e = n + a ∫n, and its effect on the estimate.
 
 use estimation::column::{dot, gram};
 use nalgebra::Matrix3;
 
 use super::equations::{IntegratedStretch, SHARED, Solution};
 
-/// Heading noise found in the residual and its way into the parameters.
+/// Heading noise estimated from the residual, and its propagation to the parameters.
 #[derive(Debug)]
 pub(super) struct ResidualNoise {
     /// Variance of the heading noise, rad²; `None` without degrees of freedom.
     pub variance: Option<f64>,
     /// Equations less unknowns.
     pub degrees_of_freedom: f64,
-    /// Equations over degrees of freedom: what the fit took from the noise it left.
+    /// Equations over degrees of freedom: the correction for the noise absorbed by the fit.
     pub finite_sample: f64,
     /// Lag-1 autocorrelation of the heading noise.
     pub lag1: f64,
     /// Σ z zᵀ, where z is the derivative of Xᵀe with respect to the noise of one heading; times the variance it is
     /// the covariance of Xᵀe.
     pub influence: Matrix3<f64>,
-    /// z n of every piece, for a covariance that does not take n to be white.
+    /// z n of every piece, for a covariance that does not assume white n.
     pub scores: Vec<[Vec<f64>; SHARED]>,
 }
 
@@ -93,10 +93,10 @@ fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHAR
     let mut after = 0.0;
     for k in (0..rows).rev() {
         let before = if k > 0 { piece.time[k] - piece.time[k - 1] } else { 0.0 };
-        let (own, others) = (1.0 + half_a * before, half_a * (before + after));
-        z0[k] = x0[k] * own + later0 * others;
-        z1[k] = x1[k] * own + later1 * others;
-        z2[k] = x2[k] * own + later2 * others;
+        let (current, later) = (1.0 + half_a * before, half_a * (before + after));
+        z0[k] = x0[k] * current + later0 * later;
+        z1[k] = x1[k] * current + later1 * later;
+        z2[k] = x2[k] * current + later2 * later;
         (later0, later1, later2) = (later0 + x0[k], later1 + x1[k], later2 + x2[k]);
         after = before;
     }

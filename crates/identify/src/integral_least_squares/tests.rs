@@ -70,10 +70,10 @@ fn normal_equations_agree_with_singular_values() {
     let reference =
         LeastSquares::solve(&[&columns[0], &columns[1], &columns[2], &one, &samples.time], &columns[3], 1e8)
             .expect("well conditioned");
-    let found = identify(&[trial]).response;
-    assert_relative_eq!(found.inverse_T, reference.parameters[0], max_relative = 1e-10);
-    assert_relative_eq!(found.K_over_T, reference.parameters[1], max_relative = 1e-10);
-    assert_relative_eq!(found.rudder_bias, reference.parameters[2] / reference.parameters[1], max_relative = 1e-9);
+    let response = identify(&[trial]).response;
+    assert_relative_eq!(response.inverse_T, reference.parameters[0], max_relative = 1e-10);
+    assert_relative_eq!(response.K_over_T, reference.parameters[1], max_relative = 1e-10);
+    assert_relative_eq!(response.rudder_bias, reference.parameters[2] / reference.parameters[1], max_relative = 1e-9);
 }
 
 /// Logs joined row by row: intervals of 0.01 to 7 s without order. The noise of two rows that nearly coincide must not

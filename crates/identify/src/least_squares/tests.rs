@@ -34,20 +34,25 @@ fn with_gyro(case: &Case) -> Trial {
     record_with_gyro(truth.time, truth.heading, truth.rudder, rate)
 }
 
-/// The bias of 1/T by noise in r is foreseen: median over repeats against the diagnostic.
+/// The bias of 1/T by noise in r is predicted: median over repeats against the diagnostic.
 #[test]
-fn the_bias_of_noise_is_foreseen() {
+fn the_bias_of_noise_is_predicted() {
     for noise_deg in [0.2, 0.5, 1.0] {
-        let (mut found, mut foreseen) = (Vec::new(), Vec::new());
+        let (mut errors_percent, mut predicted) = (Vec::new(), Vec::new());
         for seed in 0..60 {
             let estimate = identify(Settings::default(), &[Case { noise_deg, seed, ..Case::default() }.trial()]);
-            found.push(100.0 * (estimate.response.inverse_T * 16.3 - 1.0));
-            foreseen.push(estimate.diagnostic("noise_bias_of_inverse_T_percent").expect("present"));
+            errors_percent.push(100.0 * (estimate.response.inverse_T * 16.3 - 1.0));
+            predicted.push(estimate.diagnostic("noise_bias_of_inverse_T_percent").expect("present"));
             assert_eq!(estimate.warnings.len(), 1);
         }
-        found.sort_by(f64::total_cmp);
-        foreseen.sort_by(f64::total_cmp);
-        assert!((found[30] - foreseen[30]).abs() < 4.0, "found {:+.1} %, foreseen {:+.1} %", found[30], foreseen[30]);
+        errors_percent.sort_by(f64::total_cmp);
+        predicted.sort_by(f64::total_cmp);
+        assert!(
+            (errors_percent[30] - predicted[30]).abs() < 4.0,
+            "found {:+.1} %, predicted {:+.1} %",
+            errors_percent[30],
+            predicted[30]
+        );
     }
 }
 
@@ -105,7 +110,7 @@ fn a_handful_of_rows_before_a_gap_is_too_little() {
     let trial = record("burst", time, heading, rudder);
     for settings in crate::registry::defaults() {
         let method = settings.build().expect("valid defaults");
-        let error = method.identify(std::slice::from_ref(&trial)).expect_err("nothing to be learnt");
+        let error = method.identify(std::slice::from_ref(&trial)).expect_err("too few rows");
         assert!(error.kind().starts_with("too-few"), "{}: {error}", method.id());
     }
 }

@@ -26,7 +26,7 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     for place in [parameters.rudder_state(), compass].into_iter().flatten() {
         covariance[place][place] = 1.0;
     }
-    // A compass error that lasts is a state of its own.
+    // A correlated compass error is a separate state.
     let white = if compass.is_some() { 0.0 } else { 1.0 };
     // In the order of the places of `schedule`.
     let sensors = vec![

@@ -1,14 +1,14 @@
-//! The likelihood of a record of a first-order ship on which more than the compass is random.
+//! Likelihood of a record of a first-order ship with a random yaw moment, rudder error and compass error.
 //!
-//! States are heading ψ, yaw rate r and what disturbs them: ψ' = r, r' = −a r + b (δ + δ_r) + m + w, with a = 1/T and
-//! b = K/T. The yaw moment (as acceleration) is absent, white (w of spectral density q²), an Ornstein–Uhlenbeck process
+//! States are heading ψ, yaw rate r and their disturbances: ψ' = r, r' = −a r + b (δ + δ_r) + m + w, with a = 1/T and b
+//! = K/T. The yaw moment (as acceleration) is absent, white (w of spectral density q²), an Ornstein–Uhlenbeck process
 //! m' = −m/τ + white of density 2q²/τ, or a random walk m' = white of density q². The recorded rudder, linear between
-//! its rows, may carry an independent error in every row. The compass error is white, or of first order in time with a
-//! correlation time of its own; the gyro error is white.
+//! its rows, may have an independent error in every row. The compass error is white, or of first order in time with its
+//! own correlation time; the gyro error is white.
 //!
-//! Everything that is random enters linearly, so gains and variances of the Kalman filter do not depend on the
-//! readings: the filter is a linear map that makes residual and sensitivities white, and −2 log L = Σ log 2πS + Σ ν²/S
-//! with innovations ν and their variances S. Nothing here chooses parameters.
+//! All noise enters linearly, so gains and variances of the Kalman filter do not depend on the readings: the filter is
+//! a linear map that makes residual and sensitivities white, and −2 log L = Σ log 2πS + Σ ν²/S with innovations ν and
+//! their variances S. This module does not choose parameters.
 //!
 //! Sources: Åström and Källström (1976), Automatica 12, 9–22, for maximum likelihood on ship records; Van Loan (1978)
 //! for exact discretisation; Harvey (1989) for the prediction error decomposition.
@@ -30,8 +30,8 @@ pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
 pub use track::{MotionColumns, Track};
 
-/// Log-likelihood of the headings of a trial (and of its yaw rates, where `noise` has a gyro) for a known ship and
-/// known noise.
+/// Log-likelihood of the headings of a trial (and of its yaw rates, where `noise` has a gyro) for given ship parameters
+/// and a given noise law.
 ///
 /// The initial heading (rad) and yaw rate (rad/s) are normal about zero with the standard deviations `initial_sd`; a
 /// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite when a response
@@ -46,8 +46,8 @@ pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, init
     let mut columns = MotionColumns::default();
     track.fill_from(false, ship.inverse_T, &mut columns);
     let offset = ship.K_over_T * ship.rudder_bias;
-    let motion = |forced: &[f64], turned: &[f64]| -> Vec<f64> {
-        forced.iter().zip(turned).map(|(g, h)| ship.K_over_T * g + offset * h).collect()
+    let motion = |forced: &[f64], constant_response: &[f64]| -> Vec<f64> {
+        forced.iter().zip(constant_response).map(|(g, h)| ship.K_over_T * g + offset * h).collect()
     };
     let heading = motion(&columns.rudder, &columns.constant);
     let rate = motion(&columns.rates.rudder, &columns.rates.constant);

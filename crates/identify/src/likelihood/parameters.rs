@@ -1,5 +1,5 @@
-//! The noise as numbers that an optimiser can move: logarithms, in units of the compass error, so that each of them may
-//! take any value and the size of the compass error drops out.
+//! Noise parameters for an optimiser: logarithms, in units of the compass error, so that each may take any value and
+//! the size of the compass error drops out.
 
 use ship::FirstOrder;
 
@@ -8,8 +8,8 @@ use trial::noise_model::{Moment, NoiseModel};
 /// Entries of a [`NoiseVector`].
 pub const ENTRIES: usize = 5;
 
-/// Where the noise is: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time
-/// of the compass error and of σ_r/σ, with which of them there are. The default is a white compass error alone.
+/// Noise vector: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time of the
+/// compass error and of σ_r/σ, with flags for the active entries. The default is a white compass error alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseVector {
     /// Which yaw moment.
@@ -18,7 +18,7 @@ pub struct NoiseVector {
     pub rudder: bool,
     /// Whether the compass error has a correlation time.
     pub coloured: bool,
-    /// The logarithms, in the order above; what there is not stays as it is.
+    /// The logarithms, in the order above; inactive entries are ignored.
     pub log: [f64; ENTRIES],
 }
 
@@ -34,7 +34,7 @@ pub const COMPASS: usize = 3;
 pub const GYRO: usize = 4;
 
 impl NoiseVector {
-    /// The place of a known noise on a known ship.
+    /// The vector of a noise law for a ship.
     pub fn of(noise: &NoiseModel, ship: &FirstOrder) -> Self {
         let unit = noise.heading_sd;
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
@@ -52,16 +52,16 @@ impl NoiseVector {
         }
     }
 
-    /// The noise it stands for, on a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
+    /// The noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
     pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
-        let has = self.moment != Moment::None;
+        let has_moment = self.moment != Moment::None;
         NoiseModel {
             heading_sd,
             heading_correlation: self.coloured.then(|| self.log[COMPASS].exp()),
             yaw_rate_sd: gyro.then(|| size(GYRO)),
             moment: self.moment,
-            moment_level: if has { size(LEVEL) } else { 0.0 },
+            moment_level: if has_moment { size(LEVEL) } else { 0.0 },
             moment_correlation: match self.moment {
                 Moment::OrnsteinUhlenbeck => self.log[CORRELATION].exp(),
                 Moment::White => 0.0,
@@ -71,11 +71,11 @@ impl NoiseVector {
         }
     }
 
-    /// The entries that are there.
+    /// The active entries.
     pub fn entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
-        let there =
+        let active =
             [self.moment != Moment::None, self.moment == Moment::OrnsteinUhlenbeck, self.rudder, self.coloured, gyro];
-        (0..ENTRIES).filter(move |&entry| there[entry])
+        (0..ENTRIES).filter(move |&entry| active[entry])
     }
 
     /// The parameters of the noise for this 1/T.

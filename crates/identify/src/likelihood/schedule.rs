@@ -1,4 +1,4 @@
-//! When a record was read, and what: the steps in time between readings, each kind once.
+//! Schedule of the readings of a record: their order and the time steps between them, each kind of step stored once.
 
 use estimation::kalman::Reading;
 
@@ -23,8 +23,8 @@ impl Span {
         self.pieces.iter().sum()
     }
 
-    fn is(&self, pieces: &[f64]) -> bool {
-        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(one, other)| !differs(*one, *other))
+    fn has_pieces(&self, pieces: &[f64]) -> bool {
+        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(a, b)| !differs(*a, *b))
     }
 }
 
@@ -37,8 +37,8 @@ pub struct Schedule {
     pub readings: Vec<Reading>,
 }
 
-/// Kinds of steps that are remembered when the next one is looked for: clocks repeat themselves soon or not at all.
-const REMEMBERED: usize = 16;
+/// Number of recent kinds of steps that are compared with the next step: clocks repeat themselves soon or not at all.
+const MAX_RECENT_KINDS: usize = 16;
 
 impl Schedule {
     /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
@@ -70,17 +70,17 @@ impl Schedule {
         schedule
     }
 
-    /// The number of a kind of step, which is noted when it is new.
+    /// Number of a kind of step, which is stored when it is new.
     fn kind(&mut self, pieces: &[f64]) -> usize {
-        let recent = self.spans.len().saturating_sub(REMEMBERED);
-        if let Some(place) = self.spans[recent..].iter().rposition(|span| span.is(pieces)) {
+        let recent = self.spans.len().saturating_sub(MAX_RECENT_KINDS);
+        if let Some(place) = self.spans[recent..].iter().rposition(|span| span.has_pieces(pieces)) {
             return recent + place;
         }
         self.spans.push(Span { pieces: pieces.to_vec() });
         self.spans.len() - 1
     }
 
-    /// One column from those of the two instruments.
+    /// Column of all readings from the columns of the two instruments.
     pub fn stacked(&self, heading: &[f64], yaw_rate: &[f64]) -> Vec<f64> {
         if self.readings.len() == heading.len() {
             return heading.to_vec();

@@ -54,8 +54,8 @@ fn with_gyro() -> Trial {
     record_with_gyro(trial.time().to_vec(), heading, trial.rudder().to_vec(), missing(&rate, 4))
 }
 
-/// The same log-likelihood without a filter: the covariance of all readings from responses to every source of chance,
-/// with the moment stepped finely, and the determinant and inverse of that matrix.
+/// The same log-likelihood without a filter: the covariance of all readings from responses to every noise source, with
+/// the moment stepped finely, and the determinant and inverse of that matrix.
 fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     const FINE: usize = 40;
     let (time, rudder) = (trial.time(), trial.rudder());
@@ -148,7 +148,7 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
     -0.5 * (residual.dot(&factor.solve(&residual)) + determinant + constant)
 }
 
-/// State s seconds after a moment of one begins to decay.
+/// State s seconds after a unit moment begins to decay.
 fn decaying(a: f64, correlation: f64, s: f64) -> State {
     let pieces = 400;
     let h = s / f64::from(pieces);
@@ -179,10 +179,10 @@ fn the_filter_is_the_dense_gaussian() {
     ] {
         for ship in [FirstOrder::from_indices(0.1, 16.3, 0.007), FirstOrder::from_indices(-0.05, -40.0, 0.007)] {
             let initial = [from_deg(5.0), from_deg(1.0)];
-            let found = log_likelihood(trial, &ship, &noise, initial);
+            let filtered = log_likelihood(trial, &ship, &noise, initial);
             let expected = dense(trial, &ship, &noise, initial);
             // What is left is the step of the dense computation.
-            assert_relative_eq!(found, expected, max_relative = 2e-4);
+            assert_relative_eq!(filtered, expected, max_relative = 2e-4);
         }
     }
 }
@@ -200,17 +200,17 @@ fn even_rows_settle() {
     let parameters = place.parameters(0.06);
     let filter = whitener(&schedule, &parameters, [0.0; 2]);
     assert_eq!(schedule.spans.len(), 1);
-    let mut one = track.heading.clone();
-    filter.apply(&mut [&mut one]);
+    let mut settled = track.heading.clone();
+    filter.apply(&mut [&mut settled]);
     // Steps that count as different kinds are computed one by one.
     let mut apart = schedule.clone();
     for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
         apart.spans.push(schedule.spans[0].clone());
         reading.step = Some(k);
     }
-    let mut other = track.heading.clone();
-    whitener(&apart, &parameters, [0.0; 2]).apply(&mut [&mut other]);
-    for (one, other) in one.iter().zip(&other) {
-        assert_relative_eq!(one, other, max_relative = 1e-8, epsilon = 1e-12);
+    let mut stepwise = track.heading.clone();
+    whitener(&apart, &parameters, [0.0; 2]).apply(&mut [&mut stepwise]);
+    for (settled, stepwise) in settled.iter().zip(&stepwise) {
+        assert_relative_eq!(settled, stepwise, max_relative = 1e-8, epsilon = 1e-12);
     }
 }

@@ -1,17 +1,18 @@
 //! The first-order heading of one trial as a linear combination of four columns, once 1/T is given.
 //!
 //! ψ = ψ₁ · 1 + r₁ · φ₁(t − t₁) + b · G(t; a) + b δ_r · H(t; a), where G is the response to the recorded rudder and H
-//! the one to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the
-//! last one and the columns are stepped backwards in time, so that nothing grows exponentially for either sign of T and
-//! the columns stay as independent as the record allows. This module knows how to fill the columns and how the heading
-//! changes with a; it does not choose parameters.
+//! that to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the last
+//! one and the columns are stepped backwards in time, so that nothing grows exponentially for either sign of T and the
+//! columns stay as independent as the record allows. This module fills the columns and their derivatives with respect
+//! to a; it does not choose parameters. Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the steering
+//! qualities of ships.
 
 use ship::FirstOrder;
 use ship::first_order::{State, TangentTransition, Transition};
 use trial::Trial;
 
-/// Steps whose lengths differ by less than this share use the same transition: far below any clock.
-const SAME_STEP: f64 = 1e-9;
+/// Relative tolerance of equal step lengths: far below the resolution of a clock.
+const STEP_TOLERANCE: f64 = 1e-9;
 
 /// One trial, from its first to its last row with a heading.
 #[derive(Debug, Clone)]
@@ -20,7 +21,7 @@ pub struct Track {
     pub time: Vec<f64>,
     /// Rudder of every row, rad.
     pub rudder: Vec<f64>,
-    /// What lies between a row and the next.
+    /// Intervals between successive rows.
     intervals: Vec<Interval>,
     /// Corners of the rudder between rows, in order.
     corners: Vec<CornerAfterRow>,
@@ -34,12 +35,12 @@ pub struct Track {
     pub rates: Vec<f64>,
 }
 
-/// What lies between two rows.
+/// Interval between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Interval {
     /// Length, s.
     length: f64,
-    /// Rudder rate, rad/s; with a corner, that before it.
+    /// Rudder rate, rad/s, before the corner if there is one.
     rudder_rate: f64,
 }
 
@@ -72,16 +73,16 @@ pub struct TrackStep {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bend {
     /// Signed time from it to the end of the step, s.
-    pub rest: f64,
+    pub remaining: f64,
     /// The change, rad/s.
     pub change: f64,
 }
 
 impl Bend {
-    /// What it adds to the heading (rad s²) and the yaw rate (rad s) at the end of the step, for b = 1/s².
+    /// Contribution to the heading (rad s²) and the yaw rate (rad s) at the end of the step, for b = 1/s².
     #[inline]
     pub fn response(&self, inverse_time: f64) -> [f64; 2] {
-        let step = Transition::new(inverse_time, self.rest);
+        let step = Transition::new(inverse_time, self.remaining);
         [step.phi3 * self.change, step.phi2 * self.change]
     }
 }
@@ -122,7 +123,7 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// With the steering of a known response, and the anchor still to be found.
+    /// Coefficients with the steering of a response and an anchor at rest.
     pub fn of(response: &FirstOrder) -> Self {
         Self { anchor: State::default(), gain: response.K_over_T, offset: response.K_over_T * response.rudder_bias }
     }
@@ -134,7 +135,7 @@ pub fn is_backward(inverse_time: f64) -> bool {
 }
 
 impl Track {
-    /// Takes the part of a trial that has headings, without asking whether the ship was steered.
+    /// Track of the rows with headings of a trial; excitation is not checked.
     pub fn new(trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
@@ -142,7 +143,8 @@ impl Track {
         let observed: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
         let heading = observed.iter().map(|&row| heading[row]).collect();
         let time = trial.time();
-        let mut track = Self::of(time[first..=last].to_vec(), trial.rudder()[first..=last].to_vec(), observed, heading);
+        let [times, rudder] = [time, trial.rudder()].map(|column| column[first..=last].to_vec());
+        let mut track = Self::from_rows(times, rudder, observed, heading);
         for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row)) {
             let row = corner.row - first;
             track.intervals[row].rudder_rate = corner.before;
@@ -152,7 +154,7 @@ impl Track {
         track
     }
 
-    fn of(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
+    fn from_rows(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
         let interval = |(t, delta): (&[f64], &[f64])| {
             let length = t[1] - t[0];
             Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
@@ -162,7 +164,7 @@ impl Track {
         Self { time, rudder, intervals, corners, observed, heading, observed_rates, rates }
     }
 
-    /// The same with the yaw rates of its trial, if they are to be used.
+    /// The same track with the yaw rates of its trial; without `rates` they are left out.
     pub fn with_rates(mut self, rates: Option<&[f64]>, trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let rates = rates.map_or(&[][..], |rates| &rates[first..][..self.time.len()]);
@@ -171,7 +173,7 @@ impl Track {
         self
     }
 
-    /// The same without some of its readings, told by row.
+    /// The same track without the headings of the given rows.
     pub fn without(&self, headings: &[usize]) -> Self {
         let mut less = self.clone();
         less.observed.retain(|row| !headings.contains(row));
@@ -185,14 +187,14 @@ impl Track {
         less
     }
 
-    /// About `rows` of the observed rows, evenly spread, the first included: enough to see where a minimum lies. The
-    /// rudder between them is taken as linear, so its corners are cut.
+    /// About `rows` of the observed rows, evenly spread, the first included: enough to locate a minimum. The rudder
+    /// between them is linear, so its corners are cut.
     pub fn thinned(&self, rows: usize) -> Self {
         let every = (self.len() / rows).max(1);
         let kept = || self.observed.iter().step_by(every);
         let column = |values: &[f64]| kept().map(|&row| values[row]).collect::<Vec<f64>>();
         let heading: Vec<f64> = self.heading.iter().copied().step_by(every).collect();
-        Self::of(column(&self.time), column(&self.rudder), (0..heading.len()).collect(), heading)
+        Self::from_rows(column(&self.time), column(&self.rudder), (0..heading.len()).collect(), heading)
     }
 
     /// Number of observed rows.
@@ -227,11 +229,11 @@ impl Track {
                 next = corner_at(passed);
             }
             if backward {
-                let bend = corner.map(|own| Bend { rest: -own.after, change: rudder_rate - own.rudder_rate });
-                let rudder_rate = corner.map_or(rudder_rate, |own| own.rudder_rate);
+                let bend = corner.map(|c| Bend { remaining: -c.after, change: rudder_rate - c.rudder_rate });
+                let rudder_rate = corner.map_or(rudder_rate, |corner| corner.rudder_rate);
                 TrackStep { from: row + 1, to: row, length: -length, rudder_rate, bend }
             } else {
-                let bend = corner.map(|own| Bend { rest: length - own.after, change: own.rudder_rate - rudder_rate });
+                let bend = corner.map(|c| Bend { remaining: length - c.after, change: c.rudder_rate - rudder_rate });
                 TrackStep { from: row, to: row + 1, length, rudder_rate, bend }
             }
         })
@@ -254,10 +256,10 @@ impl Track {
             column.resize(rows, 0.0);
             column[anchor] = 0.0;
         }
-        let (free, steered, turned) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
+        let (f, g, h) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
         if self.observed_rates.is_empty() {
             self.motions(inverse_time, backward, |row, heading, _| {
-                [free[row], steered[row], turned[row], _] = heading;
+                [f[row], g[row], h[row], _] = heading;
             });
         } else {
             for (column, start) in [(&mut rates.homogeneous, 1.0), (&mut rates.rudder, 0.0), (&mut rates.constant, 0.0)]
@@ -266,7 +268,7 @@ impl Track {
                 column[anchor] = start;
             }
             self.motions(inverse_time, backward, |row, heading, rate| {
-                [free[row], steered[row], turned[row], _] = heading;
+                [f[row], g[row], h[row], _] = heading;
                 [rates.homogeneous[row], rates.rudder[row], rates.constant[row], _] = rate;
             });
             for column in [&mut rates.homogeneous, &mut rates.rudder, &mut rates.constant] {
@@ -278,8 +280,8 @@ impl Track {
         }
     }
 
-    /// Visits heading and yaw rate of the three motions φ₁, G, H side by side (and one that rests) at every row but the
-    /// anchor.
+    /// Visits heading and yaw rate of the three motions φ₁, G, H (and a fourth at rest, for alignment) at every row but
+    /// the anchor.
     #[inline(always)]
     fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
@@ -309,7 +311,7 @@ impl Track {
         self.sensitivities(inverse_time, coefficients, [out, &mut Vec::new()]);
     }
 
-    /// The same, and ∂r/∂a at the rows with a yaw rate, rad.
+    /// ∂ψ/∂a at the observed rows, rad s, and ∂r/∂a at the rows with a yaw rate, rad.
     pub fn sensitivities(&self, inverse_time: f64, coefficients: &Coefficients, out: [&mut Vec<f64>; 2]) {
         let [heading, rate] = out;
         let of_heading = self.prepared(inverse_time, heading);
@@ -354,8 +356,8 @@ impl Track {
                 heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
-            if let Some(Bend { rest, change }) = bend {
-                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, rest);
+            if let Some(Bend { remaining, change }) = bend {
+                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, remaining);
                 let change = coefficients.gain * change;
                 for (motion, part) in [by_inverse_T.phi3, value.phi3].into_iter().enumerate() {
                     heading[motion] += part * change;
@@ -408,7 +410,7 @@ impl Track {
     }
 }
 
-/// Leaves some rows of a column that was filled in every row.
+/// Keeps the given rows of a column that was filled in every row.
 fn keep(rows: &[usize], column: &mut Vec<f64>) {
     if rows.len() < column.len() {
         for (place, &row) in rows.iter().enumerate() {
@@ -418,8 +420,8 @@ fn keep(rows: &[usize], column: &mut Vec<f64>) {
     }
 }
 
-/// Whether a step needs another transition than the last one.
+/// `true` if a step needs another transition than the last step.
 #[inline(always)]
 pub fn differs(last: f64, h: f64) -> bool {
-    (last - h).abs() > SAME_STEP * h.abs()
+    (last - h).abs() > STEP_TOLERANCE * h.abs()
 }

@@ -1,4 +1,5 @@
-//! The exact step of the state over a time in which the noise goes on, as a series.
+//! Exact transition and noise covariance of the state over a time step, by a power series. Source: Van Loan (1978),
+//! Computing integrals involving the matrix exponential, IEEE Transactions on Automatic Control 23, 395–404.
 
 use estimation::kalman::{Step, identity, product, sandwich, sum};
 use ship::first_order::Transition;
@@ -10,8 +11,8 @@ use super::schedule::Span;
 /// Terms of the series of the matrix exponential over one scaled step.
 const TERMS: usize = 16;
 
-/// Longest scaled step, in time constants: the series then ends below rounding. Longer ones are doubled.
-const LONGEST: f64 = 0.25;
+/// Largest scaled step, in time constants: the series then ends below rounding. Longer steps are built by doubling.
+const MAX_SCALED_STEP: f64 = 0.25;
 
 /// Nodes and weights on (0, 1) of the Gauss–Legendre rule of eight points, exact up to degree 15.
 const NODES: [(f64, f64); 8] = [
@@ -30,10 +31,10 @@ type Small = [[f64; 3]; 3];
 /// The step over the time between two readings.
 pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
     let mut whole = match parameters.rudder {
-        None => of_moment(parameters, span.length()),
+        None => undisturbed(parameters, span.length()),
         Some(size) => {
-            let mut pieces =
-                span.pieces.iter().map(|&length| with_rudder(of_moment(parameters, length), parameters, size, length));
+            let piece = |&length: &f64| with_rudder(undisturbed(parameters, length), parameters, size, length);
+            let mut pieces = span.pieces.iter().map(piece);
             let first = pieces.next().unwrap_or(Step { transition: identity(), added: [[0.0; N]; N] });
             pieces.fold(first, |before, piece| before.then(&piece))
         }
@@ -46,44 +47,44 @@ pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) ->
     whole
 }
 
-/// Ship and moment alone.
-fn of_moment<const N: usize>(parameters: &NoiseParameters, length: f64) -> Step<N> {
+/// Step of ship and moment, without rudder error.
+fn undisturbed<const N: usize>(parameters: &NoiseParameters, length: f64) -> Step<N> {
     let rates = parameters.inverse_time.abs() + parameters.rate;
-    let doublings = (rates * length / LONGEST).log2().ceil().max(0.0);
+    let doublings = (rates * length / MAX_SCALED_STEP).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, length / doublings.exp2());
     for _ in 0..doublings as usize {
         q = sum(&q, &sandwich(&f, &q));
         f = product(&f, &f);
     }
     let mut step = Step { transition: identity(), added: [[0.0; N]; N] };
-    let own = if parameters.has_moment_state() { 3 } else { 2 };
-    for i in 0..own {
-        for j in 0..own {
+    let states = if parameters.has_moment_state() { 3 } else { 2 };
+    for i in 0..states {
+        for j in 0..states {
             (step.transition[i][j], step.added[i][j]) = (f[i][j], q[i][j]);
         }
     }
     step
 }
 
-/// With the error of the recorded rudder at both ends of a piece, between which it is linear.
-fn with_rudder<const N: usize>(mut own: Step<N>, parameters: &NoiseParameters, size: f64, length: f64) -> Step<N> {
-    let Some(place) = parameters.rudder_state() else { return own };
-    let Transition { phi1: one, phi2: two, phi3: three, .. } = Transition::new(parameters.inverse_time, length);
-    let after = [three / length, two / length];
-    let before = [two - after[0], one - after[1]];
+/// Adds the error of the recorded rudder at both ends of a piece, between which it is linear.
+fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, size: f64, length: f64) -> Step<N> {
+    let Some(place) = parameters.rudder_state() else { return step };
+    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_time, length);
+    let after = [phi3 / length, phi2 / length];
+    let before = [phi2 - after[0], phi1 - after[1]];
     let mut fresh = [0.0; N];
     for i in 0..2 {
-        own.transition[i][place] = size * before[i];
+        step.transition[i][place] = size * before[i];
         fresh[i] = size * after[i];
     }
-    own.transition[place] = [0.0; N];
+    step.transition[place] = [0.0; N];
     fresh[place] = 1.0;
-    for (row, one) in own.added.iter_mut().zip(fresh) {
-        for (value, other) in row.iter_mut().zip(fresh) {
-            *value += one * other;
+    for (row, left) in step.added.iter_mut().zip(fresh) {
+        for (value, right) in row.iter_mut().zip(fresh) {
+            *value += left * right;
         }
     }
-    own
+    step
 }
 
 /// Transition and covariance over a step that is short against T and τ. Time is counted in steps, so that the series

@@ -1,9 +1,10 @@
-//! Which noise a record shows: every kind is fitted, and the lowest BIC wins.
+//! Selection of the noise law: every law is fitted, and the lowest BIC wins. Source: Schwarz (1978), Estimating the
+//! dimension of a model, Annals of Statistics 6, 461–464.
 
 use ship::FirstOrder;
 use trial::Trial;
 
-use super::outliers::{self, LARGEST_SHARE, Suspects};
+use super::outliers::{self, MAX_OUTLIER_SHARE, Suspects};
 use super::point::{Point, Record, evaluate, readings};
 use super::search::{Maximum, Ranges, Search, Start, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
@@ -12,31 +13,31 @@ use crate::estimate::Estimate;
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, RUDDER};
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
-use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
+use crate::output_error::{self, CONDITION_LIMIT, MIN_ROWS};
 use crate::replay::best_start;
 use crate::robust;
 use crate::samples::track;
 use trial::noise_model::Moment;
 
-/// Rounds in which outliers are looked for again in the fit without the last ones.
-const ROUNDS: usize = 12;
+/// Largest number of rounds of outlier search and refit.
+const MAX_OUTLIER_ROUNDS: usize = 12;
 
 /// Gain in −2 log L, beside log n, that a jump of the compass needs.
-const JUMP_GAIN: f64 = 25.0;
+const MIN_JUMP_GAIN: f64 = 25.0;
 
-/// Values of 1/T per decade, for each sign, that are asked again under the noise that was found.
-const ASKED_PER_DECADE: usize = 2;
+/// Values of 1/T per decade, for each sign, that are evaluated under the selected noise.
+const VALUES_PER_DECADE: usize = 2;
 
-/// Weight below which a kind of noise is not a doubt.
-const NEGLIGIBLE: f64 = 0.01;
+/// Weight below which a noise law is dropped.
+const MIN_WEIGHT: f64 = 0.01;
 
-/// Gain in −2 log of the restricted likelihood below which a moment is not seen at all.
-const UNSEEN: f64 = 0.1;
+/// Gain in −2 log of the restricted likelihood below which a moment is absent.
+const MIN_MOMENT_GAIN: f64 = 0.1;
 
-/// Gain in −2 log of the restricted likelihood from which on a moment is looked at more closely.
-const SEEN: f64 = 2.0;
+/// Gain in −2 log of the restricted likelihood above which a correlated moment is fitted as well.
+const MIN_GUST_GAIN: f64 = 2.0;
 
-/// Records ready to be fitted, with the answer of `output-error` to begin with.
+/// Records with their outliers and the estimate of `output-error` as start.
 pub(super) struct PreparedRecords {
     records: Vec<Record>,
     start: FirstOrder,
@@ -45,11 +46,11 @@ pub(super) struct PreparedRecords {
     evaluations: usize,
 }
 
-/// The noise that was chosen and its fit.
+/// The chosen noise law and its fit.
 pub(super) struct Chosen {
     pub records: Vec<Record>,
-    /// The kinds of noise that cannot be told apart, with their weights, the most likely first.
-    pub found: Vec<(f64, Maximum)>,
+    /// Fits under the plausible noise laws with their weights, the most plausible first.
+    pub maxima: Vec<(f64, Maximum)>,
     /// Spikes and jumps of every record, by row of its track.
     pub outliers: Vec<Suspects>,
     /// Whether there were too many spikes to leave them out.
@@ -57,18 +58,18 @@ pub(super) struct Chosen {
     /// BIC of every kind of moment that was fitted.
     pub tried: Vec<(Moment, f64)>,
     pub evaluations: usize,
-    /// Whether 1/T is at the end of the range of `output-error`.
+    /// Whether 1/T is at the edge of the range of `output-error`.
     pub at_bound: bool,
 }
 
 impl PreparedRecords {
-    /// Takes the records, looks for outliers, and fits `output-error` to the rest. Fails as it does.
+    /// Finds the outliers of the records and fits `output-error` to the other readings. Fails as it does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
-        let whole = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let whole = trials.iter().map(|trial| track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
-        // What is far from any course a ship can steer would spoil the first fit: a very quick ship could follow a
-        // sentinel in the first row by its initial yaw rate.
+        // Readings far from any possible course would spoil the first fit: a very quick ship could follow a sentinel in
+        // the first row by its initial yaw rate.
         let gross = |track: &Track| match settings.outliers {
             true => Suspects { jumps: Vec::new(), ..outliers::find(track, &track.heading, &[]) },
             false => Suspects::default(),
@@ -76,44 +77,44 @@ impl PreparedRecords {
         let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
         let mut too_many = false;
         let mut tracks: Vec<Track> =
-            whole.iter().zip(&suspects).map(|(track, found)| track.without(&found.spikes)).collect();
+            whole.iter().zip(&suspects).map(|(track, rows)| track.without(&rows.spikes)).collect();
         let mut first = method.fit(tracks.clone(), finest);
         let mut evaluations = 0;
-        for _ in 0..if settings.outliers { ROUNDS } else { 0 } {
+        for _ in 0..if settings.outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
             let fitted = first.as_ref().ok();
-            let again = |(track, known): (&Track, &Suspects)| {
-                outliers::find(track, &left_over(track, fitted, &known.spikes), &known.spikes)
+            let again = |(track, excluded): (&Track, &Suspects)| {
+                outliers::find(track, &residual(track, fitted, &excluded.spikes), &excluded.spikes)
             };
             let next: Vec<Suspects> = whole.iter().zip(&suspects).map(again).collect();
-            let share = |(track, found): (&Track, &Suspects)| found.spikes.len() as f64 / track.len() as f64;
-            too_many = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > LARGEST_SHARE;
+            let share = |(track, rows): (&Track, &Suspects)| rows.spikes.len() as f64 / track.len() as f64;
+            too_many = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > MAX_OUTLIER_SHARE;
             if too_many || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
                 suspects = next;
                 break;
             }
-            tracks = whole.iter().zip(&next).map(|(track, found)| track.without(&found.spikes)).collect();
+            tracks = whole.iter().zip(&next).map(|(track, rows)| track.without(&rows.spikes)).collect();
             suspects = next;
             first = method.fit(tracks.clone(), finest);
         }
         if too_many {
-            suspects.iter_mut().for_each(|found| found.spikes.clear());
+            suspects.iter_mut().for_each(|rows| rows.spikes.clear());
             tracks = whole.clone();
             first = method.fit(tracks.clone(), finest);
         }
         let first = first?;
         let gyro = settings.yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
-        let of_rudder = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
+        let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
         let declared =
-            settings.rudder == RudderChoice::Declared && trials.iter().all(|trial| of_rudder(trial).is_some());
+            settings.rudder == RudderChoice::Declared && trials.iter().all(|trial| declared_sd(trial).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
         let records = tracks
             .into_iter()
             .zip(trials)
             .map(|(track, trial)| {
                 let track = track.with_rates(trial.yaw_rate().filter(|_| gyro), trial);
-                Record { declared: of_rudder(trial).filter(|_| declared), ..Record::new(track, by_row) }
+                Record { declared: declared_sd(trial).filter(|_| declared), ..Record::new(track, by_row) }
             })
             .collect();
         Ok(Self { records, start: first.response, outliers: suspects, too_many, evaluations })
@@ -121,14 +122,14 @@ impl PreparedRecords {
 
     /// Times of the spikes of every record, s.
     pub fn spikes(&self) -> Vec<Vec<f64>> {
-        let times = |(record, found): (&Record, &Suspects)| {
+        let times = |(record, suspects): (&Record, &Suspects)| {
             let time = &record.track.time;
-            found.spikes.iter().map(|&row| time[row]).collect()
+            suspects.spikes.iter().map(|&row| time[row]).collect()
         };
         self.records.iter().zip(&self.outliers).map(times).collect()
     }
 
-    /// Fits every kind of noise and takes the one with the lowest BIC.
+    /// Fits every noise law and selects that with the lowest BIC.
     pub fn choose(self, settings: &Settings) -> Result<Chosen, IdentifyError> {
         let Self { mut records, start, outliers, too_many, evaluations } = self;
         let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
@@ -143,47 +144,47 @@ impl PreparedRecords {
         let none: Vec<NoiseVector> = records.iter().zip(&ranges).map(blank).collect();
 
         let mut spent = evaluations;
-        let (mut all, mut tried) = contest(&records, &ranges, settings, a, &none, &mut spent);
-        // Jumps are believed where they pay under the noise that was found.
-        let suspected: usize = outliers.iter().map(|found| found.jumps.len()).sum();
+        let (mut all, mut tried) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
+        // A jump is kept where it improves the likelihood enough under the selected noise.
+        let suspected: usize = outliers.iter().map(|rows| rows.jumps.len()).sum();
         let mut kept = outliers;
-        if let Some((_, found)) = all.first().filter(|_| suspected > 0) {
-            believe_jumps(&mut records, &mut kept, &found.point);
+        if let Some((_, maximum)) = all.first().filter(|_| suspected > 0) {
+            keep_jumps(&mut records, &mut kept, &maximum.point);
             if records.iter().any(|record| !record.jumps.is_empty()) {
-                (all, tried) = contest(&records, &ranges, settings, a, &none, &mut spent);
+                (all, tried) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
             }
         }
-        kept.iter_mut().zip(&records).for_each(|(found, record)| found.jumps.clone_from(&record.jumps));
+        kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jumps.clone_from(&record.jumps));
         let Some(&(lowest, _)) = all.first() else {
             return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: CONDITION_LIMIT });
         };
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
-        let weigh = |(bic, found): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, found);
-        let found: Vec<(f64, Maximum)> =
-            all.into_iter().map(weigh).filter(|(weight, _)| *weight > NEGLIGIBLE).collect();
-        let end = found[0].1.point.inverse_time;
+        let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
+        let maxima: Vec<(f64, Maximum)> =
+            all.into_iter().map(weigh).filter(|(weight, _)| *weight > MIN_WEIGHT).collect();
+        let end = maxima[0].1.point.inverse_time;
         let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
-        Ok(Chosen { records, found, outliers: kept, too_many, tried, evaluations: spent, at_bound })
+        Ok(Chosen { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })
     }
 }
 
-/// What `output-error` leaves of every heading of the whole track, with a start that `known` spikes have no say in; the
-/// heading itself when there is no answer.
-fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f64> {
+/// Residual of `output-error` at every heading of the whole track, with a start fitted without the `excluded` spikes;
+/// the heading itself without an estimate.
+fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec<f64> {
     let Some(estimate) = fitted else { return track.heading.clone() };
     let ship = estimate.response;
     let mut columns = MotionColumns::default();
     track.fill(ship.inverse_T, &mut columns);
     let Coefficients { gain, offset, .. } = Coefficients::of(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
-    let rest: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
-    let honest = |values: &[f64]| -> Vec<f64> {
+    let free: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
+    let without_spikes = |values: &[f64]| -> Vec<f64> {
         let rows = track.observed.iter().zip(values);
-        rows.filter(|(row, _)| !known.contains(row)).map(|(_, &value)| value).collect()
+        rows.filter(|(row, _)| !excluded.contains(row)).map(|(_, &value)| value).collect()
     };
-    let start = best_start(&honest(&rest), &honest(&columns.homogeneous));
-    let motion = columns.homogeneous.iter().map(|free| start.heading + start.yaw_rate * free);
-    rest.iter().zip(motion).map(|(rest, motion)| rest - motion).collect()
+    let start = best_start(&without_spikes(&free), &without_spikes(&columns.homogeneous));
+    let motion = columns.homogeneous.iter().map(|column| start.heading + start.yaw_rate * column);
+    free.iter().zip(motion).map(|(heading, motion)| heading - motion).collect()
 }
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
@@ -204,20 +205,20 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
 fn bic(records: &[Record], point: &Point) -> f64 {
     let noise: usize = records
         .iter()
-        .zip(&point.places)
-        .map(|(record, place)| {
-            // The entry of a declared rudder error stands for the size of the compass error, which is counted with all.
-            place.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
+        .zip(&point.vectors)
+        .map(|(record, vector)| {
+            // The entry of a declared rudder error represents the size of the compass error, which all laws count.
+            vector.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
         })
         .sum();
     point.restricted + noise as f64 * (readings(records) as f64).ln()
 }
 
-/// Fits of all kinds of noise, each behind its BIC.
+/// Fits of all noise laws, each with its BIC.
 type Ranked = Vec<(f64, Maximum)>;
 
-/// Fits every kind of noise that the settings allow, the lowest BIC first; also tells the BIC of every moment.
-fn contest(
+/// Fits every noise law that the settings allow, the lowest BIC first; also returns the BIC of every kind of moment.
+fn fit_laws(
     records: &[Record],
     ranges: &[Ranges],
     settings: &Settings,
@@ -226,53 +227,53 @@ fn contest(
     evaluations: &mut usize,
 ) -> (Ranked, Vec<(Moment, f64)>) {
     let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0, unseen: Vec::new() };
-    let mut all = of_moments(&mut search, settings.moment.kinds(), a, none);
-    let froms = with_memory(&all, settings.compass);
+    let mut all = fit_moments(&mut search, settings.moment.kinds(), a, none);
+    let coloured_starts = coloured_compass_starts(&all, settings.compass);
     if settings.compass == CompassChoice::Coloured {
         all.clear();
     }
-    for (a, places) in froms {
-        let starts = search.spread(a, &places, COMPASS);
+    for (a, vectors) in coloured_starts {
+        let starts = search.spread(a, &vectors, COMPASS);
         let start = search.best(starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
-    // Under the noise that was found another 1/T may be better; under white errors of the instruments alone the start
-    // is the best one already.
-    let is_more = |place: &NoiseVector| place.moment != Moment::None || place.coloured || place.rudder;
-    if let Some((_, found)) = lowest(&all).filter(|(_, found)| found.point.places.iter().any(is_more)) {
-        let elsewhere = asked_again(&mut search, found.point.inverse_time, &found.point.places);
-        if elsewhere.as_ref().is_some_and(|point| point.deviance < found.point.deviance) {
+    // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already the
+    // best.
+    let is_coloured = |vector: &NoiseVector| vector.moment != Moment::None || vector.coloured || vector.rudder;
+    if let Some((_, best)) = lowest(&all).filter(|(_, best)| best.point.vectors.iter().any(is_coloured)) {
+        let elsewhere = best_inverse_time(&mut search, best.point.inverse_time, &best.point.vectors);
+        if elsewhere.as_ref().is_some_and(|point| point.deviance < best.point.deviance) {
             all.extend(elsewhere.and_then(|better| search.highest(better)));
         }
     }
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
     *evaluations += search.evaluations;
-    let tried = all.iter().map(|(bic, found)| (found.point.places[0].moment, *bic)).chain(search.unseen).collect();
+    let tried = all.iter().map(|(bic, maximum)| (maximum.point.vectors[0].moment, *bic)).chain(search.unseen).collect();
     (all, tried)
 }
 
 impl Search<'_> {
-    /// The largest likelihood from a start, behind its BIC.
+    /// The largest likelihood from a start, with its BIC.
     fn highest(&mut self, start: Point) -> Option<(f64, Maximum)> {
-        let found = self.maximise(start)?;
-        Some((bic(self.records, &found.point), found))
+        let maximum = self.maximise(start)?;
+        Some((bic(self.records, &maximum.point), maximum))
     }
 }
 
 /// Fits with every kind of moment.
-fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector]) -> Ranked {
+fn fit_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector]) -> Ranked {
     let mut none = none.to_vec();
     let mut all: Ranked = Vec::new();
-    // Gusts begin where a white moment and a walk end.
+    // The starts of gusts are the fits of a white moment and of a walk.
     let (mut white, mut walk) = (None, None);
     for kind in [Moment::None, Moment::White, Moment::Walk, Moment::OrnsteinUhlenbeck] {
         let gusts = kinds.contains(&Moment::OrnsteinUhlenbeck) && matches!(kind, Moment::White | Moment::Walk);
-        let plain = all.iter().find(|(_, found)| found.point.places[0].moment == Moment::None);
+        let plain = all.iter().find(|(_, maximum)| maximum.point.vectors[0].moment == Moment::None);
         let random =
             [&white, &walk].into_iter().flatten().map(|point: &Point| point.restricted).fold(f64::INFINITY, f64::min);
-        // Gusts are between a white moment and a walk: where neither is seen, nor are they.
-        let hopeless =
-            kind == Moment::OrnsteinUhlenbeck && plain.is_some_and(|(_, plain)| plain.point.restricted - random < SEEN);
+        // Gusts lie between a white moment and a walk: without either of them gusts are not fitted.
+        let hopeless = kind == Moment::OrnsteinUhlenbeck
+            && plain.is_some_and(|(_, plain)| plain.point.restricted - random < MIN_GUST_GAIN);
         if (!kinds.contains(&kind) && !gusts) || hopeless {
             continue;
         }
@@ -283,78 +284,78 @@ fn of_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector
             Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
         let start = search.best(starts, |point| point.restricted);
-        // A moment that helps at no size is none: it costs what an entry costs and gains nothing.
+        // A moment without gain at any size is absent; its BIC still counts its entries.
         let is_unseen = |start: &Point| {
             matches!(kind, Moment::White | Moment::Walk)
-                && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - UNSEEN)
+                && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - MIN_MOMENT_GAIN)
         };
         if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_unseen)) {
             let entries = search.records.len() as f64;
             search.unseen.push((kind, bic + entries * (readings(search.records) as f64).ln()));
             continue;
         }
-        let found = start.and_then(|start| search.highest(start));
-        let point = found.as_ref().map(|(_, found)| &found.point);
+        let fitted = start.and_then(|start| search.highest(start));
+        let point = fitted.as_ref().map(|(_, maximum)| &maximum.point);
         match kind {
             Moment::White => white = point.cloned(),
             Moment::Walk => walk = point.cloned(),
-            // What is known of the other noises by then.
-            Moment::None => none = point.map_or(none, |point| point.places.clone()),
+            // Later kinds start from the fitted instrument errors.
+            Moment::None => none = point.map_or(none, |point| point.vectors.clone()),
             Moment::OrnsteinUhlenbeck => {}
         }
-        all.extend(found.filter(|_| kinds.contains(&kind)));
+        all.extend(fitted.filter(|_| kinds.contains(&kind)));
     }
     all
 }
 
-/// 1/T and noises with which a compass error with a memory is looked for: where innovations have one, beside the best
-/// noise, and alone, since a white moment may be large enough to make anything white.
-fn with_memory(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
-    let has_memory = |found: &&Maximum| {
-        let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
-        let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
+/// Starts of the search for a correlated compass error, where the innovations are correlated: with the best noise law,
+/// and alone, because a large white moment can hide the correlation.
+fn coloured_compass_starts(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
+    let is_correlated = |maximum: &&Maximum| {
+        let readings: usize = maximum.point.parts.iter().map(|part| part.readings).sum();
+        let whites = maximum.point.parts.iter().map(|part| part.innovations.as_slice());
         match compass {
             CompassChoice::Chosen => robust::lag1_autocorrelation(whites).abs() > 3.0 / (readings as f64).sqrt(),
             CompassChoice::White => false,
             CompassChoice::Coloured => true,
         }
     };
-    let is_plain = |found: &Maximum| found.point.places[0].moment == Moment::None;
-    let best = lowest(all).map(|(_, found)| found);
-    let alone = all.iter().map(|(_, found)| found).find(|found| is_plain(found));
+    let is_plain = |maximum: &Maximum| maximum.point.vectors[0].moment == Moment::None;
+    let best = lowest(all).map(|(_, maximum)| maximum);
+    let alone = all.iter().map(|(_, maximum)| maximum).find(|maximum| is_plain(maximum));
     let alone = alone.filter(|_| best.is_some_and(|best| !is_plain(best)));
-    let coloured = |found: &Maximum| {
-        let places = found.point.places.iter().map(|place| NoiseVector { coloured: true, ..*place });
-        (found.point.inverse_time, places.collect())
+    let coloured = |maximum: &Maximum| {
+        let vectors = maximum.point.vectors.iter().map(|vector| NoiseVector { coloured: true, ..*vector });
+        (maximum.point.inverse_time, vectors.collect())
     };
-    [best, alone].into_iter().flatten().filter(has_memory).map(coloured).collect()
+    [best, alone].into_iter().flatten().filter(is_correlated).map(coloured).collect()
 }
 
 fn lowest(all: &[(f64, Maximum)]) -> Option<&(f64, Maximum)> {
-    all.iter().min_by(|one, other| one.0.total_cmp(&other.0))
+    all.iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The best of other values of 1/T, of both signs, under the same noise.
-fn asked_again(search: &mut Search, inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
+fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
     let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);
     let (slowest, fastest) = (0.2 / longest, 0.5 / finest);
     let decades = (fastest / slowest).log10();
-    let points = (decades * ASKED_PER_DECADE as f64).ceil() as usize;
+    let points = (decades * VALUES_PER_DECADE as f64).ceil() as usize;
     let sizes = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
     let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_time).abs() > 0.2 * a.abs()).collect();
-    search.best(starts.into_iter().map(|a| (a, places.to_vec())).collect(), |point| point.deviance)
+    search.best(starts.into_iter().map(|a| (a, vectors.to_vec())).collect(), |point| point.deviance)
 }
 
-/// Keeps the suspected jumps that make the record much more likely under the noise of a point.
-fn believe_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
+/// Keeps the suspected jumps that raise the likelihood enough under the noise of a point.
+fn keep_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
     for number in 0..records.len() {
         for jump in outliers[number].jumps.clone() {
-            let height = |records: &[Record]| evaluate(records, point.inverse_time, &point.places).map(|p| p.deviance);
+            let height = |records: &[Record]| evaluate(records, point.inverse_time, &point.vectors).map(|p| p.deviance);
             let before = height(records);
             records[number].jumps.push(jump);
             let gain = before.zip(height(records)).map_or(0.0, |(before, after)| before - after);
-            if gain < JUMP_GAIN + (records[number].len() as f64).ln() {
+            if gain < MIN_JUMP_GAIN + (records[number].len() as f64).ln() {
                 records[number].jumps.pop();
             }
         }

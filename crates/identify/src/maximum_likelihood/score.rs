@@ -1,9 +1,9 @@
-//! How the likelihood changes at a point: score and information. What the noise does to innovations and variances is
-//! taken from differences, since a filter costs little more than one with derivatives, and there are few entries.
+//! Score and information of the likelihood at a point. Derivatives by the noise come from finite differences: there are
+//! few entries, and a filter with derivatives would cost about as much as a second filter.
 
 use std::ops::Range;
 
-use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::{NoiseVector, parameters::RUDDER};
 use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use trial::noise_model::Moment;
@@ -11,14 +11,14 @@ use trial::noise_model::Moment;
 use super::point::{Point, Record, RecordAtPoint, SHARED, readings};
 
 /// Step of a logarithm, and of 1/T as a share of itself and of one over the length of the record: wide enough for the
-/// digits of the likelihood, and far below what the noise is known to.
+/// digits of the likelihood, and far below the uncertainty of the noise.
 const DIFFERENCE: f64 = 1e-4;
 
-/// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the places, record by
+/// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the noise vectors, record by
 /// record.
 pub(super) struct Linearised {
-    /// ∂(−log L) by 1/T, and that of the restricted likelihood by the entries; zero for b and b δ_r, which are at
-    /// their best.
+    /// ∂(−log L) by 1/T, and that of the restricted likelihood by the entries; zero for b and b δ_r, which are at their
+    /// optimum.
     pub score: DVector<f64>,
     /// Fisher information, the sizes of the compass errors eliminated.
     pub information: DMatrix<f64>,
@@ -30,8 +30,8 @@ pub(super) struct Linearised {
 
 /// Score and information at a point.
 pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
-    let counts: Vec<usize> =
-        (records.iter().zip(&point.places)).map(|(record, place)| place.entries(record.has_gyro()).count()).collect();
+    let count = |(record, vector): (&Record, &NoiseVector)| vector.entries(record.has_gyro()).count();
+    let counts: Vec<usize> = records.iter().zip(&point.vectors).map(count).collect();
     let unknowns = SHARED + counts.iter().sum::<usize>();
     let mut all = Linearised {
         score: DVector::zeros(unknowns),
@@ -48,18 +48,19 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
     finite.then_some(all)
 }
 
-/// How innovations over √S and log S of every reading change with 1/T or an entry of the noise.
+/// Derivatives of the innovations over √S and of log S of every reading by 1/T or an entry of the noise.
 struct Slope {
     innovation: Vec<f64>,
     log_variance: Vec<f64>,
-    /// Of −log L and of the restricted one.
+    /// Derivatives of −log L and of the restricted likelihood.
     score: [f64; 2],
-    /// Of the logarithm of the variance of the compass error, where that is tied to an entry.
+    /// Derivative of the logarithm of the variance of the compass error, where it is tied to an entry.
     tied: f64,
 }
 
 impl Slope {
-    /// From the same record under a noise that is `by` away; `motion` is the information of all records.
+    /// Difference quotient to the same record under a noise that differs by `by`; `motion` is the information of all
+    /// records.
     fn new(here: &RecordAtPoint, there: &RecordAtPoint, by: f64, motion: &Matrix3<f64>) -> Self {
         let logs = there.white.filter.log_variances().into_iter().zip(here.white.filter.log_variances());
         let log_variance: Vec<f64> = logs.map(|(there, here)| (there - here) / by).collect();
@@ -74,24 +75,25 @@ impl Slope {
 }
 
 impl Linearised {
-    /// Adds what a record says, whose entries are these of the unknowns. `None` where it says nothing.
+    /// Adds the contribution of a record, whose noise entries have these numbers among the unknowns. `None` where it is
+    /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {
-        let (record, part, place) = (&records[number], &point.parts[number], &point.places[number]);
+        let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);
         let (all, a, steering) = (readings(records), point.inverse_time, [point.gain, point.offset]);
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
-        let is_tied = record.tied(place).is_some();
-        // A moment and a rudder error go through the ship.
-        let by_ship = if place.moment != Moment::None || place.rudder {
+        let is_tied = record.tied(vector).is_some();
+        // A moment and a rudder error depend on the response of the ship.
+        let by_ship = if vector.moment != Moment::None || vector.rudder {
             let by = DIFFERENCE * (a.abs() + record.track.duration().recip());
-            let there = RecordAtPoint::new(record, a, steering, place, a + by, all)?;
+            let there = RecordAtPoint::new(record, a, steering, vector, a + by, all)?;
             Slope::new(part, &there, by, &motion)
         } else {
             let none = vec![0.0; part.readings];
             Slope { innovation: none.clone(), log_variance: none, score: [0.0; 2], tied: 0.0 }
         };
         let mut slopes = vec![by_ship];
-        for entry in place.entries(record.has_gyro()) {
-            let mut moved = *place;
+        for entry in vector.entries(record.has_gyro()) {
+            let mut moved = *vector;
             moved.log[entry] += DIFFERENCE;
             let there = RecordAtPoint::new(record, a, steering, &moved, a, all)?;
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
@@ -106,9 +108,9 @@ impl Linearised {
         slopes.iter().zip(&at).skip(1).for_each(|(slope, &at)| self.score[at] += slope.score[1]);
         let sum = |slope: &Slope| if is_tied { 0.0 } else { slope.log_variance.iter().sum::<f64>() };
         let totals: Vec<f64> = slopes.iter().map(sum).collect();
-        for (i, one) in slopes.iter().enumerate() {
-            for (j, other) in slopes.iter().enumerate() {
-                let product = dot(&one.log_variance, &other.log_variance);
+        for (i, left) in slopes.iter().enumerate() {
+            for (j, right) in slopes.iter().enumerate() {
+                let product = dot(&left.log_variance, &right.log_variance);
                 self.information[(at[i], at[j])] += 0.5 * (product - totals[i] * totals[j] / part.readings as f64);
             }
         }
@@ -124,7 +126,7 @@ impl Linearised {
         self.score[0] -= dot(&part.innovations, &part.by_time) * per;
         columns[0].iter_mut().zip(&part.by_time).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
         let minus = |column: &[f64]| column.iter().map(|x| -x).collect::<Vec<f64>>();
-        let [rudder, constant, _] = &part.white.rest;
+        let [rudder, constant, _] = &part.white.projected;
         columns.extend([minus(rudder), minus(constant)]);
         let all: Vec<usize> = at.iter().copied().chain([1, 2]).collect();
         for (i, &row) in all.iter().enumerate() {

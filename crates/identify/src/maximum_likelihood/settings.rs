@@ -1,4 +1,4 @@
-//! What may be asked of the method.
+//! Settings of the method.
 
 use serde::{Deserialize, Serialize};
 use trial::noise_model::Moment;
@@ -7,7 +7,7 @@ use trial::noise_model::Moment;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MomentChoice {
-    /// The one with the lowest BIC.
+    /// The moment with the lowest BIC.
     #[default]
     Chosen,
     /// None.
@@ -21,7 +21,7 @@ pub enum MomentChoice {
 }
 
 impl MomentChoice {
-    /// The kinds that are tried.
+    /// The kinds of moment that are fitted.
     pub(super) fn kinds(self) -> &'static [Moment] {
         match self {
             Self::Chosen => &Moment::ALL,
@@ -50,16 +50,16 @@ pub enum CompassChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderChoice {
-    /// The one that the record declares, if it makes the record more likely.
+    /// White, of the size that the record declares, if that raises the likelihood.
     #[default]
     Declared,
     /// None.
     None,
-    /// A white one whose size is estimated.
+    /// White, of estimated size.
     Estimated,
 }
 
-/// Settings of MaximumLikelihood.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

@@ -22,7 +22,7 @@ fn draws(seed: u64) -> impl FnMut() -> f64 {
     move || normal.inverse_cdf((f64::from(generator.random::<u32>()) + 0.5) / 4294967296.0)
 }
 
-/// What moves the ship of a record beside its rudder, as rudder angle in degrees at every row, linear between them.
+/// Random disturbance of a record, as rudder angle in degrees at every row, linear between rows.
 enum ExtraNoise {
     /// A random walk with this standard deviation after a second.
     Walk(f64),
@@ -31,12 +31,12 @@ enum ExtraNoise {
 }
 
 /// A record whose heading was computed with another rudder than the recorded one.
-fn disturbed(case: &Case, beside: &ExtraNoise) -> Trial {
+fn disturbed(case: &Case, noise: &ExtraNoise) -> Trial {
     let truth = case.truth();
     let mut draw = draws(1000 + case.seed);
     let mut walk = 0.0;
     let extra: Vec<f64> = (truth.time.iter())
-        .map(|_| match beside {
+        .map(|_| match noise {
             ExtraNoise::Walk(step) => {
                 walk += from_deg(*step) * draw();
                 walk
@@ -44,7 +44,7 @@ fn disturbed(case: &Case, beside: &ExtraNoise) -> Trial {
             ExtraNoise::RudderError(sd) => from_deg(*sd) * draw(),
         })
         .collect();
-    // The response is linear: what the extra rudder does is added.
+    // The response is linear: that to the extra rudder is added.
     let ship = case.ship();
     let mut state = ship::first_order::State::default();
     let mut heading = Vec::new();
@@ -56,12 +56,12 @@ fn disturbed(case: &Case, beside: &ExtraNoise) -> Trial {
         }
         heading.push(truth.heading[row] + state.heading + from_deg(case.noise_deg) * draw());
     }
-    let rudder = match beside {
+    let rudder = match noise {
         ExtraNoise::Walk(_) => truth.rudder.clone(),
         ExtraNoise::RudderError(_) => truth.rudder.iter().zip(&extra).map(|(delta, error)| delta - error).collect(),
     };
     let trial = record("disturbed", truth.time, heading, rudder);
-    match beside {
+    match noise {
         ExtraNoise::Walk(_) => trial,
         ExtraNoise::RudderError(sd) => trial.with_noise(Noise { rudder: Some(from_deg(*sd)), ..Noise::default() }),
     }
@@ -82,14 +82,16 @@ fn a_calm_record_has_the_answer_of_output_error() {
     let plain = output_error::Settings::default().build().expect("valid");
     for case in [noisy(), Case { K: -0.05, T: -60.0, rudder_deg: 20.0, ..noisy() }] {
         let trial = case.trial();
-        let found = method.identify(std::slice::from_ref(&trial)).expect("an answer");
+        let estimate = method.identify(std::slice::from_ref(&trial)).expect("an answer");
         let expected = plain.identify(std::slice::from_ref(&trial)).expect("an answer");
-        for (one, other) in
-            [(found.K(), expected.K()), (found.T(), expected.T()), (found.rudder_bias(), expected.rudder_bias())]
-        {
-            assert_relative_eq!(one.value, other.value, max_relative = 1e-6);
-            for (one, other) in one.ci95.expect("bounded").into_iter().zip(other.ci95.expect("bounded")) {
-                assert_relative_eq!(one, other, max_relative = 1e-4);
+        for (likely, nearest) in [
+            (estimate.K(), expected.K()),
+            (estimate.T(), expected.T()),
+            (estimate.rudder_bias(), expected.rudder_bias()),
+        ] {
+            assert_relative_eq!(likely.value, nearest.value, max_relative = 1e-6);
+            for (a, b) in likely.ci95.expect("bounded").into_iter().zip(nearest.ci95.expect("bounded")) {
+                assert_relative_eq!(a, b, max_relative = 1e-4);
             }
         }
         let chosen = identify(std::slice::from_ref(&trial));
@@ -108,29 +110,29 @@ fn the_score_is_the_derivative() {
     let records: Vec<Record> =
         trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
     for moment in Moment::ALL {
-        let places = [
+        let vectors = [
             NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
             NoiseVector { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
         ];
         let a = 0.063;
-        let point = evaluate(&records, a, &places).expect("a fit");
-        let found = linearise(&records, &point).expect("a fit");
+        let point = evaluate(&records, a, &vectors).expect("a fit");
+        let linearised = linearise(&records, &point).expect("a fit");
         // By 1/T: the likelihood with everything else at its best.
-        let height = |a: f64| evaluate(&records, a, &places).expect("a fit").deviance;
+        let height = |a: f64| evaluate(&records, a, &vectors).expect("a fit").deviance;
         let numeric = 0.5 * (height(a + 1e-6) - height(a - 1e-6)) / 2e-6;
         // The sizes of the compass errors, and with them how much each record counts, are those of the restricted
         // likelihood: the two differ by what was fitted.
-        assert_relative_eq!(found.score[0], numeric, max_relative = 0.05);
+        assert_relative_eq!(linearised.score[0], numeric, max_relative = 0.05);
         let mut at = 3;
         for number in 0..2 {
-            for entry in places[number].entries(records[number].has_gyro()) {
+            for entry in vectors[number].entries(records[number].has_gyro()) {
                 let height = |by: f64| {
-                    let mut places = places;
-                    places[number].log[entry] += by;
-                    evaluate(&records, a, &places).expect("a fit").restricted
+                    let mut vectors = vectors;
+                    vectors[number].log[entry] += by;
+                    evaluate(&records, a, &vectors).expect("a fit").restricted
                 };
                 let numeric = 0.5 * (height(1e-4) - height(-1e-4)) / 2e-4;
-                assert_relative_eq!(found.score[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
+                assert_relative_eq!(linearised.score[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
                 at += 1;
             }
         }
@@ -139,18 +141,18 @@ fn the_score_is_the_derivative() {
 
 /// Under a moment that walks the errors are far below those of output error, and the intervals hold.
 #[test]
-fn a_walking_moment_is_borne() {
+fn a_walking_moment_leaves_smaller_errors() {
     let plain = output_error::Settings::default().build().expect("valid");
-    let (mut own, mut other, mut held) = (0.0, 0.0, 0);
+    let (mut likely, mut nearest, mut held) = (0.0, 0.0, 0);
     for seed in 0..40 {
         let trial = disturbed(&Case { seed, ..noisy() }, &ExtraNoise::Walk(0.1));
-        let found = identify(std::slice::from_ref(&trial)).T();
-        let [low, high] = found.ci95.expect("bounded");
+        let time_constant = identify(std::slice::from_ref(&trial)).T();
+        let [low, high] = time_constant.ci95.expect("bounded");
         held += usize::from((low..=high).contains(&16.3));
-        own += (found.value - 16.3).powi(2);
-        other += (plain.identify(&[trial]).expect("an answer").T().value - 16.3).powi(2);
+        likely += (time_constant.value - 16.3).powi(2);
+        nearest += (plain.identify(&[trial]).expect("an answer").T().value - 16.3).powi(2);
     }
-    assert!(own < 0.65_f64.powi(2) * other, "{own} against {other}");
+    assert!(likely < 0.65_f64.powi(2) * nearest, "{likely} against {nearest}");
     // Of 40 intervals of 95 % fewer than 33 hold once in 3000 times.
     assert!(held >= 33, "{held}");
 }
@@ -158,19 +160,19 @@ fn a_walking_moment_is_borne() {
 /// A rudder error that is declared is taken into account: intervals widen and hold.
 #[test]
 fn a_declared_rudder_error_counts() {
-    let (mut held, mut known) = (0, 0);
+    let (mut held, mut estimated_well) = (0, 0);
     for seed in 0..40 {
         let trial = disturbed(&Case { seed, ..noisy() }, &ExtraNoise::RudderError(0.2));
-        let found = identify(std::slice::from_ref(&trial));
-        let [low, high] = found.rudder_bias().ci95.expect("bounded");
+        let estimate = identify(std::slice::from_ref(&trial));
+        let [low, high] = estimate.rudder_bias().ci95.expect("bounded");
         held += usize::from((low..=high).contains(&0.0));
         let without = Settings { rudder: RudderChoice::Estimated, ..Settings::default() }.build().expect("valid");
         let estimated = without.identify(&[trial]).expect("an answer");
         let size = estimated.diagnostic("rudder_sd_deg").expect("estimated");
-        known += usize::from((0.05..0.5).contains(&size));
+        estimated_well += usize::from((0.05..0.5).contains(&size));
     }
     assert!(held >= 33, "{held}");
-    assert!(known >= 30, "{known}");
+    assert!(estimated_well >= 30, "{estimated_well}");
 }
 
 /// A spike, a sentinel and a jump are found, listed, and do no harm.
@@ -189,13 +191,13 @@ fn outliers_are_left_out_and_listed() {
         (spoilt(&|row, psi| if (90..93).contains(&row) { sentinel } else { psi }), 3.0, 0.0),
         (spoilt(&|row, psi| if row >= 150 { psi + from_deg(4.0) } else { psi }), 0.0, 1.0),
     ] {
-        let found = identify(std::slice::from_ref(&trial));
-        assert_eq!(found.diagnostic("left_out"), Some(spikes), "{:?}", found.warnings);
-        assert_eq!(found.diagnostic("jumps"), Some(jumps), "{:?}", found.warnings);
-        assert!(found.warnings.iter().any(|warning| warning.text.contains("t = ")), "{:?}", found.warnings);
-        for (one, other) in [(found.K(), expected.K()), (found.T(), expected.T())] {
-            let sd = other.sd.expect("known");
-            assert!((one.value - other.value).abs() < sd, "{} against {} ± {sd}", one.value, other.value);
+        let estimate = identify(std::slice::from_ref(&trial));
+        assert_eq!(estimate.diagnostic("left_out"), Some(spikes), "{:?}", estimate.warnings);
+        assert_eq!(estimate.diagnostic("jumps"), Some(jumps), "{:?}", estimate.warnings);
+        assert!(estimate.warnings.iter().any(|warning| warning.text.contains("t = ")), "{:?}", estimate.warnings);
+        for (spoilt, clean) in [(estimate.K(), expected.K()), (estimate.T(), expected.T())] {
+            let sd = clean.sd.expect("a covariance");
+            assert!((spoilt.value - clean.value).abs() < sd, "{} against {} ± {sd}", spoilt.value, clean.value);
         }
     }
     let raw = Settings { outliers: false, ..Settings::default() }.build().expect("valid");
@@ -216,13 +218,13 @@ fn a_coloured_compass_is_named() {
             psi + error
         })
         .collect();
-    let found = identify(&[record("coloured", truth.time, heading, truth.rudder)]);
-    let time = found.diagnostic("heading_correlation_s").expect("coloured");
+    let estimate = identify(&[record("coloured", truth.time, heading, truth.rudder)]);
+    let time = estimate.diagnostic("heading_correlation_s").expect("coloured");
     assert!((1.5..10.0).contains(&time), "{time}");
-    assert!(found.warnings.iter().any(|warning| warning.text.contains("compass error")), "{:?}", found.warnings);
+    assert!(estimate.warnings.iter().any(|warning| warning.text.contains("compass error")), "{:?}", estimate.warnings);
 }
 
-/// Bounds under a walk are those of a calm where it is small, and wider where it is not; a gyro narrows them.
+/// Bounds under a small walk are those of a calm, and wider under a large walk; a gyro narrows them.
 #[test]
 fn the_bound_knows_the_noise() {
     let case = noisy();

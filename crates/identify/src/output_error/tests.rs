@@ -1,4 +1,4 @@
-//! Output error on records whose answer is known.
+//! Output error on records with given true parameters.
 
 use super::*;
 use crate::estimate::Uncertainty;
@@ -27,14 +27,14 @@ fn recovers_ships_of_either_stability_to_rounding() {
     {
         let truth = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: from_deg(0.7) };
         let trial = exact_record(&truth, initial, 271, 1.0);
-        let found = method().identify(&[trial]).expect("noise-free").response;
+        let response = method().identify(&[trial]).expect("noise-free").response;
         let scale = 1.0 / 271.0;
         assert!(
-            (found.inverse_T - inverse_time).abs() < 1e-7 * (inverse_time.abs() + scale),
-            "{found:?} for {truth:?}"
+            (response.inverse_T - inverse_time).abs() < 1e-7 * (inverse_time.abs() + scale),
+            "{response:?} for {truth:?}"
         );
-        assert_relative_eq!(found.K_over_T, gain, max_relative = 1e-6);
-        assert_relative_eq!(found.rudder_bias, truth.rudder_bias, max_relative = 1e-5);
+        assert_relative_eq!(response.K_over_T, gain, max_relative = 1e-6);
+        assert_relative_eq!(response.rudder_bias, truth.rudder_bias, max_relative = 1e-5);
     }
 }
 
@@ -48,9 +48,9 @@ fn corners_of_the_rudder_between_rows_leave_no_bias() {
         for start in [Start::Mid, Start::Rest] {
             let samples = (300.0 / period_s) as usize;
             let case = Case { rudder_deg, heading_deg, period_s, samples, start, bias_deg: 0.5, ..Case::default() };
-            let found = method().identify(&[case.trial()]).expect("noise-free").response;
-            assert_relative_eq!(found.K(), case.K, max_relative = 2e-6);
-            assert_relative_eq!(found.T(), case.T, max_relative = 2e-6);
+            let response = method().identify(&[case.trial()]).expect("noise-free").response;
+            assert_relative_eq!(response.K(), case.K, max_relative = 2e-6);
+            assert_relative_eq!(response.T(), case.T, max_relative = 2e-6);
         }
     }
 }
@@ -133,16 +133,16 @@ fn a_rudder_of_the_wrong_sign_is_refused() {
     }
 }
 
-/// Both methods have the same answer for white noise and the same sandwich: on few rows what the fit took from the
-/// residual counts.
+/// Both methods have the same answer for white noise and the same sandwich: on few rows the correction for the degrees
+/// of freedom counts.
 #[test]
 fn the_robust_covariance_is_that_of_the_instrumental_variables() {
     let trial = [Case { samples: 15, period_s: 8.0, noise_deg: 0.2, ..Case::default() }.trial()];
     let instruments = crate::srivc::Settings::default().build().expect("valid");
-    let [one, other] = [method().identify(&trial), instruments.identify(&trial)]
+    let [output_error, srivc] = [method().identify(&trial), instruments.identify(&trial)]
         .map(|estimate| estimate.expect("steered").robust.expect("a robust covariance").matrix);
     for i in 0..3 {
-        assert_relative_eq!(one[(i, i)], other[(i, i)], max_relative = 1e-5);
+        assert_relative_eq!(output_error[(i, i)], srivc[(i, i)], max_relative = 1e-5);
     }
 }
 
@@ -152,11 +152,15 @@ fn a_time_constant_at_the_end_of_the_search_says_so() {
     let bounded = |smallest| Settings { smallest_time_constant_s: Some(smallest), ..Settings::default() };
     for case in [Case::default(), Case { noise_deg: 0.2, seed: 5, start: Start::Rest, ..Case::default() }] {
         let trial = [case.trial()];
-        let found = |smallest| bounded(smallest).build().expect("valid").identify(&trial).expect("steered");
-        let (free, held) = (found(1.0), found(2.0 * case.T));
+        let bounded_fit = |smallest| bounded(smallest).build().expect("valid").identify(&trial).expect("steered");
+        let (free, held) = (bounded_fit(1.0), bounded_fit(2.0 * case.T));
         assert_eq!(free.stop, StopReason::Converged);
-        assert!(free.warnings.iter().all(|warning| !warning.text.contains("at its bound")));
+        assert!(free.warnings.iter().all(|warning| !warning.text.contains("limit of the search")));
         assert_eq!(held.stop, StopReason::RangeLimit, "T = {} s", held.response.T());
-        assert!(held.warnings.iter().any(|warning| warning.text.contains("at its bound")), "{:?}", held.warnings);
+        assert!(
+            held.warnings.iter().any(|warning| warning.text.contains("limit of the search")),
+            "{:?}",
+            held.warnings
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! How sure the answer is: the asymptotic covariance of refined instrumental variables for a white residual, and the
-//! sandwich of Newey and West (1987) for a coloured one.
+//! Covariance of the estimate: that of refined instrumental variables for a white residual (Young and Jakeman 1980),
+//! and the sandwich of Newey and West (1987) for a coloured residual.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,7 +7,7 @@ use super::filter::{Filters, NormalEquations, Point};
 use super::record::Record;
 use crate::robust;
 
-/// Residuals of the simulated heading at the answer, and what they say of its error.
+/// Residuals of the simulated heading at the estimate, and its covariance.
 pub(super) struct Residuals {
     /// Number of residuals.
     pub count: usize,
@@ -17,7 +17,7 @@ pub(super) struct Residuals {
     pub total: f64,
     /// Correlation of neighbouring residuals.
     pub lag1: f64,
-    /// Residuals less unknowns: three shared ones, two by record.
+    /// Residuals less unknowns: three shared unknowns and two per record.
     pub degrees_of_freedom: f64,
     /// Covariance of the shared unknowns for a white residual e, σ² (Z̃ᵀZ̃)⁻¹.
     pub white: Matrix3<f64>,
@@ -26,9 +26,9 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// Runs the answer once more over every record.
+    /// Filters every record with the final estimate.
     ///
-    /// `None` when Z̃ᵀZ̃ is singular or nothing is left to estimate a variance from.
+    /// `None` when Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
     pub fn new(records: &[Record], point: &Point, blocks: &[NormalEquations]) -> Option<Self> {
         let count: usize = records.iter().map(|record| record.observed).sum();
         let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;
@@ -39,25 +39,25 @@ impl Residuals {
         let mut residuals = Vec::with_capacity(records.len());
         let mut scores = Vec::with_capacity(records.len());
         for ((record, block), &start) in records.iter().zip(blocks).zip(&point.starts) {
-            let mut own = Vec::with_capacity(record.observed);
-            let mut own_scores = [(); 3].map(|()| Vec::with_capacity(record.observed));
+            let mut record_residuals = Vec::with_capacity(record.observed);
+            let mut record_scores = [(); 3].map(|()| Vec::with_capacity(record.observed));
             let (mut sum, mut squares) = (0.0, 0.0);
             Filters::run(record, point.shared, start, |row, filters| {
                 let residual = row.heading - filters.motion.heading;
                 let z = filters.instruments();
                 let projected: Vector3<f64> = z.fixed_rows::<3>(0) - block.along * z.fixed_rows::<2>(3);
-                own_scores
+                record_scores
                     .iter_mut()
                     .zip(&projected)
                     .for_each(|(score, z): (&mut Vec<f64>, _)| score.push(z * residual));
-                own.push(residual);
+                record_residuals.push(residual);
                 rss += residual * residual;
                 sum += row.heading;
                 squares += row.heading * row.heading;
             });
             total += squares - sum * sum / record.observed as f64;
-            residuals.push(own);
-            scores.push(own_scores);
+            residuals.push(record_residuals);
+            scores.push(record_scores);
         }
         let inverse = blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>().try_inverse()?;
         let omega = robust::newey_west_of_three(&scores) * (count as f64 / degrees_of_freedom);

@@ -1,5 +1,6 @@
-//! The state-variable filters 1/(s (s + â)) run over a record, and the normal equations they give. One pass, nothing
-//! stored by row; the two unknowns of the initial state of a record are eliminated here.
+//! The state-variable filters 1/(s (s + â)) run over a record, and the resulting normal equations, in a single pass
+//! without storage by row; the two unknowns of the initial state of a record are eliminated. Source: Garnier and Wang
+//! (2008), Identification of Continuous-time Models from Sampled Data, chapter 4.
 
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
 use ship::first_order::{State, TangentTransition};
@@ -84,7 +85,7 @@ impl Filters {
         }
     }
 
-    /// From the row `before` to `row`.
+    /// Advances the filters from the row `before` to `row`.
     #[inline]
     fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;
@@ -110,7 +111,7 @@ impl Filters {
         self.with_first(self.sensitivity.heading)
     }
 
-    /// The same with −lp ψ as measured in place of its noise-free twin: the regressors.
+    /// The regressors: the same with the measured −lp ψ in place of its noise-free twin.
     #[inline]
     fn regressors(&self) -> SVector<f64, 5> {
         self.with_first(-self.lagged)
@@ -122,7 +123,7 @@ impl Filters {
     }
 }
 
-/// Which columns stand on the left of the normal equations.
+/// Columns on the left of the normal equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Left {
     /// The regressors themselves: least squares.
@@ -133,7 +134,7 @@ pub(super) enum Left {
 
 /// Normal equations of one record, Zᵀ[−lp ψ, F δ, F 1/s, 1, φ₁] θ = Zᵀψ, with the last two unknowns eliminated.
 pub(super) struct NormalEquations {
-    /// Z̃ᵀZ̃ of the shared unknowns, Z̃ being Z less its part along 1 and φ₁.
+    /// Z̃ᵀZ̃ of the shared unknowns, Z̃ being Z projected off 1 and φ₁.
     pub instruments: Matrix3<f64>,
     /// Z̃ᵀX of the shared unknowns.
     pub regressors: Matrix3<f64>,
@@ -141,7 +142,7 @@ pub(super) struct NormalEquations {
     pub target: Vector3<f64>,
     /// Coefficients of Z along 1 and φ₁: Z̃ = Z − P `along`ᵀ, P = [1, φ₁].
     pub along: Matrix3x2<f64>,
-    /// (PᵀP)⁻¹, PᵀX and Pᵀψ: what gives the initial state once the shared unknowns are known.
+    /// (PᵀP)⁻¹, PᵀX and Pᵀψ: they give the initial state for given shared unknowns.
     inner: Matrix2<f64>,
     inner_regressors: SMatrix<f64, 2, 3>,
     inner_target: Vector2<f64>,

@@ -1,21 +1,21 @@
 //! Simplified refined instrumental variables for continuous time (SRIVC), with rudder bias and initial state.
 //!
-//! The ship is ψ'' + a ψ' = b (δ + δ_r) with a = 1/T, b = K/T, and the heading is read with white noise. Divided by
-//! s (s + â), the equation holds no derivative,
+//! The ship is ψ'' + a ψ' = b (δ + δ_r) with a = 1/T, b = K/T, and the heading is read with white noise. Divided by s
+//! (s + â), the equation has no derivative,
 //!
 //! ψ = −(a − â) lp ψ + b F δ + b δ_r F 1/s + ψ₀ + (r₀ + (a − â) ψ₀) φ₁,  F = 1/(s (s + â)),  lp = 1/(s + â),
 //!
 //! and is linear in its unknowns. lp ψ is noisy, so an instrument takes its place on the left of the normal equations:
-//! the same filter over the heading simulated with the last estimate. Then â becomes the new a, until it stays.
+//! the same filter over the heading simulated with the last estimate. Then â is set to the new a, until it converges.
 //!
 //! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the straight line drawn between
 //! its samples biases the answer; the instruments are the gradient of the simulated heading, so the answer is a
 //! stationary point of the output error and efficient for white noise. Without noise the equation holds for any â. And
 //! a wrong noise model costs efficiency, not consistency, as long as the noise does not steer.
 //!
-//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is the
-//! one of motion integrated twice, by least squares. For a < 0 the filters would grow; such a record is run backwards
-//! in time, which turns a into −a and keeps everything else.
+//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is that
+//! of motion integrated twice, solved by least squares. For a < 0 the filters would grow; such a record is filtered
+//! backwards in time, which turns a into −a and keeps the rest of the equation.
 //!
 //! Sources: Young and Jakeman (1980), refined instrumental variables part III; Garnier and Wang (2008), chapter 4;
 //! equivalence to the output error at the fixed point: Pan, González, Welsh and Rojas (2020).
@@ -43,20 +43,20 @@ use covariance::Residuals;
 use filter::{Left, NormalEquations, Point, Shared};
 use record::Record;
 
-/// Fewest observed headings of a trial: twice the unknowns of a single one.
-const FEWEST_ROWS: usize = 10;
+/// Headings that a trial needs: twice its unknowns.
+const MIN_ROWS: usize = 10;
 
-/// Smallest share of a step that is taken when the iteration sways.
-const SHORTEST_STEP: f64 = 0.05;
+/// Smallest share of a step that is taken when the iteration oscillates.
+const MIN_STEP_SHARE: f64 = 0.05;
 
-/// Settings of Srivc.
+/// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
     /// Iterations after the start before the method gives up.
     pub max_iterations: usize,
     /// Change of the simulated heading in one iteration at which the method has settled, as a share of the heading that
-    /// the rudder explains. Not of the parameters: a ship with 1/T = 0 and a poorly known K have no scale of their own.
+    /// the rudder explains. Not of the parameters: a ship with 1/T = 0 and a poorly determined K have no scale.
     pub relative_step: f64,
     /// Largest accepted condition number of the scaled instruments, initial states eliminated.
     pub condition_limit: f64,
@@ -88,7 +88,7 @@ pub struct Srivc {
     settings: Settings,
 }
 
-/// One solution of the normal equations of all records.
+/// Solution of the common normal equations of all records.
 struct Solution {
     point: Point,
     condition: f64,
@@ -105,8 +105,8 @@ impl Identifier for Srivc {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        // What no method can use is refused in the words that all methods share.
-        Samples::of_all(trials, FEWEST_ROWS)?;
+        // The checks that all methods share.
+        Samples::from_trials(trials, MIN_ROWS)?;
         let mut records: Vec<Record> = trials.iter().map(Record::new).collect();
         let mut start = self.integral_least_squares(&records)?;
         let backwards = start.point.shared.a < 0.0;
@@ -134,7 +134,7 @@ impl Identifier for Srivc {
         let count = residuals.count as f64;
         let robust_covariance = covariance(&residuals.robust);
         let white = covariance(&residuals.white);
-        let (uncertainty, warning) = crate::robust::judge(white, &robust_covariance, residuals.lag1, residuals.count);
+        let (uncertainty, warning) = crate::robust::select(white, &robust_covariance, residuals.lag1, residuals.count);
         let mut warnings = Vec::from_iter(warning);
         if inverse_time < 0.0 {
             warnings.push(Code::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
@@ -161,28 +161,28 @@ impl Identifier for Srivc {
 impl Srivc {
     /// The start: filters with their pole at 0 and the regressors as instruments.
     fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
-        let rest =
+        let zero =
             Point { shared: Shared { a: 0.0, b: 0.0, bias: 0.0 }, starts: vec![State::default(); records.len()] };
-        self.solve(records, &rest, Left::Regressors)
+        self.solve(records, &zero, Left::Regressors)
     }
 
-    /// Iterates to the fixed point; also tells the number of iterations.
+    /// Iterates to the fixed point; returns the number of iterations as well.
     ///
-    /// Where the residual is large and no noise, as with a rudder that is put over between two rows, whole steps go to
-    /// and fro about the fixed point and die out slowly or not at all. From the first step back that is longer than
-    /// half the one before, steps are shortened by their secant in a (Irons and Tuck 1969).
+    /// With a large deterministic residual, as after a rudder put over between two rows, full steps oscillate about the
+    /// fixed point and decay slowly or not at all. From the first reversal that exceeds half the step before, steps are
+    /// shortened by their secant in a (Irons and Tuck 1969).
     fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
         let mut solution = start;
         let mut step = f64::INFINITY;
-        let (mut share, mut before, mut sways): (f64, f64, bool) = (1.0, 0.0, false);
+        let (mut share, mut before, mut oscillates): (f64, f64, bool) = (1.0, 0.0, false);
         for iteration in 1..=self.settings.max_iterations {
             let last = solution.point;
             solution = self.solve(records, &last, Left::Instruments)?;
             let now = solution.point.shared;
             let change = now.a - last.shared.a;
-            sways |= change * before < -0.5 * before * before;
-            if sways {
-                share = (share * before / (before - change)).clamp(SHORTEST_STEP, 1.0);
+            oscillates |= change * before < -0.5 * before * before;
+            if oscillates {
+                share = (share * before / (before - change)).clamp(MIN_STEP_SHARE, 1.0);
             }
             before = change;
             let gram = solution.blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>();
@@ -214,7 +214,7 @@ impl Srivc {
         let scale = Vector3::from_fn(|i, _| 1.0 / gram[(i, i)].sqrt());
         let scaled = |matrix: Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
         let correlation = scaled(gram);
-        // Filters that overflowed, or a column of zeros; the search for eigenvalues would not end.
+        // With overflowed filters or a column of zeros the eigenvalue iteration would not end.
         if correlation.iter().any(|value| !value.is_finite()) {
             return Err(singular(f64::INFINITY));
         }

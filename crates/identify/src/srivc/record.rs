@@ -1,10 +1,10 @@
-//! A trial as the filters of this method want it: rows to step over, with their intervals; in either direction of time.
+//! Rows of a trial with their intervals, as the filters of this method step over them, in either direction of time.
 
 use trial::Trial;
 
-/// Intervals closer than this share are one interval: rows at 0.1 s differ in the last bits of their time, and
-/// filter coefficients are made anew for every interval that differs.
-const SAME_INTERVAL: f64 = 1e-9;
+/// Relative tolerance of equal intervals: rows at 0.1 s differ in the last bits of their time, and every different
+/// interval needs new filter coefficients.
+const INTERVAL_TOLERANCE: f64 = 1e-9;
 
 /// One row of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,8 +30,8 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Rows of `trial`, with time running forwards. A missing heading is joined linearly between its neighbours; it
-    /// steers the iteration but carries no weight in the answer.
+    /// Rows of `trial`, with time running forwards. A missing heading is interpolated linearly between its neighbours;
+    /// it affects the iteration but not the estimate.
     pub fn new(trial: &Trial) -> Self {
         let (time, rudder, heading) = (trial.time(), trial.rudder(), trial.heading());
         let mut rows: Vec<FilterRow> = Vec::with_capacity(trial.len() + trial.rudder_corners().len());
@@ -46,7 +46,7 @@ impl Record {
             let (from, to) = (heading[last], heading[row]);
             let mut push = |t: f64, share: f64, rudder: f64, observed: bool| {
                 let elapsed = t - before;
-                if (elapsed - interval).abs() > SAME_INTERVAL * interval {
+                if (elapsed - interval).abs() > INTERVAL_TOLERANCE * interval {
                     interval = elapsed;
                 }
                 before = t;
@@ -105,7 +105,7 @@ mod tests {
             assert_abs_diff_eq!(row.heading, 0.01 * index as f64, epsilon = 1e-12);
             assert_eq!(row.observed, ![4, 5].contains(&index));
         }
-        // Equal but for rounding: one interval.
+        // Equal except for rounding: a single interval.
         assert!(record.rows[2..].iter().all(|row| row.interval == record.rows[1].interval));
     }
 

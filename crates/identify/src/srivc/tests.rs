@@ -1,4 +1,4 @@
-//! What the method promises: exactness without noise, efficiency for white noise, consistency for coloured noise, and
+//! Properties of the method: exactness without noise, efficiency for white noise, consistency for coloured noise, and
 //! typed refusals.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 

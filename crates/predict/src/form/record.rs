@@ -1,64 +1,64 @@
-//! Records as the form of MSC/Circ.1053 takes them: which of its manoeuvres each is, and what it shows of it.
+//! Records for the form of MSC/Circ.1053: the manoeuvre of the form that a record is, and its figures.
 
-use ship::angle::to_deg;
+use ship::{Particulars, angle::to_deg};
 use simulate::motion::Current;
 use trial::zigzag::BaseCourseSource;
 use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
-use crate::imo::{ABOUT, CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TWENTY};
+use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, RUDDER_TOLERANCE, TEN, TWENTY};
 use crate::turn::{self, HeldTurn};
 
-/// Yaw rate of a straight approach as a share of the largest of the record.
-const STRAIGHT: f64 = 0.05;
+/// Largest yaw rate of a straight approach, relative to the largest of the record.
+const MAX_STRAIGHT_RATE: f64 = 0.05;
 
-/// Rows at least from which the yaw rate of an approach to a circle is read.
-const FEWEST: usize = 3;
+/// Rows needed for the yaw rate of an approach to a circle.
+const MIN_APPROACH_ROWS: usize = 3;
 
-/// A record with what corrects it to full load.
+/// A record with its correction to full load.
 #[derive(Debug, Clone, Copy)]
 pub struct FormRecord<'a> {
     /// The record.
     pub trial: &'a Trial,
     /// Its correction, where a model of its condition was given.
     pub correction: Option<&'a Correction>,
-    /// The current that was taken out of its positions.
+    /// The current that was removed from its positions.
     pub current: Option<Current>,
 }
 
 impl FormRecord<'_> {
-    /// How the ship was loaded; a record that is to be corrected was at partial load whatever else is known.
+    /// Loading of the ship; a record with a correction was at partial load, whatever it declares.
     pub(crate) fn loading(&self) -> Option<Loading> {
         self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
     }
 }
 
-/// A record as the form sees it.
+/// A record with its manoeuvre of the form, figures and remark.
 pub(crate) struct TestedManoeuvre<'a> {
     pub record: FormRecord<'a>,
     /// The manoeuvre with its side, where it is one of the form.
     pub what: Option<(FormManoeuvre, &'static str)>,
     /// Figures that it shows.
     pub figures: Vec<(&'static str, Quantity)>,
-    /// Why it is none of the form, or what is to be said of it.
+    /// Reason why it is not a manoeuvre of the form, or a remark on it.
     pub remark: Option<String>,
 }
 
-/// Manoeuvre and side, figures and remark of a record; else why it is no manoeuvre of the form.
-type Found = Result<((FormManoeuvre, &'static str), Vec<(&'static str, Quantity)>, Option<String>), String>;
+/// Manoeuvre and side, figures and remark of a record, or the reason why it is not a manoeuvre of the form.
+type Classified = Result<((FormManoeuvre, &'static str), Vec<(&'static str, Quantity)>, Option<String>), String>;
 
 impl<'a> TestedManoeuvre<'a> {
     /// The record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from
     /// a straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of
     /// the largest or below three times its error.
     pub fn of(record: &FormRecord<'a>) -> Self {
-        let found = match Measured::of(record.trial) {
+        let classified = match Measured::of(record.trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record.trial, &zigzag),
             _ => circle(record.trial),
         };
         let record = *record;
-        match found {
+        match classified {
             Ok((what, figures, remark)) => Self { record, what: Some(what), figures, remark },
             Err(remark) => Self { record, what: None, figures: Vec::new(), remark: Some(remark) },
         }
@@ -66,12 +66,12 @@ impl<'a> TestedManoeuvre<'a> {
 
     /// Whether it is this manoeuvre to this side.
     pub fn is(&self, manoeuvre: FormManoeuvre, side: &str) -> bool {
-        self.what.is_some_and(|(own, to)| own == manoeuvre && to == side)
+        self.what.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
     }
 
     /// A figure that it shows.
     pub fn figure(&self, name: &str) -> Option<Quantity> {
-        self.figures.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
+        self.figures.iter().find(|(figure, _)| *figure == name).map(|(_, value)| *value)
     }
 }
 
@@ -80,14 +80,14 @@ fn side(sign: f64) -> &'static str {
     if sign < 0.0 { "port" } else { "starboard" }
 }
 
-fn zig_zag(trial: &Trial, zigzag: &Measured) -> Found {
+fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
     let is_pair = |angle: f64| zigzag.pair.is_some_and(|pair| pair.is_deg(angle, angle));
     let manoeuvre = match (is_pair(10.0), is_pair(20.0)) {
         (true, _) => TEN,
         (_, true) => TWENTY,
         _ => {
             let pair = zigzag.pair.map_or_else(|| String::from("no regular pair of angles"), |pair| pair.to_string());
-            return Err(format!("a zig-zag of {pair}, which the form does not ask for"));
+            return Err(format!("a zig-zag of {pair}, which is not part of the form"));
         }
     };
     let Some(first) = zigzag.side else {
@@ -98,10 +98,10 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Found {
         let before = to_deg(begin.rudder_before);
         return Err(format!("the {manoeuvre} begins with the rudder at {before:.1}°, not from a straight course"));
     }
-    // A slope that is read off the few headings behind a first execute says nothing of the approach.
+    // A slope from the few headings after a first execute is not that of the approach.
     let is_seen = zigzag.base_course.source == BaseCourseSource::Approach;
     if let (true, Some(rate), Some(largest)) = (is_seen, begin.yaw_rate, zigzag.largest_yaw_rate) {
-        let allowed = (STRAIGHT * largest.value).max(3.0 * rate.sd.unwrap_or(0.0));
+        let allowed = (MAX_STRAIGHT_RATE * largest.value).max(3.0 * rate.sd.unwrap_or(0.0));
         if rate.value.abs() > allowed {
             let rate = to_deg(rate.value);
             return Err(format!("the {manoeuvre} begins at {rate:.2} deg/s, not from a straight course"));
@@ -114,7 +114,7 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Found {
     let show = |name: &&'static str| Some((*name, helm_replay::shown(trial, zigzag, name, None, trial.particulars())?));
     let stands_in = manoeuvre == TEN && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
     let remarks = [
-        (!is_seen).then_some("the record begins with the first execute, and its approach is not seen"),
+        (!is_seen).then_some("the record begins with the first execute, so its approach is not recorded"),
         stands_in.then_some(
             "no speed is recorded: the distance of the initial turning is V times its time, which is slightly long",
         ),
@@ -124,27 +124,27 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Found {
     Ok(((manoeuvre, side(first.sign())), names.iter().filter_map(show).collect(), remark))
 }
 
-fn circle(trial: &Trial) -> Found {
+fn circle(trial: &Trial) -> Classified {
     let neither = || String::from("neither a zig-zag nor a turning circle of the form");
     let turn = HeldTurn::of(trial).ok_or_else(neither)?;
-    let own = trial.particulars().ok_or_else(|| {
+    let Particulars { length, speed } = trial.particulars().ok_or_else(|| {
         String::from("neither a zig-zag of the form nor, with an unknown length of the ship, a turning circle")
     })?;
-    let passage = turn::recorded(trial, own.length / own.speed, Some(own.length)).ok_or_else(neither)?;
+    let passage = turn::recorded(trial, length / speed, Some(length)).ok_or_else(neither)?;
     let shown = turn.figures(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
     let rudder = to_deg(turn.rudder);
-    if (turn.rudder - CIRCLE_RUDDER).abs() > ABOUT {
-        return Err(format!("a turning circle with {rudder:.1}° of rudder; the form asks for 35° or the largest"));
+    if (turn.rudder - CIRCLE_RUDDER).abs() > RUDDER_TOLERANCE {
+        return Err(format!("a turning circle with {rudder:.1}° of rudder; the form needs 35° or the largest angle"));
     }
-    if turn.before.abs() > ABOUT {
+    if turn.before.abs() > RUDDER_TOLERANCE {
         let before = to_deg(turn.before);
         return Err(format!("the turning circle begins with the rudder at {before:.1}°, not from a straight course"));
     }
     let approach = (turn.approach() / passage.period) as usize;
-    if approach >= FEWEST {
+    if approach >= MIN_APPROACH_ROWS {
         let rate = (passage.heading[approach - 1] - passage.heading[0]) / ((approach - 1) as f64 * passage.period);
-        if rate.abs() > STRAIGHT * passage.largest_rate() {
+        if rate.abs() > MAX_STRAIGHT_RATE * passage.largest_rate() {
             let rate = to_deg(rate);
             return Err(format!("the turning circle begins at {rate:.2} deg/s, not from a straight course"));
         }

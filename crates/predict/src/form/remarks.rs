@@ -1,5 +1,5 @@
-//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, and
-//! records that are no manoeuvre of the form.
+//! Remarks of the form of MSC/Circ.1053: conditions that are not met or unknown, sides that were not tested, and
+//! records that are not a manoeuvre of the form.
 
 use document::names;
 use indexmap::IndexMap;
@@ -10,18 +10,18 @@ use super::record::TestedManoeuvre;
 use crate::imo::{CIRCLE, TEN, TWENTY};
 use crate::replay::file_of;
 
-/// The remarks, in the order in which a reader asks.
+/// The remarks, in order of relevance.
 pub(crate) fn remarks(
     tested: &[TestedManoeuvre],
     declared: Option<(&str, &Conditions)>,
     particulars: Option<Particulars>,
 ) -> Vec<String> {
     let mut remarks: Vec<String> = particulars.and_then(imo::caution).into_iter().collect();
-    // What holds for several files is said once.
+    // A remark on several files appears once.
     let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
-    for one in tested {
-        for text in of_record(one) {
-            files.entry(text).or_default().push(file_of(one.record.trial));
+    for manoeuvre in tested {
+        for text in of_record(manoeuvre) {
+            files.entry(text).or_default().push(file_of(manoeuvre.record.trial));
         }
     }
     if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
@@ -29,15 +29,15 @@ pub(crate) fn remarks(
     }
     remarks.extend(files.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
     remarks.extend(sides(tested));
-    if tested.iter().any(|one| one.what.is_some()) {
+    if tested.iter().any(|tested| tested.what.is_some()) {
         remarks.push(String::from(
-            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output) and the engine",
+            "not checked: the test speed (at least 90 % of that at 85 % of the engine output) and the engine",
         ));
     }
     remarks.extend(tested.iter().filter_map(of_current));
     for manoeuvre in [TEN, TWENTY, CIRCLE] {
         for side in ["port", "starboard"] {
-            if tested.iter().filter(|one| one.is(manoeuvre, side)).count() > 1 {
+            if tested.iter().filter(|tested| tested.is(manoeuvre, side)).count() > 1 {
                 remarks.push(format!(
                     "{manoeuvre} to {side}: several records; the first that is at full load or corrected is used"
                 ));
@@ -47,56 +47,56 @@ pub(crate) fn remarks(
     remarks
 }
 
-/// Manoeuvres that were not tried, or to one side only.
+/// Manoeuvres that were not tested, or to a single side only.
 fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
     let names = [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")];
     let missing = |(manoeuvre, name): (&'static str, &str)| {
-        let tried = ["port", "starboard"].map(|side| tested.iter().any(|one| one.is(manoeuvre, side)).then_some(side));
-        match tried {
+        let done = ["port", "starboard"].map(|side| tested.iter().any(|test| test.is(manoeuvre, side)).then_some(side));
+        match done {
             [Some(_), Some(_)] => None,
-            [None, None] => Some(format!("{name}: not tried")),
+            [None, None] => Some(format!("{name}: not tested")),
             [Some(side), None] | [None, Some(side)] => {
-                Some(format!("{name}: tried to {side} only; trials are asked for to both sides"))
+                Some(format!("{name}: tested to {side} only; the form needs trials to both sides"))
             }
         }
     };
     names.into_iter().filter_map(missing).collect()
 }
 
-/// What a current did to the track of a record.
+/// Remark on a current in the track of a record.
 fn of_current(tested: &TestedManoeuvre) -> Option<String> {
     let file = file_of(tested.record.trial);
     match tested.record.current {
         Some(current) => Some(format!(
-            "{file}: a current of {:.2} m/s that sets to {:.0}° was taken out of the track",
+            "{file}: a current of {:.2} m/s that sets to {:.0}° was removed from the track",
             current.speed_m_s, current.set_deg
         )),
         None => tested.what.filter(|(manoeuvre, _)| *manoeuvre == CIRCLE).map(|_| {
             format!(
-                "{file}: the turn is shorter than the 720° that show a current; what one did to the track is not known"
+                "{file}: the turn is shorter than the 720° that reveal a current, so its effect on the track is unknown"
             )
         }),
     }
 }
 
-/// What is to be said of one record.
+/// Remarks on one record.
 fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
     let record = &tested.record;
     let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
-    // A record that fills in nothing need not be by the book.
+    // A record without entries need not meet the standard.
     if tested.what.is_some() {
         remarks.extend(record.trial.shortcomings().iter().map(ToString::to_string));
         if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
             remarks.push(String::from(
                 "tested at partial load and not corrected, and the criteria are for full load; give --ballast with a model \
-                 of the ship as she was tried",
+                 of the ship in that condition",
             ));
         }
         if let Some(correction) = record.correction {
-            remarks.extend(correction.warnings.iter().map(|own| format!("correction to full load: {}", own.text)));
+            remarks.extend(correction.warnings.iter().map(|each| format!("correction to full load: {}", each.text)));
             for (name, figure) in correction.figures.iter().filter(|(name, _)| tested.figure(name).is_some()) {
                 let name = names::plain(name);
-                remarks.extend(figure.warnings.iter().map(|own| format!("correction of {name}: {}", own.text)));
+                remarks.extend(figure.warnings.iter().map(|warning| format!("correction of {name}: {}", warning.text)));
             }
         }
     }

@@ -278,7 +278,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     assert_eq!(entry(&json, "loading condition", "")["value"], "tested at full load");
     assert!(entry(&json, "track reach", "")["source"].as_str().is_some_and(|why| why.contains("never predicted")));
     let remarks = json["form_remarks"].to_string();
-    for part in ["3.0 mean draughts", "Beaufort 6", "tried to starboard only", "20/20 zig-zag: not tried"] {
+    for part in ["3.0 mean draughts", "Beaufort 6", "tested to starboard only", "20/20 zig-zag: not tested"] {
         assert!(remarks.contains(part), "{part}: {remarks}");
     }
     let page = desk.text("p/trial-form.md");

@@ -31,8 +31,8 @@ fn long_starts_end_at_a_period_beyond_the_record() {
 fn zero_crossings_give_the_limit_cycle_under_noise() {
     for (case, period) in [(Case::default(), 116.63), (ten_twenty(), 159.13)] {
         let trial = Case { noise_deg: 0.5, ..case }.trial();
-        let found = zero_crossing_period(trial.time(), trial.heading()).expect("a zig-zag crosses");
-        assert_abs_diff_eq!(found, period, epsilon = 2.0);
+        let period_s = zero_crossing_period(trial.time(), trial.heading()).expect("a zig-zag crosses");
+        assert_abs_diff_eq!(period_s, period, epsilon = 2.0);
     }
 }
 

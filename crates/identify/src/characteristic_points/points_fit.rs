@@ -1,4 +1,4 @@
-//! What the variants start from, and what they find.
+//! Input and result of the variants: a trial with its characteristic points, and the fit to them.
 
 use nalgebra::Matrix3;
 
@@ -7,12 +7,12 @@ use crate::samples::Samples;
 
 /// One trial with its points.
 #[derive(Debug)]
-pub(super) struct Analysed {
+pub(super) struct AnalysedTrial {
     pub(super) samples: Samples,
     pub(super) points: Points,
 }
 
-/// What a variant finds, in the parameters of the integrated equation.
+/// Result of a variant, in the parameters of the integrated equation.
 #[derive(Debug)]
 pub(super) struct PointsFit {
     /// K (1/s), K δ_r (rad/s), T (s).
