@@ -36,8 +36,8 @@ pub enum IdentifiedShipError {
     Hull(String),
     /// Ship of unknown length or speed, which cannot be scaled.
     #[error(
-        "the ship cannot be scaled, because her length and speed are unknown; give them to `study fit` or `study trace`, \
-         or --length-m and --speed-kn here if the model has that scale"
+        "the ship cannot be scaled, because her length and speed are unknown; give them to `study fit` or `study \
+         trace`, or --length-m and --speed-kn here if the model has that scale"
     )]
     NoParticulars,
     /// Formula with a constant of unknown unit, which cannot be scaled.

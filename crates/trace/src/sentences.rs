@@ -99,14 +99,14 @@ impl Headline<'_> {
                  first-order response is {base}°."
             ),
             (Verdict::Disturbed, _) => format!(
-                "No effect is named, but the ship was disturbed: {} of the heading error of {base}°. Weather does this; so \
-                 does an effect of a shape that was not searched for.",
+                "No effect is named, but the ship was disturbed: {} of the heading error of {base}°. Weather does this; \
+                 so does an effect of a shape that was not searched for.",
                 self.moment()
             ),
             (Verdict::Located, true) => format!("The missing yaw moment depends on {}. {errors}", self.shapes()),
             (_, true) => format!(
-                "The first-order response lacks something that no listed effect explains. {errors} The residual is neither \
-                 random nor of a shape that was searched for."
+                "The first-order response lacks something that no listed effect explains. {errors} The residual is \
+                 neither random nor of a shape that was searched for."
             ),
             (verdict, false) => {
                 let (more, residual) = match (verdict, self.disturbance) {
@@ -148,8 +148,8 @@ impl Headline<'_> {
         let decreases: Vec<String> = self.effects.iter().map(|effect| format!("{:.0}", -effect.delta_bic)).collect();
         let decreases = listed(&decreases);
         format!(
-            "This improves the prediction of each heading from those before (BIC falls by {decreases}), but hardly the full \
-             replay. "
+            "This improves the prediction of each heading from those before (BIC falls by {decreases}), but hardly the \
+             full replay. "
         )
     }
 
@@ -219,8 +219,8 @@ pub fn signature(signature: &Signature, name: &str) -> String {
         format!("; {:.0} % of its square has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
-        "{name}: residual {}° rms; {:.0} % of its square between {from:.0} and {to:.0} s; largest ({}°) at headings from \
-         {:.0}° to {:.0}°; {}° with the rudder to port, {}° with it to starboard{line}",
+        "{name}: residual {}° rms; {:.0} % of its square between {from:.0} and {to:.0} s; largest ({}°) at headings \
+         from {:.0}° to {:.0}°; {}° with the rudder to port, {}° with it to starboard{line}",
         short(to_deg(signature.all)),
         100.0 * share,
         short(to_deg(largest)),
