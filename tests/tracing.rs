@@ -351,7 +351,7 @@ fn what_no_candidate_carries_is_seen() {
     assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
     assert_eq!(document.located[0].depends_on, Dependence::Way, "{:?}", document.located);
     assert!(document.unexplained.signature.is_some() && !document.unexplained.present && document.effects.is_empty());
-    assert!(document.headline.starts_with("What is missing depends on way to one side (moment with "));
+    assert!(document.headline.starts_with("The missing yaw moment depends on way to one side (moment with "));
 }
 
 /// Stall at one amplitude is a smaller K: not observable. At two it is seen, and the next trial says so beforehand.

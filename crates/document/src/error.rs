@@ -1,49 +1,49 @@
-//! Why an identified ship is refused.
+//! Errors of identified ships in files.
 
 use thiserror::Error;
 
-/// Why an identified ship is refused.
+/// Error of an identified ship in a file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum IdentifiedShipError {
-    /// An effect of the model is not known.
-    #[error("the effect `{id}` ({form}) is not known; fit or trace the record again with this program")]
+    /// Unknown effect of the model.
+    #[error("unknown effect `{id}` ({form}); fit or trace the record again with this program")]
     Effect {
         /// Identifier.
         id: String,
         /// Form.
         form: String,
     },
-    /// Numbers do not pair up.
+    /// Lists of different lengths.
     #[error("{what}: expected {expected}, found {found}; fit or trace the record again with this program")]
     Count {
-        /// What is counted.
+        /// Name of the list.
         what: &'static str,
-        /// How many there should be.
+        /// Expected number.
         expected: usize,
-        /// How many there are.
+        /// Number in the file.
         found: usize,
     },
-    /// A parameter is no number, or a length, speed or weight is that of no ship.
-    #[error("{key} = {value}: expected a finite number, as a weight 0 or more, as a length or speed what ships have")]
+    /// Parameter that is not finite, or length, speed or weight out of range.
+    #[error("{key} = {value}: expected a finite number (a weight of at least 0, a length or speed of a ship)")]
     Value {
-        /// The parameter.
+        /// Key of the parameter.
         key: &'static str,
-        /// What was found.
+        /// Value in the file.
         value: f64,
     },
-    /// A hull, by the word for its form, cannot be made again.
-    #[error("the hull `{0}` of the file is not one of this program; fit or trace the record again with it")]
+    /// Hull whose form or coefficients this program does not have.
+    #[error("unknown hull model `{0}`; fit or trace the record again with this program")]
     Hull(String),
-    /// A ship of unknown length or speed cannot be scaled.
+    /// Ship of unknown length or speed, which cannot be scaled.
     #[error(
-        "length and speed of the ship are not known, so she cannot be scaled; give them to fit or trace, or here --speed-kn beside \
-         --length-m where the model is of that scale"
+        "the ship cannot be scaled, because her length and speed are unknown; give them to `study fit` or `study \
+         trace`, or --length-m and --speed-kn here if the model has that scale"
     )]
     NoParticulars,
-    /// A constant of the formula of this effect has no unit that could be scaled.
+    /// Formula with a constant of unknown unit, which cannot be scaled.
     #[error(
-        "the unit of the constants of the effect {0} is not known, so the ship cannot be scaled; write the formula over rp, \
-         vp, delta and psi, which have no dimension"
+        "the ship cannot be scaled, because the constants of the effect {0} have unknown units; write its formula with \
+         the dimensionless rp, vp, delta and psi"
     )]
     NoUnit(&'static str),
 }

@@ -1,89 +1,89 @@
-//! What an error is about, as a word that programs can act on.
+//! Error codes for programs.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What an error is about.
+/// Subject of an error.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorCode {
-    /// Input that is wrong in a way without a code.
+    /// Wrong input without a more specific code.
     #[default]
     Input,
-    /// Work that could not be done.
+    /// Failed work.
     Work,
-    /// Ctrl-C, or a signal to end.
+    /// Ctrl-C, or a termination signal.
     Interrupted,
-    /// A wrong command or option.
+    /// Wrong command or option.
     Usage,
-    /// A key or value of a scenario.
+    /// Wrong key or value of a scenario.
     Scenario,
-    /// A sidecar that is wrong or does not fit its table.
+    /// Sidecar that is wrong or does not match its table.
     Sidecar,
-    /// A file that should be a result of this program.
+    /// File that is no valid result of this program.
     Document,
-    /// There is no such file.
+    /// Missing file.
     NotFound,
-    /// A folder or device where a file was expected.
+    /// Folder or device in place of a file.
     NoFile,
-    /// A file, line or record longer than may be read.
+    /// File, line or record above the size limit.
     TooLarge,
-    /// Bytes that the system does not give.
+    /// File that the system cannot read.
     Unreadable,
-    /// Nothing in the file.
+    /// Empty file.
     Empty,
-    /// Bytes that are no text, or text in another encoding than UTF-8.
+    /// Binary data, or text that is not UTF-8.
     Encoding,
-    /// A format that is not read.
+    /// Unsupported format.
     Format,
-    /// A file or log that is damaged or cut short.
+    /// Damaged or truncated file or log.
     Damaged,
-    /// A file without a table.
+    /// File without a table.
     NoTable,
-    /// A table without names of columns.
+    /// Table without column names.
     NoHeader,
-    /// Time, heading or rudder has no column, or no value in it.
+    /// Time, heading or rudder without a column or without values.
     MissingChannel,
     /// Two columns for one quantity.
     DuplicateColumn,
-    /// A column whose unit nothing shows.
+    /// Column of unknown unit.
     OpenUnit,
-    /// An angle that is in no degrees: per cent, parts of a degree, counts of a converter.
+    /// Angle not in degrees: per cent, parts of a degree, counts of a converter.
     AngleScale,
-    /// Degrees under the name of radians, or radians under that of degrees.
+    /// Degrees in a column of radians, or radians in one of degrees.
     AngleUnit,
-    /// A yaw rate in another unit than its name says.
+    /// Yaw rate in another unit than its column name.
     YawRateUnit,
-    /// Yaw rate and heading of opposite signs.
+    /// Yaw rate and heading with opposite signs.
     YawRateSign,
-    /// The ship turns away from her rudder.
+    /// Rudder and turn with opposite signs.
     RudderSign,
-    /// A time in another unit than its name says.
+    /// Time in another unit than its column name.
     TimeUnit,
-    /// A date or time that cannot be read, or in two ways.
+    /// Unreadable or ambiguous date or time.
     Stamp,
-    /// A cell that is no number.
+    /// Cell without a number.
     Cell,
-    /// A row with more or fewer cells than the header.
+    /// Row with another number of cells than the header.
     RowLength,
-    /// Time runs backwards.
+    /// Decreasing time.
     TimeBackwards,
-    /// A time twice, with different values.
+    /// Repeated time with different values.
     TimeRepeats,
-    /// No time, or clocks and channels that do not belong together.
+    /// Missing time, or clocks and channels that do not match.
     Clock,
-    /// A part without a row.
+    /// Selected part without rows.
     EmptyPart,
     /// Too few rows.
     TooShort,
-    /// Neither rudder nor heading moves.
+    /// Constant rudder and heading.
     NothingMoves,
-    /// The rudder moves and the heading does not.
+    /// Moving rudder with constant heading.
     HeadingConstant,
-    /// A channel with two sensors in turn.
+    /// Channel that alternates between two sensors.
     TwoInputs,
-    /// Several zig-zags, and none was asked for.
+    /// Several zig-zags without a selected one.
     SeveralManoeuvres,
-    /// No method can identify the record.
+    /// Record that no method can identify.
     NoAnswer,
 }

@@ -1,4 +1,4 @@
-//! What a fit says, as `fit.json` holds it: records and answers.
+//! Document of a fit (`fit.json`): records, results of the methods, verdict.
 
 use std::collections::BTreeMap;
 
@@ -14,39 +14,39 @@ use crate::scales::ScalesEntry;
 use crate::single_records::{Amplitude, SingleRecords};
 use crate::warning::{Code, Source, Warning};
 
-/// Name of the schema.
+/// Schema name.
 pub const SCHEMA: &str = "fit/2";
 
-/// The method whose fit is drawn on its own where it has one.
-const SHOWN: &str = "output-error";
+/// Method drawn in the figures, where it has an estimate.
+const DRAWN_METHOD: &str = "output-error";
 
-/// One record of `fit.json`.
+/// Record of `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TrialEntry {
-    /// The file as it was named.
+    /// File as given by the user.
     pub file: String,
-    /// SHA-256 of its bytes.
+    /// SHA-256 of the file.
     pub sha256: String,
-    /// Rows with a rudder.
+    /// Number of rows with a rudder angle.
     pub samples: usize,
-    /// Length, s.
+    /// Duration, s.
     pub duration_s: f64,
-    /// Characteristics of this record; `null` when it is not a zig-zag.
+    /// Zig-zag characteristics; `null` when it is no zig-zag.
     pub zigzag: Option<ZigZagEntry>,
-    /// Why it has none.
+    /// Reason why it is no zig-zag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_zigzag: Option<String>,
-    /// The turning circle that it is.
+    /// Turning-circle characteristics, where it is a turning circle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub circle: Option<CircleEntry>,
 }
 
-/// A recorded turning circle; a current that its positions show is taken out.
+/// Characteristics of a recorded turning circle, corrected for the current that its positions show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CircleEntry {
     /// `port` or `starboard`.
     pub side: String,
-    /// Rudder angle that was held, deg.
+    /// Rudder angle of the turn, deg.
     pub rudder_deg: f64,
     /// Advance at 90° of heading, ship lengths; none without positions or an unknown length.
     pub advance_lengths: Option<f64>,
@@ -56,40 +56,40 @@ pub struct CircleEntry {
     pub tactical_diameter_lengths: Option<f64>,
 }
 
-/// One IMO criterion.
+/// IMO criterion with its measured value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriterionEntry {
-    /// What is limited.
+    /// Name of the criterion.
     pub criterion: String,
     /// Measured value.
     pub measured: Option<f64>,
-    /// Largest value allowed.
+    /// Largest allowed value.
     pub limit: f64,
-    /// Unit of both.
+    /// Unit of value and limit.
     pub unit: String,
     /// `pass`, `fail` or `not measured`.
     pub verdict: CriterionVerdict,
 }
 
-/// Whether a criterion is met.
+/// Outcome of a criterion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CriterionVerdict {
-    /// It is.
+    /// Met.
     Pass,
-    /// It is not.
+    /// Not met.
     Fail,
-    /// The record does not show it.
+    /// Not measured by the record.
     #[serde(rename = "not measured")]
     NotMeasured,
 }
 
-/// Zig-zag characteristics of a record.
+/// Zig-zag characteristics of a record (IMO MSC.137(76)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigZagEntry {
     /// Initial turning time, s.
     pub initial_turning_time_s: Option<f64>,
-    /// Overshoot angles in order, deg; of a peak that was not seen there is none.
+    /// Overshoot angles in order, deg; `null` for a peak that was not recorded.
     pub overshoots_deg: Vec<Option<f64>>,
     /// Standard deviations of the overshoot angles, deg.
     pub overshoots_sd_deg: Vec<Option<f64>>,
@@ -97,7 +97,7 @@ pub struct ZigZagEntry {
     pub period_s: Option<f64>,
     /// IMO MSC.137(76), where length and speed are declared.
     pub imo: Vec<CriterionEntry>,
-    /// What they mean for a ship of less than 100 m, such as a model.
+    /// Caution for a ship of less than 100 m, such as a model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imo_caution: Option<String>,
 }
@@ -108,75 +108,75 @@ pub struct FitDocument {
     /// `fit/2`.
     #[schemars(extend("const" = "fit/2"))]
     pub schema: String,
-    /// The records.
+    /// Records.
     pub trials: Vec<TrialEntry>,
-    /// Which answer is to be taken.
+    /// Recommended estimate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<VerdictEntry>,
-    /// The answers.
+    /// Results of the methods.
     pub methods: Vec<MethodEntry>,
-    /// Those of the first record, which stand in its entry too.
+    /// Zig-zag characteristics of the first record, repeated from its entry.
     pub zigzag: Option<ZigZagEntry>,
-    /// What every method with a covariance knows of the ship, for `study predict`; SI units and radians.
+    /// Identified ship of every method with a covariance, for `study predict`; SI units and radians.
     #[serde(default)]
     pub ships: BTreeMap<String, IdentifiedShip>,
-    /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
+    /// Earlier trials of `--prior`, and whether the records contradict them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
-    /// Where the records are of several scales: which terms scale.
+    /// Comparison of terms between scales, where the records have several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,
-    /// How records of several scales were brought to one.
+    /// Description of the scaling of records of several scales to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scaling: Option<String>,
-    /// Length at which numbers with a dimension are given, where it is known, m.
+    /// Length to which dimensional numbers refer, where it is known, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_m_s: Option<f64>,
-    /// The amplitude of the zig-zags, to which K and T belong.
+    /// Amplitude of the zig-zags, to which K and T belong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
-    /// The form of MSC/Circ.1053 with what the records measure, where they measure something of it.
+    /// Form of MSC/Circ.1053 with the measured entries, where there are any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form: Vec<ImoFormEntry>,
-    /// What the form says beside its entries.
+    /// Remarks of the form.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form_remarks: Vec<String>,
     /// Every zig-zag identified alone, where there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
-    /// What a reader should know of records and answers, the worst first.
+    /// Warnings on records and estimates, the most severe first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
 }
 
 impl FitDocument {
-    /// Length and speed at which numbers with a dimension are given, where they are known.
+    /// Length and speed to which dimensional numbers refer, where they are known.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
-    /// The method whose fit is drawn on its own.
+    /// Method drawn in the figures; `None` where none has an estimate.
     pub fn shown_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
-        answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
+        answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Whether a channel of a record is not what its instrument read, or not what its name says.
+    /// Whether a channel has faulty readings, or is an order in place of an angle.
     pub fn has_faulty_readings(&self) -> bool {
         self.warnings.iter().any(|warning| matches!(warning.code, Code::FaultyReadings | Code::RudderOrder))
     }
 
-    /// Everything that a reader should know of the answer to take, what costs most first.
+    /// Warnings on the recommended estimate, the most severe first.
     pub fn of_answer(&self) -> impl Iterator<Item = &Warning> {
-        self.warnings.iter().filter(|own| !self.is_note(own))
+        self.warnings.iter().filter(|warning| !self.is_note(warning))
     }
 
-    /// What methods say of answers that are not to be taken: some say it of nearly every record.
+    /// Warnings on other estimates, which are frequent and less relevant.
     pub fn notes(&self) -> impl Iterator<Item = &Warning> {
-        self.warnings.iter().filter(|own| self.is_note(own))
+        self.warnings.iter().filter(|warning| self.is_note(warning))
     }
 
     fn is_note(&self, warning: &Warning) -> bool {
@@ -186,86 +186,86 @@ impl FitDocument {
 }
 
 impl VerdictEntry {
-    /// Whether more terms of a hull leave less than two thirds of the residual of output error.
+    /// Whether additional terms of a hull reduce the residual of output error to less than two thirds.
     pub fn falls_with_ship_terms(&self) -> bool {
-        self.residual_deg.zip(self.with_ship_terms_deg).is_none_or(|(all, left)| left < all * 2.0 / 3.0)
+        self.residual_deg.zip(self.with_ship_terms_deg).is_none_or(|(before, after)| after < before * 2.0 / 3.0)
     }
 }
 
-/// Why an answer is to be taken.
+/// Reason for the recommended estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// No first-order response replays the headings nearer.
+    /// Least heading error of all first-order responses.
     NearestReplay,
-    /// A random yaw moment acts, and maximum likelihood counts it.
+    /// A random yaw moment acts, which maximum likelihood models.
     RandomMoment,
-    /// The recorded rudder is noisy, and maximum likelihood counts it.
+    /// The recorded rudder is noisy, which maximum likelihood models.
     RudderNoise,
-    /// The heading jumps and stays off, and maximum likelihood estimates that.
+    /// The heading has lasting jumps, which maximum likelihood estimates.
     HeadingJumps,
 }
 
-/// What the residual of the answer looks like.
+/// Kind of the residual of output error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ResidualKind {
-    /// White, and so the noise of the heading.
+    /// White: heading noise.
     Noise,
-    /// Terms of a ship explain most of it: the model lacks an effect.
+    /// Mostly explained by additional terms of a hull: the model lacks an effect.
     LacksEffect,
-    /// Terms of a ship do not explain it: random moments, waves or an error of the compass.
+    /// Not explained by such terms: random moments, waves or compass errors.
     Random,
 }
 
-/// Whether K and T can be taken from the records.
+/// Whether K and T of the records can be used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Belief {
-    /// They can.
+    /// Usable.
     #[default]
     Yes,
-    /// They cannot: `because` says why.
+    /// Not usable; `because` is the reason.
     No,
 }
 
-/// The answer to take.
+/// Recommended estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct VerdictEntry {
-    /// Whether K and T can be taken at all.
+    /// Whether K and T can be used.
     #[serde(default)]
     pub believe: Belief,
-    /// Why they cannot.
+    /// Reason why they cannot.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,
-    /// The method whose answer is to be taken; where none is, the nearest one.
+    /// Recommended method; where K and T cannot be used, the one of least heading error.
     pub method: String,
-    /// K of that answer, 1/s; absent where `believe` is `no`.
+    /// K of that method, 1/s; absent where `believe` is `no`.
     #[serde(rename = "K_per_s", default, skip_serializing_if = "Option::is_none")]
     pub k_per_s: Option<Quantity>,
-    /// T of that answer, s; absent where `believe` is `no`.
+    /// T of that method, s; absent where `believe` is `no`.
     #[serde(rename = "T_s", default, skip_serializing_if = "Option::is_none")]
     pub t_s: Option<Quantity>,
-    /// Why.
+    /// Reason for the recommendation.
     pub reason: Reason,
-    /// What the residual of output error looks like, where that has an answer.
+    /// Kind of the residual of output error, where it has an estimate.
     pub residual: Option<ResidualKind>,
     /// Root mean square of that residual, deg.
     pub residual_deg: Option<f64>,
-    /// The same with nine more terms of a hull fitted to it, deg.
+    /// Root mean square after a fit of nine additional terms of a hull, deg.
     pub with_ship_terms_deg: Option<f64>,
-    /// Standard deviation of the noise of the heading, deg.
+    /// Standard deviation of the heading noise, deg.
     pub noise_deg: Option<f64>,
-    /// Time by which the rudder acts later than it was recorded, s, where that alone explains most of the residual;
-    /// negative for a rudder that was recorded late.
+    /// Delay of the acting rudder behind the recorded one, s, where it alone explains most of the residual; negative
+    /// for a rudder that was recorded late.
     pub rudder_delay_s: Option<f64>,
-    /// Methods whose replays are more than ten times worse than the best.
+    /// Methods whose heading error is more than ten times the least.
     pub set_apart: Vec<String>,
-    /// Where no replay is nearer to the headings than straight lines are: the root mean square about these, deg. No
-    /// method has an answer then, and `method` is the nearest.
+    /// Root mean square about straight lines (deg), where no replay is better than these; then no method has an
+    /// estimate, and `method` is the one of least heading error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_lines_deg: Option<f64>,
-    /// Output error or maximum likelihood, where its 95 % interval of K or T lies wholly outside that of the answer to
-    /// take, or its replay is set apart.
+    /// Output error or maximum likelihood, where its 95 % interval of K or T does not overlap that of the recommended
+    /// method, or its replay is in `set_apart`.
     pub contradicted_by: Option<String>,
 }

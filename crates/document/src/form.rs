@@ -4,16 +4,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// An entry of the form.
+/// Entry of the form.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ImoFormEntry {
-    /// Heading it stands under.
+    /// Section heading.
     pub section: String,
-    /// What it is called.
+    /// Name of the field.
     pub field: String,
-    /// "port" or "starboard", where the form has one for either side.
+    /// "port" or "starboard", where the form distinguishes sides.
     pub side: Option<String>,
-    /// A declared word, or a declared or measured number.
+    /// Declared text, or declared or measured number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value: Option<Value>,
     /// Standard deviation of a measured number.
@@ -22,19 +22,19 @@ pub struct ImoFormEntry {
     /// Median of a predicted or corrected number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub median: Option<f64>,
-    /// The interval of nine tenths of the draws.
+    /// 90 % interval of the draws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ci90: Option<[f64; 2]>,
     /// Unit of value and limit.
     pub unit: String,
-    /// Largest value allowed.
+    /// Largest allowed value.
     pub limit: Option<f64>,
-    /// Of a predicted entry whether the manoeuvre is beyond what the records have seen.
+    /// Whether a predicted manoeuvre is outside the range of the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolated: Option<bool>,
-    /// Of a predicted entry the share of the drawn ships that keep within the limit.
+    /// Share of the drawn ships of a prediction that meet the limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probability_of_passing: Option<f64>,
-    /// Where it comes from.
+    /// Origin of the value.
     pub source: String,
 }

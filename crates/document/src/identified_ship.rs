@@ -1,5 +1,5 @@
-//! What is known of a ship: the structures that records cannot tell apart with their parameters and covariances, the
-//! noise, the steering gear, and the range in which the ship was seen. This is what `fit.json` and `trace.json` hold.
+//! Identified ship, as in `fit.json` and `trace.json`: weighted structures with parameters and covariances, noise,
+//! steering gear, and the range of validity.
 
 use std::sync::Arc;
 
@@ -12,45 +12,45 @@ use crate::error::IdentifiedShipError;
 use crate::noise::{HeadingNoise, RandomMoment};
 use crate::stored_hull::StoredHull;
 
-/// An effect as it is written down.
+/// Effect in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct StoredEffect {
     /// Identifier.
     pub id: String,
     /// Form.
     pub form: String,
-    /// Constants that are not fitted: an approach speed, m/s, or a rate of the propeller, 1/s.
+    /// Constants that are not fitted: approach speed, m/s, or propeller rate, 1/s.
     #[serde(default)]
     pub constants: Vec<f64>,
 }
 
-/// One structure with its parameters.
+/// Structure with its weight, parameters and covariance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WeightedStructure {
-    /// Probability among the structures of its file.
+    /// Probability among the structures of the file.
     pub weight: f64,
     /// Effects in the order in which the rudder passes through them.
     pub effects: Vec<StoredEffect>,
     /// 1/T (1/s), K/T (1/s²), δ_r (rad) and the parameters of the effects, in the units these declare.
     pub parameters: Vec<f64>,
-    /// Places among the parameters of those that were fitted.
+    /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
-    /// Covariance of the fitted ones, by rows; empty where the records do not tell them apart.
+    /// Covariance of the fitted parameters, by rows; empty where it is singular.
     pub covariance: Vec<Vec<f64>>,
-    /// Degrees of freedom of the covariance; none for a normal law.
+    /// Degrees of freedom of the covariance (Student t); `null` for a normal distribution.
     pub degrees_of_freedom: Option<f64>,
 }
 
-/// The steering gear as records show it.
+/// Steering gear identified from records.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct KnownGear {
-    /// Rate of the rudder, rad/s.
+    /// Rudder rate, rad/s.
     pub rate_rad_s: f64,
-    /// Standard deviation of the rate, rad/s.
+    /// Standard deviation of the rudder rate, rad/s.
     pub sd_rad_s: f64,
 }
 
-/// The range in which the ship was seen; outside, a prediction is extrapolation.
+/// Range of the records; a prediction outside it is an extrapolation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ValidityRange {
     /// Largest rudder angle, rad.
@@ -59,31 +59,31 @@ pub struct ValidityRange {
     pub yaw_rate_rad_s: f64,
 }
 
-/// What is known of a ship.
+/// Identified ship: model, uncertainty, noise and steering gear.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct IdentifiedShip {
-    /// The structures, the most probable first.
+    /// Structures, the most probable first.
     pub members: Vec<WeightedStructure>,
-    /// Noise of the records.
+    /// Heading noise of the records.
     pub noise: HeadingNoise,
-    /// Steering gear; none where the records do not show it: the rudder then jumps.
+    /// Steering gear; `null` where the records do not show it, and the rudder then moves in steps.
     pub gear: Option<KnownGear>,
-    /// Root mean square of the yaw rate at the end of straight approaches, rad/s; 0 where no record shows one.
+    /// Root mean square yaw rate at the end of straight approaches, rad/s; 0 without one.
     pub approach_yaw_rate_rad_s: f64,
-    /// Where the ship was seen.
+    /// Range of validity.
     pub seen: ValidityRange,
     /// Length between perpendiculars, m.
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// Hulls of three degrees of freedom that the records speak for, the nearest first; predictions are then made with
-    /// them and not with the structures.
+    /// Hull models of three degrees of freedom, the nearest to the records first. Where there are any, predictions use
+    /// them instead of the structures.
     #[serde(default)]
     pub hulls: Vec<StoredHull>,
 }
 
 impl WeightedStructure {
-    /// The model; fails for an effect that is not known and for numbers that do not fit it.
+    /// Response model; fails for an unknown effect, and for parameters or a covariance of the wrong size.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
         let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
             effects::named(&written.id, &written.form, &written.constants)
@@ -113,20 +113,20 @@ impl WeightedStructure {
         Ok(model)
     }
 
-    /// Places among the parameters of the dead times of its effects.
+    /// Indices of the parameters that are dead times.
     pub fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
         let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
         let dead_times = model.placed().filter(|(effect, _)| (effect.id(), effect.form()) == named);
-        dead_times.map(|(_, own)| own.start).collect()
+        dead_times.map(|(_, range)| range.start).collect()
     }
 }
 
-/// Difference of two lengths, as a share, below which they are of one ship.
-const SAME_LENGTH: f64 = 1e-3;
+/// Relative tolerance of equal lengths.
+const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Whether two lengths, m, are of one ship, as far as lengths tell.
-pub fn is_same_length(one: f64, other: f64) -> bool {
-    (one / other - 1.0).abs() < SAME_LENGTH
+/// Whether two lengths are equal within [`LENGTH_TOLERANCE`].
+pub fn is_same_length(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < LENGTH_TOLERANCE
 }
 
 impl IdentifiedShip {
@@ -135,22 +135,23 @@ impl IdentifiedShip {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
-    /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
-    /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).
+    /// Ship scaled to another length (m) and approach speed (m/s): times are multiplied by (L₂/U₂)/(L₁/U₁), lengths by
+    /// L₂/L₁, and dimensionless numbers (K′, T′ and all others) stay. With U ~ √L, the default, this is the scaling of
+    /// Froude (1868).
     ///
-    /// Noise scales as the ship does: the weather of a model basin is that of a sea as many times larger. Fails where
-    /// length or speed of the known ship are not known.
+    /// Noise scales with the ship, as if the sea were scaled. Fails where length or speed of the ship is unknown, or a
+    /// constant has no unit.
     pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, IdentifiedShipError> {
-        let own = self.particulars().ok_or(IdentifiedShipError::NoParticulars)?;
-        let metre = length / own.length;
-        let speed = speed.unwrap_or(own.speed * metre.sqrt());
-        let second = metre * own.speed / speed;
+        let ship = self.particulars().ok_or(IdentifiedShipError::NoParticulars)?;
+        let metre = length / ship.length;
+        let speed = speed.unwrap_or(ship.speed * metre.sqrt());
+        let second = metre * ship.speed / speed;
         let factor = |[seconds, metres]: [i32; 2]| second.powi(seconds) * metre.powi(metres);
         let mut scaled = self.clone();
         for member in &mut scaled.members {
             let model = member.model()?;
-            if let Some(own) = model.effects().iter().find(|own| own.parameters().iter().any(Parameter::has_no_unit)) {
-                return Err(IdentifiedShipError::NoUnit(own.id()));
+            if let Some(e) = model.effects().iter().find(|e| e.parameters().iter().any(Parameter::has_no_unit)) {
+                return Err(IdentifiedShipError::NoUnit(e.id()));
             }
             let factors: Vec<f64> = model.parameters().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
@@ -178,13 +179,13 @@ impl IdentifiedShip {
         Ok(scaled)
     }
 
-    /// The same ship in a calm: without a random moment, and without what steady wind does.
+    /// Ship in a calm: without the random moment and the effects of wind.
     pub fn in_calm(&self) -> Result<Self, IdentifiedShipError> {
         let mut calm = self.clone();
         calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
             (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
-            if let Some(place) = hull.coefficients.iter().position(|own| is_of_wind(&own.key)) {
+            if let Some(place) = hull.coefficients.iter().position(|coefficient| is_of_wind(&coefficient.key)) {
                 hull.coefficients[place].value = 0.0;
                 hull.covariance.iter_mut().for_each(|row| row[place] = 0.0);
                 hull.covariance[place].fill(0.0);
@@ -192,36 +193,37 @@ impl IdentifiedShip {
         }
         for member in &mut calm.members {
             let model = member.model()?;
-            for (effect, own) in model.placed().filter(|(effect, _)| effect.sees_heading()) {
-                for (place, parameter) in own.clone().zip(effect.parameters()) {
+            for (effect, range) in model.placed().filter(|(effect, _)| effect.sees_heading()) {
+                for (place, parameter) in range.clone().zip(effect.parameters()) {
                     member.parameters[place] = parameter.neutral;
                 }
-                let kept: Vec<bool> = member.fitted.iter().map(|place| !own.contains(place)).collect();
+                let kept: Vec<bool> = member.fitted.iter().map(|place| !range.contains(place)).collect();
                 let mut row = kept.iter();
                 member.covariance.retain(|_| *row.next().unwrap_or(&true));
                 for covariance in &mut member.covariance {
                     let mut column = kept.iter();
                     covariance.retain(|_| *column.next().unwrap_or(&true));
                 }
-                member.fitted.retain(|place| !own.contains(place));
+                member.fitted.retain(|place| !range.contains(place));
             }
         }
         Ok(calm)
     }
 
-    /// How much later than it acted the rudder was logged, s: a negative dead time of the most probable structure.
+    /// Time by which the rudder was logged late, s: a negative dead time of the most probable structure; `None` if
+    /// positive.
     pub fn rudder_logged_late(&self) -> Option<f64> {
-        let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight))?;
+        let likeliest = self.members.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
         let places = likeliest.dead_times(&likeliest.model().ok()?);
         let late = -places.iter().map(|place| likeliest.parameters[*place]).sum::<f64>();
         (late > 0.0).then_some(late)
     }
 
-    /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is
-    /// about that.
+    /// Time scale of the ship, s: L/U where it is known, otherwise (K/T)^(−1/2) of the most probable structure, which
+    /// is similar.
     pub fn timescale(&self) -> Option<f64> {
-        if let Some(own) = self.particulars() {
-            return Some(own.time());
+        if let Some(particulars) = self.particulars() {
+            return Some(particulars.time());
         }
         let gain = *self.members.first()?.parameters.get(1)?;
         (gain > 0.0).then(|| gain.sqrt().recip())
@@ -250,21 +252,21 @@ mod tests {
         }
     }
 
-    /// There and back is where one was, and K′ = K L/U does not change on the way.
+    /// Scaling there and back is the identity, and K′ = K L/U does not change.
     #[test]
-    fn another_scale_keeps_what_has_no_dimension() {
-        let known = ship();
-        let ship = known.scaled_to(25.0 * known.length_m.expect("made up"), None).expect("particulars");
-        let prime = |known: &IdentifiedShip| {
-            let [a, b] = [known.members[0].parameters[0], known.members[0].parameters[1]];
-            b / a * known.length_m.expect("known") / known.speed_m_s.expect("known")
+    fn scaling_keeps_dimensionless_numbers() {
+        let model = ship();
+        let ship = model.scaled_to(25.0 * model.length_m.expect("a length"), None).expect("particulars");
+        let prime = |ship: &IdentifiedShip| {
+            let [a, b] = [ship.members[0].parameters[0], ship.members[0].parameters[1]];
+            b / a * ship.length_m.expect("a length") / ship.speed_m_s.expect("a speed")
         };
-        assert!((prime(&ship) - prime(&known)).abs() < 1e-12);
-        let back = ship.scaled_to(known.length_m.expect("made up"), known.speed_m_s).expect("particulars");
-        for (one, other) in back.members[0].parameters.iter().zip(&known.members[0].parameters) {
-            assert!((one - other).abs() <= 1e-12 * other.abs());
+        assert!((prime(&ship) - prime(&model)).abs() < 1e-12);
+        let back = ship.scaled_to(model.length_m.expect("a length"), model.speed_m_s).expect("particulars");
+        for (back, before) in back.members[0].parameters.iter().zip(&model.members[0].parameters) {
+            assert!((back - before).abs() <= 1e-12 * before.abs());
         }
-        let unknown = IdentifiedShip { length_m: None, ..known };
+        let unknown = IdentifiedShip { length_m: None, ..model };
         assert!(unknown.scaled_to(100.0, None).is_err());
     }
 

@@ -1,16 +1,16 @@
-//! Documents: the results that cross between crates and into files.
+//! Documents: results exchanged between crates and written to files.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | a number with its error | [`Quantity`] |
+//! | a number with its uncertainty | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
-//! | an identified ship, as files hold it | [`identified_ship`], [`stored_hull`] |
-//! | what a fit says | [`fit`], [`scales`], [`earlier_trials`] |
-//! | the answer of a method | [`method`] |
-//! | what a trace says | [`trace`] |
-//! | what people call effects, records and figures of merit | [`names`] |
-//! | what a reader should know beside the numbers | [`warning`] |
-//! | what an error is about, for programs | [`ErrorCode`] |
+//! | an identified ship in files | [`identified_ship`], [`stored_hull`] |
+//! | the document of a fit | [`fit`], [`scales`], [`earlier_trials`] |
+//! | the estimate of a method | [`method`] |
+//! | the document of a trace | [`trace`] |
+//! | display names of effects, records and figures of merit | [`names`] |
+//! | warnings | [`warning`] |
+//! | machine-readable error codes | [`ErrorCode`] |
 
 pub mod earlier_trials;
 pub mod error;

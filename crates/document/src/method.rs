@@ -1,4 +1,4 @@
-//! The answer of a method, as `fit.json` and a showcase hold it.
+//! Estimate of a method, as in `fit.json` and in a showcase.
 
 use std::collections::BTreeMap;
 
@@ -21,62 +21,62 @@ pub struct IndexEstimates {
     pub delta_r_deg: Quantity,
 }
 
-/// Heading error on a record that was not used for identification.
+/// Heading error on a held-out record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Validation {
-    /// The record.
+    /// File of the record.
     pub file: String,
     /// Root mean square heading error of the replay, deg; only the initial state is fitted.
     pub heading_rmse_deg: Option<f64>,
 }
 
-/// Whether a method gave an answer.
+/// Success of a method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It did.
+    /// The method has an estimate.
     Ok,
-    /// It did not; the reason says why.
+    /// The method failed; the reason is given.
     #[default]
     Failed,
 }
 
-/// The answer of one method.
+/// Result of one method.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEntry {
-    /// Id of the method, or its label in a scenario.
+    /// Identifier of the method, or its label in a scenario.
     pub method: String,
-    /// Id of the method in `fit.json`, where it goes by another name.
+    /// Identifier of the method, where `method` is a label.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
-    /// Whether it gave an answer.
+    /// Success of the method.
     pub status: Status,
-    /// Why it gave none.
+    /// Reason of a failure.
     pub reason: Option<String>,
-    /// The reason in a word or two, for tables: "not-excited".
+    /// Short reason of a failure for tables: "not-excited".
     pub failure: Option<String>,
     /// K, T and δ_r.
     pub parameters: Option<IndexEstimates>,
-    /// K' and T', where length and speed of the ship are known; left out elsewhere.
+    /// K' and T', where length and speed of the ship are known; otherwise left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeIndices>,
-    /// 1/T < 0, in words "course-unstable".
+    /// Whether 1/T < 0 (course-unstable).
     pub course_unstable: bool,
-    /// Root mean square heading error of the replay on the records themselves, deg.
+    /// Root mean square heading error of the replay on the fitted records, deg.
     pub heading_rmse_deg: Option<f64>,
-    /// Heading errors on other records.
+    /// Heading errors on held-out records.
     pub validation: Vec<Validation>,
-    /// The noise of the first record, where the method looks for a random moment; SI units and radians.
+    /// Noise of the first record, where the method estimates a random moment; SI units and radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<HeadingNoise>,
-    /// Named figures of the method; the unit is in the name.
+    /// Diagnostics of the method by name; the unit is in the name.
     pub diagnostics: BTreeMap<String, f64>,
-    /// Why the method stopped.
+    /// Stop reason of the method.
     pub stop: Option<String>,
 }
 
 impl MethodEntry {
-    /// Id of the method, whatever name it goes by.
+    /// Identifier of the method, also where `method` is a label.
     pub fn id(&self) -> &str {
         self.id.as_deref().unwrap_or(&self.method)
     }

@@ -1,7 +1,6 @@
-//! Names for people: what screens, pages and figures call effects, records and figures of merit, whose identifiers
-//! stand in files.
+//! Display names of effects, records and figures of merit, from their identifiers in files.
 
-/// Names that are not their identifiers with blanks.
+/// Display names that are not the identifier with blanks.
 const EFFECTS: [(&str, &str); 5] = [
     ("port_starboard_asymmetry", "port-starboard asymmetry"),
     ("rudder_deadband", "rudder dead band"),
@@ -10,23 +9,23 @@ const EFFECTS: [(&str, &str); 5] = [
     ("wave_yaw", "yaw in waves"),
 ];
 
-/// What happens where a first-order response lacks an effect of the list.
+/// Physics of the listed effects.
 const PHYSICS: [(&str, &str); 12] = [
-    ("second_order", "her sway answers the rudder with a time of its own, and turns her with it"),
-    ("sway_coupling_measured", "she drifts as she turns, and the drift turns her"),
-    ("nonlinear_damping", "the faster she turns, the harder the water holds her back"),
-    ("wind_moment", "the wind turns her, by her heading to it"),
-    ("speed_loss", "as she turns she loses speed, and with it rudder force"),
+    ("second_order", "sway responds to the rudder with its own time constant, and yaws the ship"),
+    ("sway_coupling_measured", "the ship drifts in a turn, and the drift yaws her"),
+    ("nonlinear_damping", "the resistance to turning grows faster than the yaw rate"),
+    ("wind_moment", "the wind yaws the ship, depending on her heading"),
+    ("speed_loss", "the ship loses speed in a turn, and with it rudder force"),
     ("steering_lag", "the rudder acts later than it was recorded"),
-    ("rudder_saturation", "the farther the rudder is laid, the less each degree of it gives"),
-    ("rudder_deadband", "the gear has play: small movements do not reach the rudder"),
-    ("port_starboard_asymmetry", "she answers more readily to one side"),
-    ("moment_drift", "a moment grows slowly through the record"),
-    ("transient_disturbance", "a moment acts for a part of the record"),
-    ("wave_yaw", "waves yaw her at their own frequency"),
+    ("rudder_saturation", "each further degree of rudder has less effect"),
+    ("rudder_deadband", "the gear has play, so small movements do not reach the rudder"),
+    ("port_starboard_asymmetry", "the rudder has more effect to one side"),
+    ("moment_drift", "a yaw moment changes slowly during the record"),
+    ("transient_disturbance", "a yaw moment acts during a part of the record"),
+    ("wave_yaw", "waves yaw the ship at their frequency of encounter"),
 ];
 
-/// Ends of identifiers that are units; of two that fit the longer is first.
+/// Suffixes of identifiers with their units; a longer suffix precedes its own ending.
 const UNITS: [(&str, &str); 7] = [
     ("_deg_s", "deg/s"),
     ("_deg", "deg"),
@@ -37,48 +36,49 @@ const UNITS: [(&str, &str); 7] = [
     ("_s", "s"),
 ];
 
-/// Name of an effect; that of a formula is as its user wrote it, with blanks.
+/// Display name of an effect; for a formula its identifier with blanks.
 pub fn effect(id: &str) -> String {
     let listed = EFFECTS.iter().find(|(key, _)| *key == id);
     listed.map_or_else(|| plain(id), |(_, name)| (*name).to_owned())
 }
 
-/// The physics of an effect of the list in a sentence, without its full stop.
+/// Physics of a listed effect as a sentence without its full stop; `None` for a formula.
 pub fn physics(id: &str) -> Option<&'static str> {
     PHYSICS.iter().find(|(key, _)| *key == id).map(|(_, sentence)| *sentence)
 }
 
-/// Names of several effects, joined.
+/// Display names of several effects, joined by `between`.
 pub fn effects<S: AsRef<str>>(ids: &[S], between: &str) -> String {
     ids.iter().map(|id| effect(id.as_ref())).collect::<Vec<_>>().join(between)
 }
 
-/// Name of an effect in one of its forms: `nonlinear damping (r³)`; a form that is the name of the effect is not
-/// repeated.
+/// Display name of an effect in one of its forms: `nonlinear damping (r³)`; a form that is the name of the effect is
+/// not repeated.
 pub fn effect_form(id: &str, form: &str) -> String {
     let name = effect(id);
     if name.contains(form) { name } else { format!("{name} ({form})") }
 }
 
-/// Name of a record from the stem of its file: `zigzag_20_10_s` is a `20/10, first to starboard`. The name of a file
-/// stays what it is.
+/// Display name of a record from the stem of its file: `zigzag_20_10_s` becomes `20/10, first to starboard`. A file
+/// name with an extension is not changed.
 pub fn record(stem: &str) -> String {
     if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| plain(stem)) }
 }
 
-/// Name and unit of a figure of merit whose identifier ends in its unit; no unit where it ends in none.
+/// Display name and unit of a figure of merit from the unit suffix of its identifier; an empty unit without one.
 pub fn figure(id: &str) -> (String, &'static str) {
-    let ending = UNITS.into_iter().find_map(|(end, unit)| Some((id.strip_suffix(end)?, unit)));
-    let (stem, unit) = ending.unwrap_or((id, ""));
+    let known = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
+    let (stem, unit) = known.unwrap_or((id, ""));
     (plain(stem), unit)
 }
 
-/// An identifier with blanks.
+/// Identifier with blanks for underscores.
 pub fn plain(id: &str) -> String {
     id.replace('_', " ")
 }
 
-/// Name of a zig-zag whose stem is `zigzag_RUDDER_HEADING`, with `_p` or `_s` for its first side; `None` of another.
+/// Display name of a zig-zag from the stem `zigzag_RUDDER_HEADING`, with `_p` or `_s` for its first side; `None` for
+/// any other stem.
 fn zigzag(stem: &str) -> Option<String> {
     let mut parts = stem.strip_prefix("zigzag_")?.split('_');
     let mut angle = || parts.next()?.parse::<u8>().ok();

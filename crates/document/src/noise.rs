@@ -1,4 +1,4 @@
-//! Noise of the headings of a record.
+//! Heading noise of a record.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,59 +7,59 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Moment {
-    /// None.
+    /// No random moment.
     #[default]
     None,
-    /// White: the yaw rate wanders.
+    /// White noise: the yaw rate is a random walk.
     White,
-    /// Ornstein–Uhlenbeck: gusts with a correlation time.
+    /// Ornstein–Uhlenbeck process: gusts with a correlation time.
     OrnsteinUhlenbeck,
-    /// Random walk: the moment itself wanders.
+    /// Random walk of the moment.
     Walk,
 }
 
 impl Moment {
-    /// All of them, from the fewest parameters to the most.
+    /// All kinds by number of parameters.
     pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
 }
 
-/// Random yaw moment, as the rudder angle that has the same moment.
+/// Random yaw moment, as the rudder angle with the same moment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RandomMoment {
-    /// None.
+    /// No random moment.
     #[default]
     None,
     /// White noise.
     White {
-        /// Square root of its spectral density, rad √s: the standard deviation of its mean over one second.
+        /// Root of the spectral density, rad √s: standard deviation of the mean over one second.
         rudder_rad_root_s: f64,
     },
     /// Random walk.
     Walk {
-        /// Square root of the growth of its variance, rad/√s: the standard deviation of what one second adds.
+        /// Root of the variance per second, rad/√s: standard deviation of the change in one second.
         rudder_rad_per_root_s: f64,
     },
     /// Gusts with a correlation time.
     OrnsteinUhlenbeck {
         /// Standard deviation, rad.
         sd_rudder_rad: f64,
-        /// Time in which the autocorrelation falls to 1/e, s.
+        /// Correlation time, s: the autocorrelation falls to 1/e.
         correlation_s: f64,
     },
 }
 
-/// Noise of the headings of a record.
+/// Heading noise of a record.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeadingNoise {
-    /// Standard deviation of a reading of the heading, rad.
+    /// Standard deviation of a heading reading, rad.
     pub heading_sd_rad: f64,
     /// Random yaw moment.
     pub moment: RandomMoment,
 }
 
 impl RandomMoment {
-    /// Its kind.
+    /// Kind of the moment.
     pub fn kind(self) -> Moment {
         match self {
             Self::None => Moment::None,
@@ -69,7 +69,7 @@ impl RandomMoment {
         }
     }
 
-    /// Its size as a rudder angle over one second, rad: of gusts their standard deviation; 0 for none.
+    /// Size as a rudder angle, rad: standard deviation over one second, or of gusts; 0 without a moment.
     pub fn size(self) -> f64 {
         match self {
             Self::None => 0.0,
@@ -79,7 +79,7 @@ impl RandomMoment {
         }
     }
 
-    /// The same kind with its size and its times multiplied.
+    /// Moment with size and times multiplied.
     fn times(self, factor: f64, second: f64) -> Self {
         match self {
             Self::None => Self::None,
@@ -91,12 +91,12 @@ impl RandomMoment {
         }
     }
 
-    /// Whether there is none.
+    /// Whether there is no random moment.
     pub fn is_none(self) -> bool {
         self == Self::None
     }
 
-    /// The moment of a ship whose times are longer by a factor, at the same rudder angle.
+    /// Moment of a ship whose times are multiplied by `second`, at the same rudder angle.
     #[must_use]
     pub fn scaled(self, second: f64) -> Self {
         let factor = match self {
@@ -109,13 +109,13 @@ impl RandomMoment {
 }
 
 impl HeadingNoise {
-    /// Mean of the sizes over records whose moment is of one kind; `None` without any record.
+    /// Mean noise of records with one kind of moment; `None` without records.
     pub fn mean(records: &[Self]) -> Option<Self> {
         let first = records.first()?;
-        let mean = |of: fn(&Self) -> f64| records.iter().map(of).sum::<f64>() / records.len() as f64;
+        let mean = |value: fn(&Self) -> f64| records.iter().map(value).sum::<f64>() / records.len() as f64;
         let size = mean(|noise| noise.moment.size());
-        let of_first = first.moment.size();
-        let factor = if of_first > 0.0 { size / of_first } else { 1.0 };
+        let first_size = first.moment.size();
+        let factor = if first_size > 0.0 { size / first_size } else { 1.0 };
         Some(Self { heading_sd_rad: mean(|noise| noise.heading_sd_rad), moment: first.moment.times(factor, 1.0) })
     }
 }

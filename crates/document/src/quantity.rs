@@ -1,21 +1,21 @@
-//! A number with what is known of its error: the same in records, estimates, models and files.
+//! Number with its uncertainty, for records, estimates, models and files.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A number with its standard deviation (GUM: standard uncertainty) and its 95 % interval, as far as they are known.
+/// Number with its standard deviation (GUM: standard uncertainty) and its 95 % interval, as far as they are known.
 ///
-/// Read off a record, `sd` is what white noise of heading and rudder gives it; it does not cover slow errors such as
-/// gyro bias, drift or waves longer than the local fits. Of an estimate, both are what the method promises.
+/// For a quantity read off a record, `sd` covers the white noise of heading and rudder, but not slow errors such as
+/// gyro bias, drift or waves longer than the local fits. For an estimate, both are those of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Quantity {
-    /// The value, in SI units and radians unless a name says otherwise; in files `null` when it is infinite (T of a
+    /// Value, in SI units and radians unless a name says otherwise; in files `null` when it is infinite (T of a
     /// neutrally stable ship), read back as NaN.
     #[serde(deserialize_with = "number_or_null")]
     #[schemars(with = "Option<f64>")]
     pub value: f64,
-    /// Its standard deviation, in the unit of the value.
+    /// Standard deviation, in the unit of the value.
     pub sd: Option<f64>,
-    /// Its 95 % interval, where it is known and bounded.
+    /// 95 % interval, where it is known and bounded.
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -24,17 +24,17 @@ fn number_or_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
 }
 
 impl Quantity {
-    /// A value whose interval is not known.
+    /// Quantity without an interval.
     pub fn new(value: f64, sd: Option<f64>) -> Self {
         Self { value, sd, ci95: None }
     }
 
-    /// A value of which nothing else is known.
+    /// Quantity of unknown uncertainty.
     pub fn bare(value: f64) -> Self {
         Self::new(value, None)
     }
 
-    /// The same times a factor that has no error.
+    /// Quantity times an exact factor.
     pub fn scaled(self, factor: f64) -> Self {
         let ends = |[low, high]: [f64; 2]| if factor < 0.0 { [high, low] } else { [low, high] };
         Self {
@@ -44,17 +44,17 @@ impl Quantity {
         }
     }
 
-    /// The difference of two quantities whose errors are independent.
+    /// Difference of two quantities with independent errors.
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.value - other.value, root_sum_of_squares(self.sd, other.sd))
     }
 
-    /// The same value with another, independent error added.
+    /// Quantity with an additional independent error.
     pub fn widened(self, sd: Option<f64>) -> Self {
         Self::new(self.value, root_sum_of_squares(self.sd, sd))
     }
 
-    /// Mean of quantities whose errors are independent; `None` where there are none.
+    /// Mean of quantities with independent errors; `None` without any.
     pub fn mean(quantities: &[Self]) -> Option<Self> {
         if quantities.is_empty() {
             return None;

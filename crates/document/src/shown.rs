@@ -1,4 +1,4 @@
-//! Values shown by the words that files have for them.
+//! `Display` of enums by their names in files.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::noise::Moment;
 use crate::scales::Scaling;
 use crate::trace::{Dependence, HeadingWander, Verdict};
 
-macro_rules! shown_as_in_files {
+macro_rules! display_as_in_files {
     ($($name:ty),+) => {$(
         impl fmt::Display for $name {
             fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
@@ -19,4 +19,4 @@ macro_rules! shown_as_in_files {
     )+};
 }
 
-shown_as_in_files!(CriterionVerdict, Dependence, HeadingWander, Moment, Scaling, Verdict);
+display_as_in_files!(CriterionVerdict, Dependence, HeadingWander, Moment, Scaling, Verdict);

@@ -1,29 +1,28 @@
-//! K and T of single records, and the amplitude that they belong to.
+//! K and T of single records, and the amplitude to which they belong.
 
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 
-/// Every zig-zag of some records alone: whether K and T of a first-order response depend on the amplitude.
+/// K and T of every zig-zag alone, which show whether they depend on the amplitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct SingleRecords {
-    /// The method that was used.
+    /// Method of the identification.
     pub method: String,
-    /// The zig-zags that it could identify.
+    /// Identified zig-zags.
     pub records: Vec<SingleRecord>,
-    /// Whether K and T of all records are the same as far as their standard deviations tell (χ² at 5 %); none where a
-    /// record has no standard deviation.
+    /// Whether K and T of all records agree within their standard deviations (χ² at 5 %); `null` where a record has no
+    /// standard deviation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub agree: Option<bool>,
 }
 
-/// How far rudder and heading go in a zig-zag, or in the mean of several. K and T of a first-order response belong to
-/// such an amplitude.
+/// Amplitude of a zig-zag, or mean amplitude of several. K and T of a first-order response depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Amplitude {
-    /// Mean size of the rudder between its executes, deg.
+    /// Mean absolute rudder angle between the executes, deg.
     pub rudder_deg: f64,
-    /// Mean size of the heading at its peaks from the base course, deg.
+    /// Mean absolute heading at the peaks from the base course, deg.
     pub heading_deg: f64,
 }
 
@@ -33,7 +32,7 @@ pub struct SingleRecord {
     /// Name of the record.
     #[serde(default)]
     pub record: String,
-    /// How far rudder and heading go.
+    /// Amplitude of rudder and heading.
     #[serde(flatten)]
     pub amplitude: Amplitude,
     /// K.

@@ -1,4 +1,4 @@
-//! What a trace says, as `trace.json` holds it.
+//! Document of a trace (`trace.json`).
 //!
 //! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
 
@@ -24,27 +24,27 @@ pub use entries::{
 };
 pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry, HorizonEntry};
 
-/// Name of the schema.
+/// Schema name.
 pub const SCHEMA: &str = "trace/4";
 
-/// Records whose names are a title; one more stands there, too.
-const TITLED: usize = 2;
+/// Number of record names in a title; one more is also listed by name.
+const MAX_TITLE_NAMES: usize = 2;
 
-/// What the analysis says.
+/// Verdict of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// The noise of the instruments alone explains the records.
+    /// Instrument noise alone explains the records.
     #[default]
     Clean,
-    /// A random moment is needed, and no effect is named: weather does this, and so does an effect of a shape that was
-    /// not looked for.
+    /// A random moment acts, and no effect is named: weather does this, and so does an effect of a shape that was not
+    /// searched for.
     Disturbed,
-    /// What is missing has a name, and what is left is clean or disturbed.
+    /// Effects are named, and the residual is noise or a random moment.
     Traced,
-    /// What is left has a shape that no effect of the list is.
+    /// The residual has a shape that is no listed effect.
     Located,
-    /// What is left is neither chance nor of a shape that was looked for.
+    /// The residual is neither random nor of a shape that was searched for.
     Unexplained,
 }
 
@@ -53,22 +53,22 @@ impl Verdict {
     pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
 }
 
-/// What became of a candidate, the best first.
+/// Outcome of a candidate, the best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// It is named.
+    /// Named.
     Added,
-    /// It is one of a group that is named together.
+    /// Member of a named group, or alternative form of a named effect.
     Alias,
-    /// The records speak against it, or do not need it.
+    /// Not supported by the records.
     Rejected,
-    /// The records could not show it.
+    /// Not observable in the records.
     NotObservable,
 }
 
 impl Outcome {
-    /// The words on a page.
+    /// Text on a page.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Added => "added",
@@ -79,18 +79,18 @@ impl Outcome {
     }
 }
 
-/// An effect in a form, in all records or in one.
+/// Effect in one form, in all records or in one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TermEntry {
     /// Identifier.
     pub id: String,
     /// Form.
     pub form: String,
-    /// The one record in which it acts.
+    /// Record in which it acts; `null` for all.
     pub only: Option<String>,
 }
 
-/// An effect that is named.
+/// Named effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct EffectEntry {
     /// Identifier.
@@ -99,112 +99,112 @@ pub struct EffectEntry {
     pub form: String,
     /// Equation.
     pub equation: String,
-    /// The one record in which it acts.
+    /// Record in which it acts; `null` for all.
     pub only: Option<String>,
-    /// Whether it is in the model on request; left out where it was found.
+    /// Whether it is included on request; left out where it is not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub asked: bool,
-    /// Effects that the records cannot tell from it: one of the group is there.
+    /// Other effects of the group, of which one is present.
     pub aliases: Vec<String>,
-    /// Forms that the records cannot tell from it, of its group and of itself.
+    /// Alternative forms, of the effect and of its group.
     pub alias_forms: Vec<TermEntry>,
-    /// Its parameters by their symbols.
+    /// Parameters by their symbols.
     pub parameters: BTreeMap<String, ParameterEntry>,
-    /// Probability that it, or one of its group, is there.
+    /// Probability that it, or one of its group, is present.
     pub probability: f64,
-    /// The same with the prior odds of all effects times each of `prior.odds_factors`.
+    /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probability_by_prior_odds: Vec<f64>,
-    /// −2 log of the ratio of the evidence with it to that without: negative where it is better.
+    /// −2 log of the evidence ratio with and without it; negative where it improves the model.
     pub delta_bic: f64,
-    /// Probability of sizes as far from neutral by chance, beside all other candidates (χ²).
+    /// p value (χ²) of its coefficients beside all other candidates.
     pub p_value: f64,
-    /// One sentence on it.
+    /// Evidence in a sentence.
     pub evidence: String,
 }
 
-/// An effect of the list.
+/// Candidate effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CandidateEntry {
     /// Identifier.
     pub id: String,
-    /// What became of its best form.
+    /// Outcome of its best form.
     pub outcome: Outcome,
-    /// Probability that it is there in any form and record.
+    /// Probability that it is present in any form and record.
     pub probability: f64,
-    /// The same with the prior odds of all effects times each of `prior.odds_factors`; nothing where no structure has
-    /// it.
+    /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`; empty where no
+    /// structure has it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probability_by_prior_odds: Vec<f64>,
-    /// As that of an effect, for the best form.
+    /// −2 log evidence ratio of its best form.
     pub delta_bic: Option<f64>,
-    /// As that of an effect, for the best form.
+    /// p value (χ²) of its best form.
     pub p_value: Option<f64>,
-    /// Why it is no candidate.
+    /// Reason why it was not tried.
     pub reason: Option<String>,
-    /// Of a formula: what becomes of its moment where port and starboard are exchanged.
+    /// For a formula: symmetry of its moment under exchange of port and starboard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sides: Option<String>,
-    /// Its forms.
+    /// Forms.
     pub forms: Vec<FormEntry>,
 }
 
-/// An effect in one form.
+/// Candidate effect in one form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FormEntry {
     /// Form.
     pub form: String,
-    /// The one record in which it would act.
+    /// Record in which it would act; `null` for all.
     pub only: Option<String>,
-    /// What became of it.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Probability that it is there.
+    /// Probability that it is present.
     pub probability: f64,
-    /// As that of an effect.
+    /// −2 log evidence ratio.
     pub delta_bic: Option<f64>,
-    /// As that of an effect.
+    /// p value (χ²).
     pub p_value: Option<f64>,
-    /// Expected square of its size over its error beside all other candidates.
+    /// Expected squared coefficient over its variance beside all other candidates.
     pub visibility: Option<f64>,
 }
 
-/// A structure with its probability.
+/// Structure with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct StructureEntry {
-    /// Its terms.
+    /// Terms.
     pub effects: Vec<TermEntry>,
     /// Probability.
     pub weight: f64,
-    /// Its parameters, base first.
+    /// Parameters, base first.
     pub parameters: Vec<ParameterEntry>,
     /// Whether it is a member of the average.
     pub member: bool,
 }
 
-/// What the probabilities rest on.
+/// Priors and thresholds of the probabilities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PriorEntry {
-    /// Forms among the candidates, those of every record counted.
+    /// Number of candidate terms, counted per form and record.
     pub candidates: usize,
     /// Prior probability of an effect.
     pub probability: f64,
     /// Prior probability of a moment that depends on time, in one record.
     pub probability_of_time: f64,
-    /// Probability from which an effect is named.
+    /// Smallest probability of a named effect.
     pub named_from: f64,
-    /// Factors of the prior odds of all effects together, from small to large; one of them is 1.
+    /// Factors of the prior odds of all effects together, ascending; one of them is 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub odds_factors: Vec<f64>,
-    /// How structures were weighed.
+    /// Weighting rule of the structures.
     pub rule: String,
 }
 
-/// Residual before and after.
+/// Whiteness of the residuals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ResidualEntry {
-    /// Of the base.
+    /// Residual of the base.
     pub before: WhitenessEntry,
-    /// Of the average.
+    /// Residual of the structure average.
     pub after: WhitenessEntry,
 }
 
@@ -213,38 +213,38 @@ pub struct ResidualEntry {
 pub struct WhitenessEntry {
     /// Lag-1 autocorrelation.
     pub lag1_autocorrelation: f64,
-    /// Probability of autocorrelations as large in a white residual (Ljung and Box 1978).
+    /// p value of the whiteness test (Ljung and Box 1978).
     pub whiteness_p: f64,
 }
 
-/// What a heading error that lasts is.
+/// Kind of a correlated heading error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum HeadingWander {
-    /// One of the compass, of first order.
+    /// Compass error, of first order.
     Compass,
-    /// A smooth one of a model that is not quite the ship.
+    /// Smooth error of the model.
     Model,
 }
 
-/// The noise of one record.
+/// Noise of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct RecordNoiseEntry {
-    /// Its file.
+    /// File of the record.
     pub file: String,
-    /// Standard deviation of the white noise of a reading.
+    /// Standard deviation of the white noise of a heading reading.
     pub heading_sd_deg: f64,
-    /// Standard deviation of a heading error that lasts.
+    /// Standard deviation of a correlated heading error.
     pub heading_wander_sd_deg: Option<f64>,
-    /// How long it lasts.
+    /// Correlation time of that error.
     pub heading_correlation_s: Option<f64>,
-    /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite the
-    /// ship).
+    /// Kind of that error: `compass` (first order) or `model` (smooth).
     #[schemars(with = "Option<String>")]
     pub heading_wander: Option<HeadingWander>,
     /// Kind of the random moment.
     pub moment: Moment,
-    /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
+    /// Standard deviation of gusts, of the mean of a white moment over one second, or of the change of a walk in one
+    /// second.
     pub moment_sd_rudder_deg: Option<f64>,
     /// Correlation time of gusts.
     pub moment_correlation_s: Option<f64>,
@@ -252,16 +252,16 @@ pub struct RecordNoiseEntry {
     pub waves_sd_deg: Option<f64>,
     /// Frequency of waves.
     pub waves_frequency_rad_s: Option<f64>,
-    /// Whether the innovations are white, of one variance, and without a surprise.
+    /// Whether the noise law describes the residual: innovations white, of constant variance, without outliers.
     pub describes_what_is_left: bool,
-    /// Standard deviation of the error of a reading of the rudder, where it is noise of the instrument.
+    /// Standard deviation of the measurement noise of the rudder, where there is any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rudder_sd_deg: Option<f64>,
-    /// Times of readings of the compass that belong to no ship and were left out.
+    /// Times of removed compass outliers.
     pub outliers_s: Vec<f64>,
 }
 
-/// The augmented model.
+/// Augmented model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ModelEntry {
     /// Equations of the named effects.
@@ -269,82 +269,82 @@ pub struct ModelEntry {
     /// K, T and δ_r, averaged over the structures.
     #[serde(flatten)]
     pub indices: Indices,
-    /// All parameters of the most probable structure.
+    /// Parameters of the most probable structure.
     pub parameters: Vec<ParameterEntry>,
 }
 
-/// The analysis of a trace, without the files and the ship beside it.
+/// Result of the analysis of a trace, without files and identified ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Document {
     /// `trace/4`.
     #[schemars(extend("const" = "trace/4"))]
     pub schema: String,
-    /// The result in one sentence.
+    /// Result in a few sentences.
     pub headline: String,
     /// `clean`, `disturbed`, `traced`, `located` or `unexplained`.
     pub verdict: Verdict,
-    /// K, T and δ_r of the base fitted alone.
+    /// K, T and δ_r of the base.
     pub base: Indices,
-    /// What is named, the most probable first.
+    /// Named effects, the most probable first.
     pub effects: Vec<EffectEntry>,
-    /// The random moment that is needed beside them.
+    /// Random moment beside the named effects.
     pub disturbance: Option<DisturbanceEntry>,
-    /// Moments that are no effects of the list, the clearest first.
+    /// Located shapes that are no listed effects, the clearest first.
     pub located: Vec<LocatedEntry>,
-    /// Every effect of the list and what became of it.
+    /// All candidate effects with their outcomes.
     pub candidates: Vec<CandidateEntry>,
-    /// The structures, the most probable first.
+    /// Structures, the most probable first.
     pub structures: Vec<StructureEntry>,
-    /// What the probabilities rest on.
+    /// Priors and thresholds of the probabilities.
     pub prior: PriorEntry,
-    /// What is left.
+    /// Unexplained residual.
     pub unexplained: UnexplainedEntry,
-    /// Errors before and after on every record.
+    /// Replay errors before and after on every record.
     pub error: ErrorEntry,
     /// Whiteness of the residual before and after.
     pub residual: ResidualEntry,
-    /// The noise of every fitted record.
+    /// Noise of every fitted record.
     pub noise: Vec<RecordNoiseEntry>,
-    /// The augmented model.
+    /// Augmented model.
     pub model: ModelEntry,
 }
 
-/// `trace.json`: words, tables and figures are made from it and from the curves that it names.
+/// `trace.json`, from which text, tables and figures are made together with its files of curves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TraceDocument {
-    /// What the analysis says.
+    /// Result of the analysis.
     #[serde(flatten)]
     pub trace: Document,
-    /// The trial that would tell most.
+    /// Most informative next trial.
     pub next_trial: String,
-    /// The records, first the fitted ones, and the files of their curves.
+    /// Records with the files of their curves, the fitted ones first.
     pub records: Vec<RecordEntry>,
-    /// The yaw moment that the base lacks on every fitted record.
+    /// Missing yaw moment of the base on every fitted record.
     pub missing_moment: Vec<MissingMomentEntry>,
-    /// The base, and behind it the effects of the most probable structure one by one; nothing where it has none.
+    /// Replay errors of the base and after each added effect of the most probable structure; empty where it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub staircase: Vec<StairEntry>,
-    /// The amplitude of the fitted zig-zags: K and T of `base` belong to it, those of `model` to small motions.
+    /// Amplitude of the fitted zig-zags, to which K and T of `base` belong; those of `model` belong to small motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
     /// K and T of every fitted zig-zag alone, where there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
-    /// What is known of the ship, for `study predict`; SI units and radians.
+    /// Identified ship for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
-    /// What earlier trials of `--prior` say of the hull, and whether the records contradict them.
+    /// Earlier trials of `--prior`, and whether the records contradict them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
-    /// How records of several scales were brought to one.
+    /// Description of the scaling of records of several scales to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,
-    /// Warnings of records and analysis, the worst first.
+    /// Warnings on records and analysis, the most severe first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
 }
 
 impl TraceDocument {
-    /// Length and speed at which numbers with a dimension are told, where they are known.
+    /// Length and speed to which dimensional numbers refer, where they are known.
     pub fn particulars(&self) -> Option<Particulars> {
         self.records.iter().find_map(RecordEntry::particulars)
     }
@@ -354,37 +354,38 @@ impl TraceDocument {
         self.records.iter().map(|record| record.name.clone()).collect()
     }
 
-    /// Names of the fitted records, of many the first.
+    /// Title: names of the fitted records, shortened for many.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
         let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();
-        match names.len().saturating_sub(TITLED) {
+        match names.len().saturating_sub(MAX_TITLE_NAMES) {
             0 | 1 => names.join(", "),
-            more => format!("{} and {more} more", names[..TITLED].join(", ")),
+            more => format!("{} and {more} more", names[..MAX_TITLE_NAMES].join(", ")),
         }
     }
 
-    /// Errors on all records, `(fitted, judged)`: a judged record was held out, or left out in turn.
+    /// Errors on fitted records, and on records that were held out or left out in turn.
     pub fn errors(&self) -> (Vec<RecordErrors<'_>>, Vec<RecordErrors<'_>>) {
         let error = &self.trace.error;
-        let (mut fitted, mut judged) = (Vec::new(), Vec::new());
-        let names = |held_out: bool| self.records.iter().filter(move |one| one.held_out == held_out);
+        let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());
+        let names = |held_out: bool| self.records.iter().filter(move |record| record.held_out == held_out);
         for (record, errors) in names(false).zip(&error.identification) {
             fitted.push(RecordErrors { name: &record.name, used: "fitted", errors });
         }
         for (record, errors) in names(true).zip(&error.validation) {
-            judged.push(RecordErrors { name: &record.name, used: "held out", errors });
+            unfitted.push(RecordErrors { name: &record.name, used: "held out", errors });
         }
         for errors in &error.leave_one_out {
             let record = names(false).find(|record| record.file == errors.file);
-            judged.push(RecordErrors { name: record.map_or(&errors.file, |own| &own.name), used: "left out", errors });
+            let name = record.map_or(&errors.file, |record| &record.name);
+            unfitted.push(RecordErrors { name, used: "left out", errors });
         }
-        (fitted, judged)
+        (fitted, unfitted)
     }
 }
 
 impl From<Whiteness> for WhitenessEntry {
-    fn from(own: Whiteness) -> Self {
-        Self { lag1_autocorrelation: own.lag1, whiteness_p: own.p_value }
+    fn from(test: Whiteness) -> Self {
+        Self { lag1_autocorrelation: test.lag1, whiteness_p: test.p_value }
     }
 }

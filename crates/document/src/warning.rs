@@ -1,4 +1,4 @@
-//! Warnings: what a reader should know beside the numbers.
+//! Warnings on records, fits and predictions, with code, severity and source.
 
 use std::fmt;
 
@@ -7,130 +7,130 @@ use serde::{Deserialize, Serialize};
 
 use crate::names;
 
-/// How much a warning costs; the worst first.
+/// Severity of a warning; the most severe first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
     /// K, T or a prediction may be wrong.
     Doubt,
-    /// A choice was made that a key can change, or only a track suffers.
+    /// The program made a choice that a key can change, or only a predicted track is affected.
     Choice,
-    /// A fault was mended, and costs nothing.
+    /// A fault was repaired without loss.
     Mended,
 }
 
-/// What a warning is about.
+/// Subject of a warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Code {
-    /// The rudder of a record stays where it is.
+    /// The rudder of a record does not move.
     RudderAtRest,
-    /// Angles may be in another unit than their name says.
+    /// Angles may be in another unit than their column name.
     AngleUnit,
-    /// The time may be in another unit than its name says.
+    /// The time may be in another unit than its column name.
     TimeUnit,
     /// Yaw rate and heading disagree.
     YawRate,
-    /// Ship and rudder turn to opposite sides.
+    /// Rudder and turn have opposite signs.
     RudderSign,
     /// The rudder may be in per cent, or its feedback on another scale than its order.
     RudderScale,
-    /// The order stands for the angle of the rudder.
+    /// The rudder order is used in place of the rudder angle.
     RudderOrder,
-    /// Rudders or instruments that should agree do not.
+    /// Rudders or instruments disagree.
     RuddersApart,
-    /// A record that contradicts itself is believed because its sidecar says so.
+    /// An implausible record is accepted because its sidecar says so.
     Implausible,
-    /// An instrument or a logger clips, freezes, rounds or holds what it reads, or counts in a unit of its own.
+    /// An instrument or a logger clips, freezes, rounds or holds its readings, or counts in a unit of its own.
     FaultyReadings,
-    /// Nothing was recorded for a while.
+    /// The record has a gap.
     Gap,
-    /// The heading jumps as no ship turns.
+    /// The heading jumps faster than a ship can turn.
     HeadingJump,
     /// The heading is the integral of the yaw rate.
     HeadingFromYawRate,
-    /// Several rows have one stamp.
+    /// Several rows share a time stamp.
     SharedStamps,
-    /// No zig-zag is recognised, and all of a record is used.
+    /// No zig-zag is recognised, so the whole record is used.
     WholeRecord,
-    /// A record begins within the trial.
+    /// A record begins after the start of the trial.
     LateBegin,
-    /// A record is given twice, or is held against what was fitted to it.
+    /// A record is given twice, or validates its own fit.
     Repetition,
-    /// Length, speed, clock or rudder make a ship that hardly exists.
+    /// Length, speed, clock or rudder are unusual for a ship.
     UnusualShip,
     /// The rudder was logged late.
     LateRudder,
-    /// The residual of a fit is no white noise.
+    /// The residual of a fit is not white.
     ColouredResidual,
-    /// Errors of K and T are taken as independent.
+    /// Errors of K and T are assumed independent.
     IndependentErrors,
     /// A parameter or a search ended at its bound.
     AtBound,
-    /// Equations or a basis hardly determine what is asked of them.
+    /// Equations or a basis are ill-conditioned.
     IllConditioned,
     /// Noise biases an estimate.
     NoiseBias,
     /// 1/T is negative.
     CourseUnstable,
-    /// Part of an answer is that of no ship.
+    /// Part of an estimate is physically impossible.
     NegativeIndex,
-    /// More of the headings are odd than can be left out.
+    /// Too many headings are outliers to remove them.
     OddHeadings,
-    /// Earlier trials contradict the records, or are of another speed.
+    /// Earlier trials contradict the records, or have another speed.
     EarlierTrials,
-    /// The records speak against the hull that another loading needs.
+    /// The records contradict the hull model that another loading needs.
     NoLoading,
-    /// No K and T can be taken from the records of a model.
+    /// The records of a model do not identify K and T.
     NotIdentified,
     /// A figure or a manoeuvre is missing from a prediction.
     Unpredicted,
-    /// A correction to another loading is missing, or says little.
+    /// A correction to another loading is missing or uncertain.
     Correction,
-    /// The models of a correction differ, or go beyond their records.
+    /// The models of a correction differ, or extrapolate their records.
     ModelsApart,
     /// One of several instruments is used, or their mean.
     Instrument,
-    /// Columns are understood by names that are no contract, or not used because two claim the same.
+    /// Columns are recognised by nonstandard names, or unused because two are the same quantity.
     Columns,
-    /// A unit that no name says was read off the values.
+    /// A unit was inferred from the values.
     AssumedUnit,
     /// The time comes from the clock of one instrument.
     Clock,
-    /// The sidecar moves the rudder.
+    /// The sidecar shifts the rudder in time or angle.
     MovedRudder,
-    /// Part of a record is used.
+    /// Only part of a record is used.
     Part,
     /// Length, speed or scale come from the record.
     Scale,
-    /// A method takes something from the record that a key can give.
+    /// A method estimates from the record what a key can set.
     Method,
-    /// The answer of one method among several is used.
+    /// The estimate of one method among several is used.
     Answer,
-    /// What depends on the loading is taken as at the trials.
+    /// Particulars that depend on the loading are kept as at the trials.
     KeptParticulars,
-    /// A heading or a speed is of another kind than a track needs.
+    /// Heading or speed has another reference than a track needs.
     OtherReference,
     /// No track can be predicted.
     NoTrack,
-    /// What is random beside the white noise of the compass.
+    /// Random moment or correlated noise beside the white compass noise.
     Noise,
-    /// Rows, sentences or columns are left out.
+    /// Rows, sentences or columns are skipped.
     LeftOut,
-    /// Single readings are taken as missing.
+    /// Single readings are treated as missing.
     RejectedReadings,
-    /// Values that are repeated, frozen or absent are taken as missing.
+    /// Repeated, frozen or absent values are treated as missing.
     MissingValues,
-    /// A way of writing was understood: decimal commas, lines before the header.
+    /// A notation was recognised: decimal commas, lines before the header.
     Notation,
     /// Sentences have no checksum.
     NoChecksum,
-    /// A sign was turned.
+    /// A sign was reversed.
     TurnedSign,
 }
 
 impl Code {
-    /// How much a warning of this kind costs.
+    /// Severity of warnings of this kind.
     pub fn severity(self) -> Severity {
         match self {
             Self::Instrument
@@ -156,23 +156,23 @@ impl Code {
         }
     }
 
-    /// A warning of this kind whose source is whoever holds it, until that has a name.
+    /// Warning of this kind, with the source `Study` until a caller sets it.
     pub fn warning(self, text: impl Into<String>) -> Warning {
         Warning::new(self, Source::Study, text)
     }
 }
 
-/// Where a warning comes from.
+/// Source of a warning.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
-    /// A record, by its file.
+    /// Record, by its file.
     Record(String),
-    /// A model or the description of a loading, by its file.
+    /// Model or loading description, by its file.
     File(String),
-    /// A method, by its identifier or label.
+    /// Method, by its identifier or label.
     Method(String),
-    /// The records together, or the study.
+    /// All records together, or the study.
     Study,
 }
 
@@ -186,18 +186,18 @@ impl Source {
 /// A warning.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Warning {
-    /// What it is about.
+    /// Subject.
     pub code: Code,
-    /// How much it costs.
+    /// Severity.
     pub severity: Severity,
-    /// Where it comes from.
+    /// Source.
     pub source: Source,
-    /// What it says, in one sentence without its source.
+    /// Text: one sentence, without the source.
     pub text: String,
 }
 
 impl Warning {
-    /// A warning, as severe as its kind.
+    /// Warning with the severity of its code.
     pub fn new(code: Code, source: Source, text: impl Into<String>) -> Self {
         Self { code, severity: code.severity(), source, text: text.into() }
     }
@@ -213,7 +213,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// The warnings of one piece of work, in the order in which they arise.
+/// Warnings in the order in which they arise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Warnings(Vec<Warning>);
 
@@ -223,7 +223,7 @@ impl Warnings {
         self.0.push(Warning::new(code, source, text));
     }
 
-    /// The warnings, the worst first; equally severe ones stay in their order.
+    /// Warnings by severity, the most severe first; equally severe ones keep their order.
     pub fn ranked(&self) -> Vec<Warning> {
         let mut ranked = self.0.clone();
         ranked.sort_by_key(|warning| warning.severity);
@@ -261,9 +261,9 @@ mod tests {
     fn json_has_code_severity_source_and_text() {
         let text = |source| serde_json::to_string(&Warning::new(Code::HeadingJump, source, "it jumps")).expect("plain");
         let of_record = text(Source::Record("run.csv".into()));
-        let rest = r#""code":"heading-jump","severity":"doubt","source":"#;
-        assert_eq!(of_record, format!(r#"{{{rest}{{"record":"run.csv"}},"text":"it jumps"}}"#));
-        assert_eq!(text(Source::Study), format!(r#"{{{rest}"study","text":"it jumps"}}"#));
+        let fields = r#""code":"heading-jump","severity":"doubt","source":"#;
+        assert_eq!(of_record, format!(r#"{{{fields}{{"record":"run.csv"}},"text":"it jumps"}}"#));
+        assert_eq!(text(Source::Study), format!(r#"{{{fields}"study","text":"it jumps"}}"#));
         let again: Warning = serde_json::from_str(&of_record).expect("the same");
         assert_eq!(again.to_string(), "run.csv: it jumps");
     }

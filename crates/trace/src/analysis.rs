@@ -1,4 +1,4 @@
-//! The whole analysis of some records of one ship: a pipeline of stages, each a function of what the last one made.
+//! Analysis of the records of one ship: a pipeline of stages, each a function of the results before it.
 //!
 //! prepare → base → full fit → noise → structures → names held against shapes → comparison → document
 
@@ -20,7 +20,7 @@ use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, before, starts};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
-use crate::full::{self, Full};
+use crate::full::{self, FullModel};
 use crate::hulls;
 use crate::leave_one_out::leave_one_out;
 use crate::location::locate;
@@ -38,50 +38,52 @@ use crate::structures::{self, Structures};
 use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
-/// The result: what is said of the records, and what it was said from.
+/// Result of a trace: the document and the fits behind it.
 #[derive(Debug, Clone)]
 pub struct Analysis {
-    /// What is said.
+    /// The document (`trace.json`).
     pub document: Document,
-    /// The base of constant K and T: no first-order response is nearer to the records.
+    /// First-order response (constant K and T) of least heading error.
     pub base: Estimate,
-    /// Records that were fitted.
+    /// Comparisons on the fitted records.
     pub identification: Vec<RecordComparison>,
-    /// Records that were not.
+    /// Comparisons on the held-out records.
     pub validation: Vec<RecordComparison>,
-    /// Each of several records as if it had been held out, where none was. `None` where the others have no base or no
-    /// finite replay.
+    /// Leave-one-out comparisons, where several records are fitted and none is held out; `None` where the remaining
+    /// records have no base or no finite replay.
     pub left_out: Vec<Option<RecordComparison>>,
     /// The structures with their probabilities.
     pub structures: Structures,
-    /// The full model and the noise that it leaves.
-    pub full: Full,
-    /// That noise, its sizes being means over the records.
+    /// Full model (all candidates) and the noise law of its residual.
+    pub full: FullModel,
+    /// Noise of that law, averaged over the records.
     pub noise: HeadingNoise,
-    /// Hulls of three degrees of freedom that stand beside the structures.
+    /// Hull models of three degrees of freedom, averaged with the structures.
     pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
-/// Channels of a trace of heading and rudder alone.
+/// Channels kept by `Settings::heading_alone`.
 const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
 
-/// Records without channels that some methods do not read.
+/// Records reduced to the channels [`COMMON`].
 fn of_heading(trials: &[Trial]) -> Vec<Trial> {
     let is_more = |channel: &Channel| !COMMON.contains(channel);
-    let of = |trial: &Trial| {
+    let reduced = |trial: &Trial| {
         trial.clone().without(&trial.channels().map(|(channel, _)| channel).filter(is_more).collect::<Vec<Channel>>())
     };
-    trials.iter().map(of).collect()
+    trials.iter().map(reduced).collect()
 }
 
-/// Records without the readings of their compass that belong to no ship, and the times, s, of these.
+/// Records without the outliers of their compass, and the times (s) of the removed readings.
+///
+/// Outliers are those of [`maximum_likelihood::spikes`].
 pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
-    let of = |trial: &Trial| {
+    let spikes = |trial: &Trial| {
         maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
     };
-    let readings: Vec<Vec<f64>> = trials.par_iter().map(of).collect();
+    let readings: Vec<Vec<f64>> = trials.par_iter().map(spikes).collect();
     let kept = match readings.iter().all(Vec::is_empty) {
         true => Cow::Borrowed(trials),
         false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
@@ -89,24 +91,25 @@ pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     (kept, readings)
 }
 
-/// Why an effect that was asked for cannot be in the model.
+/// Fails with the reason why a requested effect is no candidate.
 fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
-    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.effect.id() == id.as_str());
+    let is_there = |id: &&EffectId| candidates.iter().any(|term| term.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = selection.effects().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
     let reason = match forms.iter().any(|form| form.is_random()) {
-        true => "it is a kind of noise, which is looked for in every record",
-        false => lacking.unwrap_or("the records leave no place for it"),
+        true => "it is a noise law, which every trace tries anyway",
+        false => lacking.unwrap_or("the records cannot show it"),
     };
     Err(TraceError::Asked { effect, reason })
 }
 
-/// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
+/// Traces the effects missing from the first-order model of one ship. `validation` records are only replayed: no fit
+/// depends on them.
 ///
-/// Readings of the compass that belong to no ship are left out of all records, and listed; a rudder with errors of its
-/// instrument is replaced by the one behind its readings. Fails when a setting is out of its range, when an effect that
-/// was asked for cannot be in the model, and when the base cannot be fitted or replayed.
+/// Compass outliers are removed from all records and listed; a rudder with measurement noise is replaced by its
+/// piecewise linear estimate. Fails when a setting is out of range, when a requested effect is no candidate, and when
+/// the base cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -133,7 +136,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     watched(trials, validation, settings, &NoWatcher)
 }
 
-/// The same as [`trace`] while somebody watches.
+/// [`trace`] with an observer of its leave-one-out folds, who can stop them.
 pub fn watched(
     trials: &[Trial],
     validation: &[Trial],
@@ -142,12 +145,12 @@ pub fn watched(
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
     if settings.heading_alone {
-        return analysed(&of_heading(trials), &of_heading(validation), settings, watcher);
+        return analyse(&of_heading(trials), &of_heading(validation), settings, watcher);
     }
-    analysed(trials, validation, settings, watcher)
+    analyse(trials, validation, settings, watcher)
 }
 
-fn analysed(
+fn analyse(
     trials: &[Trial],
     validation: &[Trial],
     settings: &Settings,
@@ -156,7 +159,7 @@ fn analysed(
     let (trials, rudder_errors) = rudder::without_noise(trials);
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::without_noise(validation).0).0.into_owned();
-    let base = Base::of(&trials)?;
+    let base = Base::fit(&trials)?;
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
@@ -164,14 +167,14 @@ fn analysed(
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_errors);
     let members = structures.members();
-    let fit = |hulls: &[HullEstimate]| fitted(&trials, &base, &full.law, &members, hulls, settings, time);
-    let (mut identification, mut no_nearer) = fit(&[])?;
+    let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
+    let (mut identification, mut keeps_base) = compare(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_errors);
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
-    (identification, no_nearer) = if hulls.is_empty() { (identification, no_nearer) } else { fit(&hulls)? };
-    let unseen = AveragedModel { members: &members, hulls: &hulls, law: &full.law, known: None, time };
-    let judged = unseen.all_compared(&validation, &response, settings.thorough)?;
+    (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
+    let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
+    let held_out = averaged.all_compared(&validation, &response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let left_out = if is_folded { folds() } else { Vec::new() };
@@ -183,13 +186,13 @@ fn analysed(
         structures: &structures,
         candidates: &candidates,
         identification: &identification,
-        validation: (&validation, &judged),
+        validation: (&validation, &held_out),
         left_out: &left_out,
         remainder: &remainder,
         location: &location,
         outliers: &outliers,
         rudder_errors: &rudder_errors,
-        no_nearer,
+        keeps_base,
         problem: &problem,
     };
     Ok(Analysis {
@@ -197,7 +200,7 @@ fn analysed(
         noise: HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default(),
         base: base.estimate,
         identification,
-        validation: judged,
+        validation: held_out,
         left_out,
         structures,
         full,
@@ -207,7 +210,7 @@ fn analysed(
     })
 }
 
-/// The full model and the structures under the noise that explains the records best.
+/// Full model and weighted structures under the most probable noise law.
 fn weighed(
     problem: &FittedRecords,
     base: &Base,
@@ -215,25 +218,25 @@ fn weighed(
     trials: &[Trial],
     settings: &Settings,
     rudder_errors: &[Option<RudderError>],
-) -> (Full, Structures) {
+) -> (FullModel, Structures) {
     let has_waves = candidates::has_waves(trials, &settings.selection);
-    let under = |kinds: &[CorrelatedNoise]| {
+    let choose = |kinds: &[CorrelatedNoise]| {
         let fulls = full::fit(problem, base, candidates, has_waves, kinds);
-        let fulls = rudder::beside(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
+        let fulls = rudder::bounded(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
         structures::choose(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
     };
     let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
-    let best = under(&kinds);
+    let best = choose(&kinds);
     if !trials.iter().all(Trial::is_calm) || !best.0.law.is_random_moment() {
         return best;
     }
-    // In a calm nothing turns the ship at random: a ship that replays the records nearer is believed.
+    // In a calm there is no random yaw moment: prefer heading noise where its structures replay the records better.
     let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
-    let other = under(&of_heading);
-    if other.1.mean_square_of_ship() < best.1.mean_square_of_ship() { other } else { best }
+    let calm = choose(&of_heading);
+    if calm.1.mean_square_of_ship() < best.1.mean_square_of_ship() { calm } else { best }
 }
 
-/// The candidates of a request; fails where one that was asked for cannot be among them.
+/// Candidate terms of the selection; fails where a requested effect is not among them.
 fn candidates_of(
     records: &[PreparedRecord],
     trials: &[Trial],
@@ -246,8 +249,8 @@ fn candidates_of(
     Ok(candidates)
 }
 
-/// Base and average on the records that were fitted, and whether the base is kept as no farther from them.
-fn fitted(
+/// Comparisons of base and average on the fitted records, and `true` where the replay of the base is kept.
+fn compare_fitted(
     trials: &[Trial],
     base: &Base,
     law: &NoiseLaw,
@@ -258,91 +261,90 @@ fn fitted(
 ) -> Result<(Vec<RecordComparison>, bool), TraceError> {
     let response = &base.estimate.response;
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
-    let of = |(number, trial): (usize, &Trial)| {
+    let compare = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
         let before = before(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
-        let after = AveragedModel { members, hulls, law, known: Some(number), time };
-        let mut after = after.on(trial, &record, &starts(trial, response), depth)?;
+        let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
+        let mut after = averaged.on(trial, &record, &starts(trial, response), depth)?;
         if is_base {
-            // Nothing is added: the base stays what it is.
+            // No effect is added: keep the closed-form replay of the base.
             let band = after.band;
             after = ReplayResult { band, ..before.clone() };
         }
         Ok(RecordComparison { before, after })
     };
-    let all: Result<Vec<RecordComparison>, TraceError> = trials.par_iter().enumerate().map(of).collect();
+    let all: Result<Vec<RecordComparison>, TraceError> = trials.par_iter().enumerate().map(compare).collect();
     let mut all = all?;
-    let no_nearer = keep_nearest(&mut all);
-    Ok((all, no_nearer))
+    let keeps_base = keep_nearest(&mut all);
+    Ok((all, keeps_base))
 }
 
-/// Where the average is no nearer to the fitted records than the base, the replay stays that of the base: a random
-/// moment describes the records, which no replay foresees. Whether that is so.
+/// Puts the replay of the base in place of the average where the average has the larger heading error, as under a
+/// random moment that no replay can reproduce. Returns whether it did.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     let [before, after] = squares(all);
-    let no_nearer = after > before;
-    if no_nearer {
-        for one in all {
-            let band = one.after.band.take();
-            one.after = ReplayResult { band, ..one.before.clone() };
+    let keeps_base = after > before;
+    if keeps_base {
+        for comparison in all {
+            let band = comparison.after.band.take();
+            comparison.after = ReplayResult { band, ..comparison.before.clone() };
         }
     }
-    no_nearer
+    keeps_base
 }
 
-/// A structure that the records cannot tell from the best, as a prediction takes it: without what is of one record.
+/// Member of the structure average, for predictions: without the terms of single records.
 #[derive(Debug, Clone)]
 pub struct Plausible {
-    /// Probability among these.
+    /// Probability among the members.
     pub weight: f64,
-    /// The ship.
+    /// Response of the ship.
     pub response: Response,
-    /// Places among its parameters of those that were fitted.
+    /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
-    /// Covariance of these; `None` where the records do not tell them apart.
+    /// Covariance of the fitted parameters; `None` where it is singular.
     pub covariance: Option<DMatrix<f64>>,
 }
 
 impl Analysis {
-    /// Innovations of the most probable structure on every fitted record.
+    /// Normalised innovations of the most probable structure on every fitted record.
     pub fn innovations(&self) -> Vec<Innovations> {
         let best = self.structures.all.first();
         best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
     }
 
-    /// Moments of a shape in what the most probable structure leaves, against every random law; `None` where its
-    /// parameters cannot be told apart.
+    /// Shape analysis of the residual of the most probable structure; `None` where its covariance is singular.
     pub fn shapes(&self) -> Option<ShapeAnalysis> {
         shape::analysis(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
 
-    /// The members of the average as predictions take them.
+    /// Members of the structure average for predictions, the most probable first.
     pub fn plausible(&self) -> Vec<Plausible> {
-        let of = |(weight, fit): (f64, &StructureFit)| {
+        let member = |(weight, fit): (f64, &StructureFit)| {
             let (structure, theta) = fit.structure.alone(None, &fit.theta);
             let fitted = structure.fitted();
             let covariance = fit.kept_covariance(None).map(|kept| {
-                // What is counted from another parameter has the sum of both.
+                // A parameter given relative to another one is converted to its physical value.
                 let all = structure.physical_covariance(&structure.spread(&kept));
                 DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
             });
             Plausible { weight, response: structure.response(None, &theta), fitted, covariance }
         };
-        self.structures.members().into_iter().map(of).collect()
+        self.structures.members().into_iter().map(member).collect()
     }
 
-    /// The ship of every member of the average, without what belongs to the weather of one record.
+    /// Weighted ships of the structure average, without the terms of single records.
     pub fn average(&self) -> Average {
-        self.unseen(&self.structures.members()).average()
+        self.averaged(&self.structures.members()).average()
     }
 
-    /// The average on a record that was not fitted.
-    fn unseen<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> AveragedModel<'a> {
-        AveragedModel { members, hulls: &self.hulls, law: &self.full.law, known: None, time: self.problem.time }
+    /// Averaged model for a record that was not fitted.
+    fn averaged<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> AveragedModel<'a> {
+        AveragedModel { members, hulls: &self.hulls, law: &self.full.law, fitted_record: None, time: self.problem.time }
     }
 
-    /// The ship of the most probable structure.
+    /// Response of the most probable structure.
     pub fn ship(&self) -> Response {
         let members = self.structures.members();
         members.first().map_or_else(
@@ -351,12 +353,12 @@ impl Analysis {
         )
     }
 
-    /// The average on a further trial, in a calm and perfectly recorded, from the best initial state near `start`: its
-    /// band is that of the errors of parameters and structures alone. `None` when no replay is finite.
+    /// Replay of the average on a noise-free trial, from the best initial state near `start` (rad, rad/s). Its band
+    /// covers the errors of parameters and structures only. `None` when no replay is finite.
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
-        let after = AveragedModel { law: &calm, ..self.unseen(&members) };
-        after.on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
+        let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
+        averaged.on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

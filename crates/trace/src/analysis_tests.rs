@@ -102,12 +102,12 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
         assert!((entry.before_deg / expected - 1.0).abs() < 0.02, "{entry:?}: {expected}");
     }
     for (when, of) in [("before", &error.validation[0].before), ("after", &error.validation[0].after)] {
-        let own = |length: f64| {
+        let error_at = |length: f64| {
             let entry = horizons.iter().find(|entry| entry.horizon_s == length).expect("a horizon");
             Some(if when == "before" { entry.before_deg } else { entry.after_deg })
         };
-        assert_eq!([own(20.0), own(60.0)], ["20", "60"].map(|length| of.horizon_rmse_deg[length]), "{when}");
-        assert_eq!(own(300.0), Some(of.heading_rmse_deg), "{when}");
+        assert_eq!([error_at(20.0), error_at(60.0)], ["20", "60"].map(|length| of.horizon_rmse_deg[length]), "{when}");
+        assert_eq!(error_at(300.0), Some(of.heading_rmse_deg), "{when}");
     }
     assert!(horizons[3..].iter().all(|entry| entry.after_deg < 0.5 * entry.before_deg), "{horizons:?}");
     assert!(error.identification[0].horizons.is_empty());
@@ -127,31 +127,31 @@ fn probabilities_move_with_the_prior_odds() {
     let trial = record(&ship(vec![(damping, vec![25.0])]), TrialPlan { noise_deg: 0.2, ..TrialPlan::default() });
     let analysis = traced(std::slice::from_ref(&trial));
     let (document, all) = (&analysis.document, &analysis.structures.all);
-    let of_other_laws = 1.0 - all.iter().map(|one| one.weight).sum::<f64>();
+    let of_other_laws = 1.0 - all.iter().map(|weighed| weighed.weight).sum::<f64>();
     assert!(of_other_laws.abs() < 1e-12, "other laws of the noise have no part here: {of_other_laws}");
-    let weight = |one: &WeighedStructure, factor: f64| {
-        let odds = one.fit.structure.terms.iter().map(|term| term.log_odds + factor.ln()).sum::<f64>();
-        (one.fit.evidence + odds - all[0].fit.evidence).exp()
+    let weight = |weighed: &WeighedStructure, factor: f64| {
+        let odds = weighed.fit.structure.terms.iter().map(|term| term.log_odds + factor.ln()).sum::<f64>();
+        (weighed.fit.evidence + odds - all[0].fit.evidence).exp()
     };
     let mut moved = 0;
-    for candidate in document.candidates.iter().filter(|one| !one.probability_by_prior_odds.is_empty()) {
+    for candidate in document.candidates.iter().filter(|candidate| !candidate.probability_by_prior_odds.is_empty()) {
         for (factor, probability) in document.prior.odds_factors.iter().zip(&candidate.probability_by_prior_odds) {
             let has =
-                |one: &&WeighedStructure| one.fit.structure.terms.iter().any(|term| term.effect.id() == candidate.id);
-            let with: f64 = all.iter().filter(has).map(|one| weight(one, *factor)).sum();
-            let expected = with / all.iter().map(|one| weight(one, *factor)).sum::<f64>();
+                |all: &&WeighedStructure| all.fit.structure.terms.iter().any(|term| term.effect.id() == candidate.id);
+            let with: f64 = all.iter().filter(has).map(|weighed| weight(weighed, *factor)).sum();
+            let expected = with / all.iter().map(|weighed| weight(weighed, *factor)).sum::<f64>();
             assert!((probability - expected).abs() < 1e-9, "{} × {factor}: {probability}, {expected}", candidate.id);
         }
-        let own = &candidate.probability_by_prior_odds;
-        assert!((own[2] - candidate.probability).abs() < 1e-12, "{candidate:?}");
-        moved += usize::from(own[4] > own[0] + 0.1);
+        let by_odds = &candidate.probability_by_prior_odds;
+        assert!((by_odds[2] - candidate.probability).abs() < 1e-12, "{candidate:?}");
+        moved += usize::from(by_odds[4] > by_odds[0] + 0.1);
     }
     assert!(moved > 0 && document.prior.odds_factors[2] == 1.0, "{:?}", document.candidates);
     // What is asked for is there whatever its odds.
     let asked = Selection::only(vec![EffectId::find("nonlinear_damping").expect("on the list")]);
     let asked = trace(&[trial], &[], &Settings { selection: asked, ..Settings::default() }).expect("a base").document;
     let asked = &asked.effects[0];
-    assert!(asked.probability_by_prior_odds.iter().all(|own| (own - asked.probability).abs() < 1e-12), "{asked:?}");
+    assert!(asked.probability_by_prior_odds.iter().all(|p| (p - asked.probability).abs() < 1e-12), "{asked:?}");
 }
 
 /// The search is over when the folds begin: whoever does not wait for them has the same result without them.
@@ -207,7 +207,7 @@ fn a_formula_is_named_where_it_acts() {
     assert!(errors.after.errors.heading < 0.3 * errors.before.errors.heading);
     let other = trace(&[damped(TrialPlan::default())], &[], &settings).expect("a base");
     assert_eq!(named(&other), ["nonlinear_damping"]);
-    assert!(other.document.candidates.iter().any(|one| one.id == "bank"), "it is on the list");
+    assert!(other.document.candidates.iter().any(|candidate| candidate.id == "bank"), "it is on the list");
 }
 
 #[test]
@@ -226,9 +226,9 @@ fn bands_hold_the_record() {
     let trial = damped(TrialPlan::default());
     let other = damped(TrialPlan { seed: 5, rudder_deg: 12.0, ..TrialPlan::default() });
     let analysis = trace(&[trial], &[other], &Settings::default()).expect("a base");
-    for one in analysis.identification.iter().chain(&analysis.validation) {
+    for record in analysis.identification.iter().chain(&analysis.validation) {
         let (coverage, width) =
-            (one.after.coverage().expect("a band").share(), one.after.width().expect("a band").to_degrees());
+            (record.after.coverage().expect("a band").share(), record.after.width().expect("a band").to_degrees());
         assert!((0.85..=1.0).contains(&coverage) && (0.15..0.6).contains(&width), "{coverage}, {width} deg");
     }
 }
@@ -286,11 +286,11 @@ fn a_random_moment_is_a_disturbance_and_in_a_calm_unexplained() {
     let disturbance = document.disturbance.expect("a random moment");
     assert_eq!((document.verdict, document.effects.len()), (Verdict::Disturbed, 0), "{}", document.headline);
     assert!(disturbance.heading_error_share > 0.6, "{disturbance:?}");
-    assert!(document.headline.contains("something turns the ship"), "{}", document.headline);
+    assert!(document.headline.contains("the ship was disturbed"), "{}", document.headline);
     let weather = Some(DeclaredWeather::Calm);
     let becalmed = walking.with_conditions(Conditions { weather, ..Conditions::default() });
     let document = traced(&[becalmed]).document;
     assert_eq!(document.verdict, Verdict::Unexplained, "{}", document.headline);
-    let wind = document.candidates.iter().find(|one| one.id == "wind_moment").expect("on the list");
+    let wind = document.candidates.iter().find(|candidate| candidate.id == "wind_moment").expect("on the list");
     assert!(wind.reason.as_deref().is_some_and(|why| why.contains("calm")), "{wind:?}");
 }

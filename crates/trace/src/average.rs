@@ -1,5 +1,6 @@
-//! Structures that the records cannot tell apart, as one prediction: the mean of their replays, or the median where one
-//! of them runs away.
+//! Model average: the weighted mean of the replays of several structures, or their weighted median where one diverges.
+//!
+//! Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a tutorial.
 
 use identify::hull::HullEstimate;
 use identify::replay::Replay;
@@ -10,64 +11,64 @@ use crate::record::PreparedRecord;
 use crate::replay_errors::{ReplayDepth, WindowError, full, restarted, root_mean_square};
 use crate::weights::NoiseLaw;
 
-/// A replay this many times as far from the record as the median of all runs away.
-const RUNS_AWAY: f64 = 3.0;
+/// Error of a replay over the median error of all, above which the replay counts as diverged.
+const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Ships with their weights, replayed together.
+/// Weighted ships.
 #[derive(Debug)]
 pub struct Average {
     /// Weights, which sum to one, and ships.
     pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
 
-/// Members of an average on a record, `known` being its number among those that were fitted.
+/// Members of a model average, with the noise law of the records.
 pub struct AveragedModel<'a> {
     /// Structures with their weights.
     pub members: &'a [(f64, &'a StructureFit)],
-    /// Hulls, each of which counts as much as all structures together.
+    /// Hulls; each has the weight of all structures together.
     pub hulls: &'a [HullEstimate],
-    /// The noise.
+    /// Noise law.
     pub law: &'a NoiseLaw,
-    /// Number of the record among the fitted ones.
-    pub known: Option<usize>,
+    /// Index of the replayed record among the fitted ones; `None` for any other record.
+    pub fitted_record: Option<usize>,
     /// Time of the ship L/U, s.
     pub time: f64,
 }
 
-/// What an average does on a record.
+/// Replay of an average on a record.
 #[derive(Debug, Clone)]
 pub struct AverageReplay {
-    /// The full replay.
+    /// Combined full replay.
     pub replay: Replay,
-    /// The full replay of every member.
+    /// Full replay of every member.
     pub members: Vec<Replay>,
-    /// Errors of the replays restarted.
+    /// Errors of the restarted replays, by window length.
     pub windows: Vec<WindowError>,
 }
 
 impl AverageReplay {
-    /// Whether one of the members runs away.
-    pub fn runs_away(&self) -> bool {
-        runs_away(&self.members.iter().map(Replay::rms).collect::<Vec<f64>>())
+    /// Whether the replay of a member diverges.
+    pub fn is_divergent(&self) -> bool {
+        is_divergent(&self.members.iter().map(Replay::rms).collect::<Vec<f64>>())
     }
 }
 
 impl AveragedModel<'_> {
-    /// Weight of one hull, and of all structures.
+    /// Weight of one hull, which is that of all structures together.
     pub fn share(&self) -> f64 {
         1.0 / (1 + self.hulls.len()) as f64
     }
 
-    /// Weights of its ships: structures first.
+    /// Weights of the ships: structures first.
     pub fn weights(&self) -> impl Iterator<Item = f64> {
         let share = self.share();
         self.members.iter().map(move |(weight, _)| share * weight).chain(self.hulls.iter().map(move |_| share))
     }
 
-    /// Its ships with their weights.
+    /// Ships with their weights: structures first.
     pub fn average(&self) -> Average {
         let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
-            Box::new(fit.structure.response(self.known, &fit.theta))
+            Box::new(fit.structure.response(self.fitted_record, &fit.theta))
         };
         let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.ship::<f64>()) };
         let ships = self.members.iter().map(structure).chain(self.hulls.iter().map(hull));
@@ -79,23 +80,23 @@ impl Average {
     /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of a
     /// depth. `None` when none is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
-        let found: Vec<(f64, &dyn ReplayedShip, Replay)> = self
+        let replays: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
             .iter()
             .filter_map(|(weight, ship)| Some((*weight, ship.as_ref(), full(ship.as_ref(), record, starts)?)))
             .collect();
-        let weights: Vec<f64> = found.iter().map(|(weight, ..)| *weight).collect();
-        let errors: Vec<f64> = found.iter().map(|(.., replay)| replay.rms()).collect();
+        let weights: Vec<f64> = replays.iter().map(|(weight, ..)| *weight).collect();
+        let errors: Vec<f64> = replays.iter().map(|(.., replay)| replay.rms()).collect();
         let combine = combination(&weights, &errors)?;
-        let of = |signal: fn(&Replay) -> &[f64]| {
-            let columns: Vec<&[f64]> = found.iter().map(|(.., replay)| signal(replay)).collect();
+        let combined = |signal: fn(&Replay) -> &[f64]| {
+            let columns: Vec<&[f64]> = replays.iter().map(|(.., replay)| signal(replay)).collect();
             combine(&columns)
         };
-        let [heading, yaw_rate] = [of(|replay| &replay.heading), of(|replay| &replay.yaw_rate)];
-        let residual = record.heading.iter().zip(&heading).map(|(measured, own)| measured - own).collect();
+        let [heading, yaw_rate] = [combined(|replay| &replay.heading), combined(|replay| &replay.yaw_rate)];
+        let residual = record.heading.iter().zip(&heading).map(|(measured, replayed)| measured - replayed).collect();
         let within = |length: f64| {
             let all: Option<Vec<Vec<f64>>> =
-                found.iter().map(|(_, ship, replay)| restarted(*ship, record, replay.initial(), length)).collect();
+                replays.iter().map(|(_, ship, replay)| restarted(*ship, record, replay.initial(), length)).collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let residual = record.heading.iter().zip(combine(&columns)).map(|(measured, mean)| measured - mean);
@@ -104,28 +105,28 @@ impl Average {
         let lengths = depth.lengths(&record.time).into_iter();
         let windows = lengths.map(|length| WindowError { length, heading: within(length) }).collect();
         let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
-        Some(AverageReplay { replay, members: found.into_iter().map(|(.., replay)| replay).collect(), windows })
+        Some(AverageReplay { replay, members: replays.into_iter().map(|(.., replay)| replay).collect(), windows })
     }
 }
 
-/// Whether one of some errors is of a replay that runs away.
-fn runs_away(errors: &[f64]) -> bool {
+/// Whether the largest error exceeds [`MAX_ERROR_RATIO`] times their median.
+fn is_divergent(errors: &[f64]) -> bool {
     let mut sorted = errors.to_vec();
     sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() - 1] > RUNS_AWAY * sorted[sorted.len() / 2]
+    sorted[sorted.len() - 1] > MAX_ERROR_RATIO * sorted[sorted.len() / 2]
 }
 
-/// Mean, or weighted median where one member runs away.
+/// Weighted mean of columns, or their weighted median where a member diverges; `None` without members.
 fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
     if weights.is_empty() {
         return None;
     }
-    let runs_away = runs_away(errors);
+    let is_divergent = is_divergent(errors);
     let total: f64 = weights.iter().sum();
     Some(move |columns: &[&[f64]]| {
         let rows = columns[0].len();
         (0..rows)
-            .map(|row| match runs_away {
+            .map(|row| match is_divergent {
                 true => median(weights, columns, row, total),
                 false => weights.iter().zip(columns).map(|(weight, column)| weight * column[row]).sum::<f64>() / total,
             })
@@ -133,16 +134,17 @@ fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64
     })
 }
 
+/// Weighted median of one row; `total` is the sum of the weights.
 fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
     let mut values: Vec<(f64, f64)> =
         columns.iter().zip(weights).map(|(column, weight)| (column[row], *weight)).collect();
-    values.sort_by(|one, other| one.0.total_cmp(&other.0));
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sum = 0.0;
-    let found = values.iter().find(|(_, weight)| {
+    let middle = values.iter().find(|(_, weight)| {
         sum += weight;
         sum >= 0.5 * total
     });
-    found.map_or(f64::NAN, |(value, _)| *value)
+    middle.map_or(f64::NAN, |(value, _)| *value)
 }
 
 #[cfg(test)]
@@ -152,7 +154,7 @@ mod tests {
     /// Weights 0.5, 0.3 and 0.2: the mean is theirs, and the median reaches half of their sum, in any order of the
     /// members.
     #[test]
-    fn where_a_member_runs_away_a_row_is_the_weighted_median() {
+    fn where_a_member_diverges_a_row_is_the_weighted_median() {
         let columns: [&[f64]; 3] = [&[1.0, 4.0], &[2.0, 2.0], &[90.0, 3.0]];
         let combined = |errors: &[f64]| combination(&[0.5, 0.3, 0.2], errors).expect("members")(&columns);
         let near = |values: Vec<f64>, expected: [f64; 2]| {

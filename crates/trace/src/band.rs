@@ -1,11 +1,10 @@
-//! How far a record may be from the average of the structures: 95 % bands from the noise, the errors of the parameters
-//! and the structures, by drawn noise.
+//! 95 % bands of a replay by Monte-Carlo: noise of the record, errors of the parameters, spread of the structures.
 //!
 //! The residual of a replay whose initial state was fitted to the record is e = M (w + J d) with the noise w of the
 //! record, the sensitivities J of the heading, the errors d of the parameters, and M, which takes away what an initial
 //! state can do. On a record that was fitted d is what w has done to the parameters, d = −H⁻¹ Jᵀ W w; on another one it
-//! is drawn from its own law. Between structures the replays differ, which adds their variance. A band holds what is
-//! known to vary; it knows nothing of effects that are on no list.
+//! is drawn from their posterior covariance. The variance between the replays of the structures is added. Effects that
+//! are not among the candidates are not covered.
 
 use estimation::column::dot;
 use estimation::kalman::{MOST, System};
@@ -20,53 +19,53 @@ use crate::average::AveragedModel;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::record::PreparedRecord;
 
-/// Standard deviations on either side of 95 % of a normal error.
+/// 97.5 % quantile of the standard normal law.
 const QUANTILE: f64 = 1.959_963_984_540_054;
 
-/// Drawn records.
+/// Number of drawn residuals for each structure.
 const DRAWS: usize = 100;
 
-/// Half the width of the band at every row of a replay, rad; `None` where the records do not tell the parameters apart.
-pub fn of(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
+/// Half-width of the band at every row of a replay, rad; `None` where the covariance of the parameters is singular.
+pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
     let problem = FittedRecords::new(vec![record], first.theta[0], after.time);
-    let (law_variance, white) = size(after, &problem);
+    let (law_variance, white) = variances(after, &problem);
     let record = &problem.records[0];
     let rows = record.observed.len();
     let mut variance = vec![0.0; rows];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let share = after.share();
     for ((weight, fit), replay) in after.members.iter().zip(members) {
-        let own = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
+        let sampler = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
         for _ in 0..DRAWS {
-            let residual = own.draw(&mut generator);
+            let residual = sampler.draw(&mut generator);
             variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += share * weight * e * e / DRAWS as f64);
         }
     }
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let smooth = Polyline::new(time, smoothed(&variance)).ok()?;
     let of_hulls: Vec<Polyline> = after.hulls.iter().map(|hull| hull.heading_variance(trial)).collect::<Option<_>>()?;
-    let hulls = |t: f64| share * of_hulls.iter().map(|own| own.at(t)).sum::<f64>();
+    let hulls = |t: f64| share * of_hulls.iter().map(|variance| variance.at(t)).sum::<f64>();
     let weights: Vec<f64> = after.weights().collect();
     let between = |row: usize| -> f64 {
         let parts = weights.iter().zip(members);
-        parts.map(|(weight, own)| weight * (own.heading[row] - mean.heading[row]).powi(2)).sum()
+        parts.map(|(weight, member)| weight * (member.heading[row] - mean.heading[row]).powi(2)).sum()
     };
     let half = |(row, &t): (usize, &f64)| QUANTILE * (smooth.at(t) + hulls(t) + white + between(row)).sqrt();
     let band: Vec<f64> = mean.time.iter().enumerate().map(half).collect();
     band.iter().all(|half| half.is_finite()).then_some(band)
 }
 
-/// Variance of the white noise of a row of a record under a law, and of one reading, rad²: its own where it was fitted,
-/// elsewhere the mean.
-fn size(after: &AveragedModel, problem: &FittedRecords) -> (f64, f64) {
+/// Variance of the white noise of a full row and of one reading, rad²: that of the record where it was fitted,
+/// otherwise the mean over the records.
+fn variances(after: &AveragedModel, problem: &FittedRecords) -> (f64, f64) {
     let all = &after.law.variance;
-    let own = after.known.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
-    (own, own * problem.records[0].full_readings as f64)
+    let row = after.fitted_record.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
+    (row, row * problem.records[0].full_readings as f64)
 }
 
-/// Means over some neighbours: variances of drawn noise are themselves noisy.
+/// Moving average, because the variances of drawn noise are themselves noisy.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let reach = (values.len() / 60).max(1);
     let mean = |row: usize| {
@@ -76,7 +75,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(mean).collect()
 }
 
-/// What is drawn of one structure on one record.
+/// Sampler of the residual of one structure on one record.
 struct ResidualSampler {
     system: System<MOST>,
     deviation: f64,
@@ -91,10 +90,10 @@ struct ResidualSampler {
 }
 
 enum ParameterErrors {
-    /// Weights of the noise of the record in the errors of the parameters, by parameter.
+    /// Rows H⁻¹ Jᵀ W of a fitted record: parameter errors from its noise, by parameter.
     OfRecord(DMatrix<f64>),
-    /// A root of the covariance of the parameters.
-    Own(DMatrix<f64>),
+    /// A root of the covariance of the parameters, for a record that was not fitted.
+    Independent(DMatrix<f64>),
 }
 
 impl ResidualSampler {
@@ -105,27 +104,27 @@ impl ResidualSampler {
         initial: [f64; 2],
         variance: f64,
     ) -> Option<Self> {
-        let (structure, theta) = fit.structure.alone(after.known, &fit.theta);
+        let (structure, theta) = fit.structure.alone(after.fitted_record, &fit.theta);
         let linear = problem.linear(&structure, &theta, &[initial]);
         let rows = linear.blocks[0].residual.len();
         let count = linear.unknowns - 2;
         let column = |unknown: usize| {
-            let own = linear.blocks[0].columns.iter().find(|(place, _)| *place == unknown);
-            own.map_or_else(|| vec![0.0; rows], |(_, column)| column.clone())
+            let sensitivity = linear.blocks[0].columns.iter().find(|(place, _)| *place == unknown);
+            sensitivity.map_or_else(|| vec![0.0; rows], |(_, column)| column.clone())
         };
         let columns: Vec<Vec<f64>> = (0..count).map(column).collect();
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
-        let covariance = fit.kept_covariance(after.known)?;
+        let covariance = fit.kept_covariance(after.fitted_record)?;
         let law = crate::weights::NoiseLaw {
             colour: after.law.colour,
             variance: vec![variance],
-            power: vec![after.known.map_or(1.0, |number| after.law.power[number])],
+            power: vec![after.fitted_record.map_or(1.0, |number| after.law.power[number])],
         };
         let record = &problem.records[0];
-        let errors = match after.known {
+        let errors = match after.fitted_record {
             Some(_) => {
-                // What the noise of the record did to the parameters: Σ Jᵀ W of all that was fitted.
+                // The noise of the record entered the fit: its errors are −H⁻¹ Jᵀ W w.
                 let weights = problem.weights(&law);
                 let mut whitened = columns.clone();
                 weights.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
@@ -134,7 +133,7 @@ impl ResidualSampler {
                 }
                 ParameterErrors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
             }
-            None => ParameterErrors::Own(root(&covariance)),
+            None => ParameterErrors::Independent(root(&covariance)),
         };
         let full = record.full_readings as f64;
         Some(Self {
@@ -148,6 +147,7 @@ impl ResidualSampler {
         })
     }
 
+    /// Draws the residual M (w + J d), rad.
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
         let coloured: Vec<f64> = self.system.sample(&mut normal).into_iter().map(|x| x * self.deviation).collect();
@@ -160,7 +160,7 @@ impl ResidualSampler {
                 );
                 -(weights * noise)
             }
-            ParameterErrors::Own(root) => root * DVector::from_fn(root.ncols(), |_, _| normal()),
+            ParameterErrors::Independent(root) => root * DVector::from_fn(root.ncols(), |_, _| normal()),
         };
         for (column, change) in self.columns.iter().zip(change.iter()) {
             residual.iter_mut().zip(column).for_each(|(e, c)| *e += change * c);
@@ -173,7 +173,7 @@ impl ResidualSampler {
     }
 }
 
-/// R with R Rᵀ = a covariance that may be singular.
+/// Matrix root R of a covariance that may be singular: R Rᵀ = covariance.
 pub fn root(covariance: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = covariance.clone().symmetric_eigen();
     let scale = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());

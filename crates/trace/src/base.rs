@@ -1,4 +1,4 @@
-//! The base: the best first-order response to the records, and its replays.
+//! The base: the first-order response of least heading error, and its replays.
 
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, output_error};
@@ -6,18 +6,18 @@ use trial::Trial;
 
 use crate::settings::TraceError;
 
-/// The base of some records.
+/// First-order response fitted to some records.
 #[derive(Debug, Clone)]
 pub struct Base {
     /// K, T and δ_r by `output-error`, which is global in 1/T.
     pub estimate: Estimate,
-    /// Its replay of every record.
+    /// Replays of the records.
     pub replays: Vec<Replay>,
 }
 
 impl Base {
-    /// Fits the base.
-    pub fn of(trials: &[Trial]) -> Result<Self, TraceError> {
+    /// Fits the base; fails where `output-error` has no answer or a replay is not finite.
+    pub fn fit(trials: &[Trial]) -> Result<Self, TraceError> {
         let method = output_error::Settings::default().build().expect("default settings are valid");
         let estimate = method.identify(trials)?;
         let replayed = |trial: &Trial| {
@@ -27,12 +27,12 @@ impl Base {
         Ok(Self { estimate, replays })
     }
 
-    /// Heading (rad) and yaw rate (rad/s) with which the replays begin.
+    /// Initial heading (rad) and yaw rate (rad/s) of the replays.
     pub fn initial(&self) -> Vec<[f64; 2]> {
         self.replays.iter().map(Replay::initial).collect()
     }
 
-    /// Mean square of what it leaves of all records, rad².
+    /// Mean square of the heading residual over all records, rad².
     pub fn mean_square(&self) -> f64 {
         let (sum, rows) = self.replays.iter().fold((0.0, 0.0), |(sum, rows), replay| {
             let count = replay.observed().count() as f64;

@@ -1,4 +1,4 @@
-//! What may be missing: every effect in every form the records allow, with its priors for their manoeuvres.
+//! Candidate terms: every effect in every form the records allow, with its priors for their manoeuvres.
 
 use std::sync::Arc;
 
@@ -10,65 +10,64 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
-/// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
-const PROPELLER_CHANGE: f64 = 0.05;
+/// Smallest relative change of the propeller revolutions for which they count as recorded.
+const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
-/// Probability that an effect is there before any record is seen.
+/// Prior probability of an effect.
 pub const PROBABILITY: f64 = 0.1;
 
-/// The same of an effect of the measured speed or sway: every hull has it.
+/// Prior probability of an effect of the measured speed or sway, which every hull has.
 pub const PROBABILITY_OF_MOTION: f64 = 0.5;
 
-/// The same of a moment that depends on time, in one record: it resembles chance.
+/// Prior probability of a moment that depends on time, in one record: it resembles chance.
 pub const PROBABILITY_OF_TIME: f64 = 0.001;
 
-/// Time of a ship L/U, s: from its particulars, else (K/T)^(−1/2), which is about that.
+/// Time L/U of a ship, s: from her particulars, otherwise approximated by (K/T)^(−1/2).
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
-    let known = trials.iter().find_map(|trial| trial.particulars().map(|own| own.time()).filter(|t| t.is_normal()));
-    known.unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
+    let time = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.time()).filter(|t| t.is_normal()));
+    time.unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
-/// The manoeuvres of some records, with the span of one of them.
-pub fn manoeuvres<'a>(records: &'a [PreparedRecord], trials: &[Trial], time: f64, of: &PreparedRecord) -> Manoeuvres {
-    let own_speed = |record: &'a PreparedRecord| record.speed.as_ref();
-    let approach = trials.iter().find_map(|trial| trial.particulars().map(|own| own.speed));
-    let mean_speed = mean_square(records, own_speed);
-    // The speed is needed where a channel is there that counts in it.
+/// Scales of the manoeuvres in some records; `span` is that of `record`.
+pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> Manoeuvres {
+    let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
+    let mean_speed = mean_square(records, |record| record.speed.as_ref());
+    // The speed is needed where speed or sway is recorded.
     let speed = |square: f64| approach.unwrap_or(mean_speed.unwrap_or(square).sqrt());
     let propeller = || {
         let mean = mean_square(records, |record| record.propeller.as_ref())?.sqrt();
         let values = records.iter().filter_map(|record| record.propeller.as_ref()).flat_map(|rate| rate.values());
         let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(low, high), &n| (low.min(n), high.max(n)));
-        (highest - lowest > PROPELLER_CHANGE * mean).then_some(mean)
+        (highest - lowest > MIN_PROPELLER_CHANGE * mean).then_some(mean)
     };
     let angles = records.iter().flat_map(|record| record.rudder.values());
     Manoeuvres {
         time,
-        rudder: angles.fold(1e-3_f64, |most, delta| most.max(delta.abs())),
+        rudder: angles.fold(1e-3_f64, |largest, delta| largest.max(delta.abs())),
         duration: records.iter().map(PreparedRecord::duration).fold(0.0, f64::max),
         spacing: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
         speed: mean_speed.map(speed),
         sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
         wind_square: mean_square(records, |record| record.wind_speed.as_ref()),
         propeller: propeller(),
-        span: [of.time[0], of.time[of.time.len() - 1]],
+        span: [record.time[0], record.time[record.time.len() - 1]],
     }
 }
 
-/// Whether an effect of the weather, which nobody asked for, has no place: the record in which it would act declares a
-/// calm, or where it would act in all of them, every one.
+/// Whether a declared calm excludes an effect of the weather that was not requested: the record in which it would act
+/// declares a calm, or all records do where it would act in all of them.
 pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_of_weather() && !selection.asks_for(effect.id()) && is_calm()
 }
 
-/// Whether waves are looked for among the colours of the noise.
+/// Whether waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
     selection.allows(WaveYaw.id()) && !is_becalmed(&WaveYaw, None, trials, selection)
 }
 
-/// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
-/// depends on time alone is one of every record.
+/// Candidate terms that these records allow. Waves are not among them, because they are a noise law. A moment that
+/// depends on time alone is a separate candidate for every record.
 pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
     for effect in selection.effects().iter().filter(|effect| selection.allows(effect.id())) {
@@ -85,25 +84,25 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
     let forms = |id: &str, only: Option<usize>| {
         candidates.iter().filter(|term| term.effect.id() == id && term.only == only).count() as f64
     };
-    let weighed = |term: &Term| {
-        let own = match (term.effect.is_of_time(), term.effect.needs()) {
+    let weighted = |term: &Term| {
+        let prior = match (term.effect.is_of_time(), term.effect.needs()) {
             (true, _) => PROBABILITY_OF_TIME,
             (false, Some(Regressor::Speed | Regressor::Sway)) => PROBABILITY_OF_MOTION,
             (false, _) => PROBABILITY,
         };
-        let probability = own / forms(term.effect.id(), term.only);
+        let probability = prior / forms(term.effect.id(), term.only);
         Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })
     };
-    candidates.iter().map(weighed).collect()
+    candidates.iter().map(weighted).collect()
 }
 
-/// Whether a form takes the place of another one of the same effect when that is refitted, and is no candidate of the
-/// full model: a short lag and a short dead time do the same.
+/// Whether a form is tried only in place of another form of its effect, and not in the full model: a short first-order
+/// lag and a short dead time are nearly collinear.
 pub fn is_variant(effect: &dyn Effect) -> bool {
     (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
 }
 
-/// Whether an effect makes the ship answer the rudder later, or sooner, and little else.
+/// Whether an effect mainly shifts the response to the rudder in time.
 pub fn is_delay(effect: &dyn Effect) -> bool {
     let id = effect.id();
     id == SteeringLag::DeadTime.id()
@@ -111,7 +110,7 @@ pub fn is_delay(effect: &dyn Effect) -> bool {
         || (id, effect.form()) == (Backlash.id(), Backlash.form())
 }
 
-/// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.
+/// Mean square of a channel over all records; `None` when a record lacks it, or when it is zero throughout.
 pub fn mean_square<'a>(
     records: &'a [PreparedRecord],
     signal: impl Fn(&'a PreparedRecord) -> Option<&'a Polyline>,

@@ -1,5 +1,7 @@
-//! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
-//! and on others. Nothing is fitted here but initial states, and moments of the record beside the plain errors.
+//! Replay errors of the base ("before") and of the structure average ("after"), on fitted and on held-out records.
+//!
+//! Only initial states are fitted here; on held-out records a bias or a slow moment of the record as well, reported
+//! separately.
 
 use document::trace::{ErrorsEntry, HorizonEntry};
 use estimation::statistics::wilson;
@@ -18,66 +20,65 @@ use crate::replay_errors::{
 };
 use crate::settings::TraceError;
 
-/// A model on one record.
+/// Replay of a model on one record, with its errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReplayResult {
-    /// Replay.
+    /// Full replay.
     pub replay: Replay,
-    /// Errors.
+    /// Errors of the replay.
     pub errors: ReplayErrors,
-    /// Half the width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not asked for
-    /// and where the records do not tell the parameters apart.
+    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not computed and
+    /// where the covariance of the parameters is singular.
     pub band: Option<Vec<f64>>,
 }
 
-/// The headings of a record and the 95 % band of its replay.
+/// Coverage of the headings of a record by the 95 % band of its replay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BandCoverage {
-    /// Measured headings inside the band.
+    /// Number of measured headings inside the band.
     pub inside: usize,
-    /// Measured headings.
-    pub of: usize,
-    /// Interval of the share inside, 99 % (Wilson 1927), for as many headings as tell something of their own:
-    /// neighbours are in or out together, and n of them count as n (1 − ρ)/(1 + ρ) with their autocorrelation ρ at
-    /// lag 1.
+    /// Number of measured headings.
+    pub total: usize,
+    /// 99 % interval of the share inside (Wilson 1927), for the effective number of headings n (1 − ρ)/(1 + ρ) with
+    /// the lag-1 autocorrelation ρ of being inside: neighbours are inside or outside together.
     pub interval: [f64; 2],
 }
 
-/// Share of the headings that a band is made for.
-const HELD: f64 = 0.95;
+/// Nominal coverage of a band.
+const NOMINAL_COVERAGE: f64 = 0.95;
 
-/// Standard deviations on either side of 99 % of a normal error.
+/// 99.5 % quantile of the standard normal law.
 const QUANTILE_99: f64 = 2.575_829_303_548_901;
 
 impl BandCoverage {
-    /// Of headings in order of time, which are inside; `None` without any.
-    pub fn of(inside: &[bool]) -> Option<Self> {
-        let (count, of) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
-        let share = (of > 0).then(|| count as f64 / of as f64)?;
+    /// Coverage from flags in order of time, `true` for a heading inside; `None` without headings.
+    pub fn from_flags(inside: &[bool]) -> Option<Self> {
+        let (count, total) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
+        let share = (total > 0).then(|| count as f64 / total as f64)?;
         let off: Vec<f64> = inside.iter().map(|&inside| f64::from(u8::from(inside)) - share).collect();
         let cross: f64 = off.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let square: f64 = off.iter().map(|off| off * off).sum();
         let correlation = if square > 0.0 { (cross / square).max(0.0) } else { 0.0 };
-        let independent = of as f64 * (1.0 - correlation) / (1.0 + correlation);
-        Some(Self { inside: count, of, interval: wilson(share, independent, QUANTILE_99) })
+        let independent = total as f64 * (1.0 - correlation) / (1.0 + correlation);
+        Some(Self { inside: count, total, interval: wilson(share, independent, QUANTILE_99) })
     }
 
-    /// Share of the headings inside.
+    /// Share of the headings inside the band.
     pub fn share(&self) -> f64 {
-        self.inside as f64 / self.of as f64
+        self.inside as f64 / self.total as f64
     }
 
-    /// Whether the band may hold as much as it is made for.
-    pub fn is_held(&self) -> bool {
-        self.interval[1] >= HELD
+    /// Whether the coverage is consistent with the nominal 95 %.
+    pub fn is_nominal(&self) -> bool {
+        self.interval[1] >= NOMINAL_COVERAGE
     }
 }
 
 impl ReplayResult {
-    /// The measured headings against the band; `None` where there is none.
+    /// Coverage of the measured headings; `None` without a band.
     pub fn coverage(&self) -> Option<BandCoverage> {
         let pairs = self.replay.residual.iter().zip(self.band.as_ref()?).filter(|(residual, _)| residual.is_finite());
-        BandCoverage::of(&pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>())
+        BandCoverage::from_flags(&pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>())
     }
 
     /// Mean width of the band, rad.
@@ -96,7 +97,7 @@ impl From<&ReplayResult> for ErrorsEntry {
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
             horizon_rmse_deg: horizon.into(),
-            band_coverage_95: on.coverage().map(|own| own.share()),
+            band_coverage_95: on.coverage().map(|coverage| coverage.share()),
             band_width_95_deg: on.width().map(to_deg),
             with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
             with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
@@ -104,18 +105,17 @@ impl From<&ReplayResult> for ErrorsEntry {
     }
 }
 
-/// One record with the models before and after.
+/// Comparison of base and structure average on one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordComparison {
-    /// Base.
+    /// Replay of the base.
     pub before: ReplayResult,
-    /// Average of the structures.
+    /// Replay of the structure average.
     pub after: ReplayResult,
 }
 
 impl RecordComparison {
-    /// Heading errors against how far ahead the replays go: of the windows of which the record holds more than one,
-    /// then of the whole record.
+    /// Heading errors by prediction horizon: windows of which the record holds more than one, then the whole record.
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
@@ -131,7 +131,7 @@ impl RecordComparison {
     }
 }
 
-/// Heading (rad) and yaw rate (rad/s) with which a record may begin: as the base has it, without yaw rate, as measured.
+/// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, as the base has them, as measured.
 pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
@@ -141,7 +141,7 @@ pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     starts
 }
 
-/// The base on a record: in closed form, which neither sign of T disturbs.
+/// Replay of the base on a record, in closed form, which holds for either sign of T; fails where it is not finite.
 pub fn before(
     trial: &Trial,
     record: &PreparedRecord,
@@ -159,8 +159,8 @@ pub fn before(
 }
 
 impl AveragedModel<'_> {
-    /// Base and average on a record that neither was fitted to; where it is `thorough`, with moments of the record and
-    /// with the growth of the error as well.
+    /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
+    /// Fails where no replay is finite.
     pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
@@ -175,7 +175,7 @@ impl AveragedModel<'_> {
         Ok(RecordComparison { before, after })
     }
 
-    /// The same on several.
+    /// Comparisons on several held-out records.
     pub fn all_compared(
         &self,
         trials: &[Trial],
@@ -185,7 +185,7 @@ impl AveragedModel<'_> {
         trials.par_iter().map(|trial| self.compared(trial, base, thorough)).collect()
     }
 
-    /// Replays the average on a record from initial states near the `starts`.
+    /// Replay of the average on a record from initial states near the `starts`; fails where none is finite.
     pub fn on(
         &self,
         trial: &Trial,
@@ -195,17 +195,17 @@ impl AveragedModel<'_> {
     ) -> Result<ReplayResult, TraceError> {
         let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
         let mut all = starts.to_vec();
-        if let Some(number) = self.known {
+        if let Some(number) = self.fitted_record {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
         let AverageReplay { replay, windows, members } =
             self.average().replay(record, &all, depth).ok_or_else(refuse)?;
-        let band = band::of(self, trial, &replay, &members);
+        let band = band::half_width(self, trial, &replay, &members);
         Ok(ReplayResult { band, ..result(trial, replay, windows, depth) })
     }
 }
 
-/// Errors of a replay.
+/// Result of a replay without a band.
 fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
     let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);
@@ -213,7 +213,7 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
     let finite = |values: &[f64]| -> Vec<f64> { values.iter().copied().filter(|x| x.is_finite()).collect() };
     let yaw_rate = trial.yaw_rate().filter(|_| thorough).and_then(|measured| {
         let differences: Vec<f64> =
-            measured[first..].iter().zip(&replay.yaw_rate).map(|(one, own)| one - own).collect();
+            measured[first..].iter().zip(&replay.yaw_rate).map(|(rate, replayed)| rate - replayed).collect();
         root_mean_square(&finite(&differences))
     });
     let errors = ReplayErrors {
@@ -231,17 +231,17 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
 mod tests {
     use super::*;
 
-    /// As many headings outside say much where they stand alone and little where they are one swing.
+    /// The same number of headings outside is significant where they are scattered, and not where they are one swing.
     #[test]
     fn neighbours_outside_a_band_count_little() {
         let outside = |is_out: fn(usize) -> bool| {
             let inside: Vec<bool> = (0..200).map(|row| !is_out(row)).collect();
-            BandCoverage::of(&inside).expect("headings")
+            BandCoverage::from_flags(&inside).expect("headings")
         };
-        let (apart, swing) = (outside(|row| row % 10 == 0), outside(|row| row >= 180));
-        assert_eq!((apart.inside, swing.inside), (180, 180));
-        assert!(!apart.is_held() && swing.is_held(), "{apart:?} {swing:?}");
-        assert!(outside(|_| false).is_held() && !outside(|_| true).is_held());
-        assert_eq!(BandCoverage::of(&[]), None);
+        let (scattered, swing) = (outside(|row| row % 10 == 0), outside(|row| row >= 180));
+        assert_eq!((scattered.inside, swing.inside), (180, 180));
+        assert!(!scattered.is_nominal() && swing.is_nominal(), "{scattered:?} {swing:?}");
+        assert!(outside(|_| false).is_nominal() && !outside(|_| true).is_nominal());
+        assert_eq!(BandCoverage::from_flags(&[]), None);
     }
 }

@@ -1,5 +1,5 @@
-//! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect
-//! carries; and such with magnitudes, against which named effects can be held.
+//! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates beside
+//! the named effects.
 
 use ship::effects::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use ship::particulars::Dimension;
@@ -13,12 +13,13 @@ use crate::candidates::{manoeuvres, mean_square};
 use crate::model::Term;
 use crate::record::PreparedRecord;
 
-/// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
+/// Monomial c r^i δ^j ψ^k U^l added to the rudder angle; every factor is divided by its root mean square in the
+/// records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monomial {
-    /// Which one.
+    /// Exponents and magnitudes.
     pub powers: &'static Powers,
-    /// Sizes of r (rad/s), δ (rad), ψ (rad) and U (m/s).
+    /// Scales of r (rad/s), δ (rad), ψ (rad) and U (m/s).
     pub size: [f64; 4],
 }
 
@@ -26,37 +27,36 @@ pub struct Monomial {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Powers {
     /// Exponents of r, δ, ψ and U.
-    pub of: [i32; 4],
-    /// Whether one factor of the power is a magnitude.
+    pub exponents: [i32; 4],
+    /// Whether one factor of each power is a magnitude.
     magnitude: [bool; 4],
-    /// The monomial, as it is written.
+    /// Notation: "δ|δ||ψ|".
     pub form: &'static str,
     equation: String,
 }
 
 impl Powers {
-    /// The monomial as it is written: "δ|δ||ψ|" is δ to the second power, of which one factor is a magnitude, times the
-    /// magnitude of ψ.
-    fn read(form: &'static str) -> Self {
-        let (mut of, mut magnitude, mut factor, mut inside) = ([0; 4], [false; 4], 0, false);
+    /// Parses the notation: "δ|δ||ψ|" is δ to the second power, one factor of it a magnitude, times the magnitude of ψ.
+    fn from_notation(form: &'static str) -> Self {
+        let (mut exponents, mut magnitude, mut factor, mut inside) = ([0; 4], [false; 4], 0, false);
         for letter in form.chars() {
             match letter {
                 '|' => inside = !inside,
-                '²' => of[factor] += 1,
-                '³' => of[factor] += 2,
+                '²' => exponents[factor] += 1,
+                '³' => exponents[factor] += 2,
                 name => {
-                    factor = "rδψU".chars().position(|own| own == name).expect("a factor of the library");
-                    of[factor] += 1;
+                    factor = "rδψU".chars().position(|symbol| symbol == name).expect("a factor of the library");
+                    exponents[factor] += 1;
                     magnitude[factor] |= inside;
                 }
             }
         }
-        Self { of, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
+        Self { exponents, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
     }
 
-    /// The monomial as a line for [`Formula::read`](ship::effects::Formula::read): "proposal = c * r^2 * delta".
+    /// Formula for [`Formula::read`](ship::effects::Formula::read): "proposal = c * r^2 * delta".
     pub fn line(&self) -> String {
-        let factor = |(place, name): (usize, &str)| match (self.of[place], self.magnitude[place]) {
+        let factor = |(place, name): (usize, &str)| match (self.exponents[place], self.magnitude[place]) {
             (0, _) => String::new(),
             (1, false) => format!(" * {name}"),
             (1, true) => format!(" * abs({name})"),
@@ -68,39 +68,39 @@ impl Powers {
         format!("proposal = c{}", factors.collect::<String>())
     }
 
-    /// The monomial without magnitudes of r (rad/s), δ and ψ (rad).
+    /// Value for r (rad/s), δ and ψ (rad), without magnitudes.
     pub fn at(&self, factors: [f64; 3]) -> f64 {
-        factors.iter().zip(self.of).map(|(factor, power)| factor.powi(power)).product()
+        factors.iter().zip(self.exponents).map(|(factor, power)| factor.powi(power)).product()
     }
 }
 
-/// Monomials up to the third degree that no named effect is.
+/// Monomials up to the third degree that are no named effect.
 const PLAIN: &str = "ψ ψ² ψ³ δ² rδ rψ δψ r²δ rδ² r²ψ rψ² δ²ψ δψ² rδψ U rU δU ψU";
 
-/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
-/// show what a rule names where much is on offer.
+/// Monomials up to the third degree with magnitudes that are no named effect: candidates for tests of a rule with many
+/// competitors, never proposed to a user.
 const WITH_MAGNITUDES: &str = "|ψ| |r| ψ|ψ| δ|δ| δ|ψ| ψ|δ| |δ||ψ| r|ψ| ψ|r| |r||ψ| r|δ| δ|r| |r||δ| |ψ|³ |δ|³ |r|³ δψ|ψ| ψ²|δ| \
     ψ|δ||ψ| δ²|ψ| δψ|δ| δ|δ||ψ| rψ|ψ| ψ²|r| ψ|r||ψ| rδ|δ| δ²|r| δ|r||δ| r²|ψ| rψ|r| r|r||ψ| r²|δ| rδ|r| \
     r|r||δ| rδ|ψ| rψ|δ| r|δ||ψ| δψ|r| δ|r||ψ| ψ|r||δ| |r||δ||ψ|";
 
-/// Every monomial of both lists.
+/// All monomials; those with magnitudes are last.
 static LIBRARY: LazyLock<Vec<Powers>> =
-    LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(Powers::read).collect());
+    LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(Powers::from_notation).collect());
 
-/// Every monomial, those with magnitudes last.
+/// All monomials; those with magnitudes are last.
 pub fn all() -> &'static [Powers] {
     &LIBRARY
 }
 
-/// The monomials without magnitudes.
+/// Monomials without magnitudes.
 pub fn plain() -> &'static [Powers] {
     &LIBRARY[..PLAIN.split(' ').count()]
 }
 
-/// Prior odds of a term without a name.
+/// Log prior odds of an empirical term.
 const LOG_ODDS: f64 = -4.0;
 
-/// The monomials as candidates, where the records have the channels that they need.
+/// Candidate terms of the monomials, where the records have the channels that they need.
 pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
     let about = manoeuvres(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
@@ -110,16 +110,16 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
     let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
     let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
-    all().iter().filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
+    all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
         let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
         Some(Arc::new(Term { effect, only: None, priors, log_odds: LOG_ODDS }))
     })
 }
 
-/// Standard deviation of a coefficient, rad.
+/// Prior standard deviation of a coefficient, rad.
 pub const PRIOR_SD: f64 = 0.05;
 
-/// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
+/// Coefficient of an empirical term: a rudder angle, for factors divided by their scales.
 pub const COEFFICIENT: Parameter = Parameter::even(["c", "c", "rad"], [0.0, 0.02], [-10.0, 10.0]);
 
 const PARAMETERS: [Parameter; 1] = [COEFFICIENT];
@@ -139,7 +139,7 @@ impl Effect for Monomial {
     }
 
     fn sees_heading(&self) -> bool {
-        self.powers.of[2] > 0
+        self.powers.exponents[2] > 0
     }
 
     fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
@@ -151,7 +151,7 @@ impl Effect for Monomial {
     }
 
     fn needs(&self) -> Option<Regressor> {
-        (self.powers.of[3] > 0).then_some(Regressor::Speed)
+        (self.powers.exponents[3] > 0).then_some(Regressor::Speed)
     }
 }
 
@@ -160,7 +160,7 @@ impl<R: EffectReal> Acts<R> for Monomial {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
         let power = |k: usize| {
-            let (x, exponent) = (factors[k] / self.size[k], self.powers.of[k]);
+            let (x, exponent) = (factors[k] / self.size[k], self.powers.exponents[k]);
             if self.powers.magnitude[k] { x.powi(exponent - 1) * x.abs() } else { x.powi(exponent) }
         };
         (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
@@ -182,13 +182,13 @@ mod tests {
             ("δ|δ||ψ|", [0, 2, 1, 0], [false, true, true, false]),
             ("ψ²|r|", [1, 0, 2, 0], [true, false, false, false]),
         ];
-        for (form, of, magnitude) in cases {
-            let found = Powers::read(form);
-            assert_eq!((found.of, found.magnitude), (of, magnitude), "{form}");
+        for (form, exponents, magnitude) in cases {
+            let powers = Powers::from_notation(form);
+            assert_eq!((powers.exponents, powers.magnitude), (exponents, magnitude), "{form}");
         }
-        assert_eq!(Powers::read("r²δ").line(), "proposal = c * r^2 * delta");
-        assert_eq!(Powers::read("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
-        assert!(all().iter().all(|own| ship::effects::Formula::read(&own.line()).is_ok()));
+        assert_eq!(Powers::from_notation("r²δ").line(), "proposal = c * r^2 * delta");
+        assert_eq!(Powers::from_notation("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
+        assert!(all().iter().all(|powers| ship::effects::Formula::read(&powers.line()).is_ok()));
         assert_eq!((plain().len(), all().len()), (18, 59));
     }
 }

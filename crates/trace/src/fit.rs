@@ -1,8 +1,9 @@
-//! Parameters of largest posterior density: the replay nearest to the records, weighed with the noise, and to what is
-//! expected of the parameters (Levenberg–Marquardt with bounds and exact derivatives; Moré 1978).
+//! Maximum a posteriori fit of a structure: prediction error in the whitened headings plus the priors of the parameters
+//! (Levenberg–Marquardt with bounds and exact derivatives; Moré 1978), and its Laplace evidence (Tierney and Kadane
+//! 1986).
 //!
-//! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the filter W that makes the noise of a record
-//! white. Unknowns are the fitted entries of θ in order, then heading and yaw rate at the beginning of every record.
+//! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the whitening filter W of the
+//! record. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate of every record.
 
 use estimation::levenberg_marquardt::{Minimum, Normal, Objective, Rules, minimise};
 use nalgebra::{DMatrix, DVector};
@@ -16,19 +17,19 @@ use crate::noise::RecordNoise;
 use crate::record::PreparedRecord;
 use crate::weights::{NoiseLaw, Weights};
 
-/// How far a fit is driven.
+/// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Most steps.
+    /// Maximum number of steps.
     pub steps: usize,
-    /// A step that promises to lower J by less than this ends the fit.
+    /// Predicted decrease of J below which the fit ends.
     pub negligible: f64,
 }
 
 impl Effort {
-    /// To where the posterior is seen well enough to be approximated.
+    /// Accurate enough for a quadratic approximation of the posterior.
     pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
-    /// To the end.
+    /// To convergence.
     pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
 
     fn rules(self) -> Rules {
@@ -47,30 +48,30 @@ impl Effort {
     }
 }
 
-/// The records that are fitted together.
+/// Records of one joint fit.
 #[derive(Debug, Clone)]
 pub struct FittedRecords {
-    /// The records.
+    /// Prepared records.
     pub records: Vec<PreparedRecord>,
-    /// What is the same for every intensity of the noise of a record.
+    /// Noise transitions of the records, for any intensity.
     pub noise: Vec<RecordNoise>,
-    /// Time of the ship L/U, s.
+    /// Time L/U of the ship, s.
     pub time: f64,
 }
 
 impl FittedRecords {
-    /// Prepares records of a ship whose base has about this 1/T (1/s) and which sails its length in `time` seconds.
+    /// Prepares records of a ship with this 1/T (1/s) of the base and L/U = `time` (s).
     pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
         let mut all = Self { records, noise: Vec::new(), time };
         all.noise = all.noise_of(inverse_time);
         all
     }
 
-    /// The noise of the records of a ship of this 1/T, 1/s.
+    /// Noise transitions of the records for a ship of this 1/T, 1/s.
     pub fn noise_of(&self, inverse_time: f64) -> Vec<RecordNoise> {
         let full = self.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
-        let of = |record| RecordNoise::new(record, inverse_time, self.longest(), full);
-        self.records.iter().map(of).collect()
+        let noise = |record| RecordNoise::new(record, inverse_time, self.longest(), full);
+        self.records.iter().map(noise).collect()
     }
 
     /// Number of observed headings.
@@ -78,31 +79,31 @@ impl FittedRecords {
         self.records.iter().map(|record| record.observed.len()).sum()
     }
 
-    /// Length of the longest record, s.
+    /// Duration of the longest record, s.
     pub fn longest(&self) -> f64 {
         self.records.iter().map(PreparedRecord::duration).fold(0.0, f64::max)
     }
 
-    /// −½ (Σ n log σ² + Σ log S): log of the density of the noise of a law but for its exponent.
+    /// Log normaliser of the noise density under a law, −½ (Σ n log σ² + Σ log S).
     pub fn log_normaliser(&self, law: &NoiseLaw) -> f64 {
         let whiteners = self.weights(law).whiteners;
-        let of = |(number, record): (usize, &PreparedRecord)| {
+        let normaliser = |(number, record): (usize, &PreparedRecord)| {
             let rows = record.observed.len() as f64;
             law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_variance)
         };
-        -0.5 * self.records.iter().enumerate().map(of).sum::<f64>()
+        -0.5 * self.records.iter().enumerate().map(normaliser).sum::<f64>()
     }
 
-    /// The filters of all records under a law.
+    /// Whitening filters of all records under a law.
     pub fn weights(&self, law: &NoiseLaw) -> Weights {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();
         let scale = law.variance.iter().zip(&law.power).map(|(variance, power)| (power / variance).sqrt());
         Weights { whiteners, scale: scale.collect() }
     }
 
-    /// Measured less replayed headings of every record, rad.
+    /// Heading residual (measured minus replayed) of every record, rad.
     pub fn residual(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        let of = |(number, record): (usize, &PreparedRecord)| {
+        let residual = |(number, record): (usize, &PreparedRecord)| {
             let response = structure.response(Some(number), theta);
             let mut out = vec![0.0; record.observed.len()];
             headings(&response, record, initial[number], |row, heading| {
@@ -110,14 +111,14 @@ impl FittedRecords {
             });
             out
         };
-        self.records.par_iter().enumerate().map(of).collect()
+        self.records.par_iter().enumerate().map(residual).collect()
     }
 
-    /// Residual and sensitivities at a point.
+    /// Residual and heading sensitivities at a point.
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
         let (entries, fitted) = (structure.entries(), structure.fitted());
         let unknowns = fitted.len() + 2 * self.records.len();
-        let of = |(number, record): (usize, &PreparedRecord)| {
+        let sensitivities = |(number, record): (usize, &PreparedRecord)| {
             let state = fitted.len() + 2 * number;
             // Unknown and place in θ, behind which stand the initial heading and yaw rate.
             let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts(&entries[**place], number));
@@ -128,15 +129,15 @@ impl FittedRecords {
             }
             let mut block = tangents(structure, record, number, theta, initial[number], &variables);
             if !structure.sees_heading() {
-                // The whole heading turns with where it begins.
+                // The heading then shifts by its initial value.
                 block.columns.push((state, vec![1.0; block.residual.len()]));
             }
             block
         };
-        Linear { blocks: self.records.par_iter().enumerate().map(of).collect(), unknowns }
+        Linear { blocks: self.records.par_iter().enumerate().map(sensitivities).collect(), unknowns }
     }
 
-    /// Fits a structure from a start.
+    /// Fits a structure from a start point.
     pub fn fit(
         &self,
         structure: &Structure,
@@ -170,36 +171,37 @@ impl FittedRecords {
     }
 }
 
-/// Where a fit stands.
+/// Point of a fit, with its residual and objective.
 #[derive(Clone, Default, PartialEq)]
 struct FitPoint {
     theta: Vec<f64>,
     initial: Vec<[f64; 2]>,
     residual: Vec<Vec<f64>>,
     misfit: f64,
-    /// J.
+    /// Objective J.
     value: f64,
 }
 
-/// A fit on its way.
+/// Objective of the fit of one structure, with its current points.
 struct PosteriorSearch<'a> {
     problem: &'a FittedRecords,
     structure: &'a Structure,
     weights: &'a Weights,
     priors: Vec<Prior>,
-    /// The last point that was looked at, and the last that was accepted.
+    /// Point evaluated last, and point accepted last.
     last: FitPoint,
     kept: FitPoint,
 }
 
 impl PosteriorSearch<'_> {
-    /// The unknowns: fitted entries of θ, then the initial states.
+    /// Vector of unknowns: fitted entries of θ, then the initial states.
     fn unknowns(&self, theta: &[f64], initial: &[[f64; 2]]) -> DVector<f64> {
         let fitted = theta.iter().zip(&self.priors).filter(|(_, prior)| prior.is_fitted()).map(|(value, _)| *value);
         let all: Vec<f64> = fitted.chain(initial.iter().flatten().copied()).collect();
         DVector::from_vec(all)
     }
 
+    /// Evaluates a point.
     fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
         let misfit = self.weights.misfit(&residual);
@@ -219,7 +221,7 @@ impl Objective for PosteriorSearch<'_> {
         let mut values = at.iter().copied();
         let mut next = || values.next().unwrap_or(f64::NAN);
         let before = &self.last;
-        let theta = self.priors.iter().zip(&before.theta).map(|(p, own)| if p.is_fitted() { next() } else { *own });
+        let theta = self.priors.iter().zip(&before.theta).map(|(p, fixed)| if p.is_fitted() { next() } else { *fixed });
         let theta = theta.collect();
         let initial = before.initial.iter().map(|_| [next(), next()]).collect();
         self.last = self.point(theta, initial);
@@ -244,17 +246,17 @@ pub fn posterior(linear: &Linear, structure: &Structure, theta: &[f64], weights:
     normal
 }
 
-/// Distance of a value from what is expected, in standard deviations.
+/// Distance of a value from its prior mean, in prior standard deviations; 0 for a uniform prior.
 pub fn deviation(prior: Prior, value: f64) -> f64 {
     if prior.sd > 0.0 && prior.sd.is_finite() { (value - prior.mean) / prior.sd } else { 0.0 }
 }
 
-/// Precision of a prior; a range is as good as a normal law of its variance.
+/// Precision of a prior; that of a uniform prior is 12/(range)².
 pub fn curvature(prior: Prior) -> f64 {
     if prior.sd.is_finite() { prior.sd.powi(-2) } else { 12.0 / (prior.highest - prior.lowest).powi(2) }
 }
 
-/// Log of the factor in front of exp(−½ ((x − μ)/s)²) of a prior within its range.
+/// Log normaliser of a prior within its bounds: the factor before exp(−½ ((x − μ)/s)²).
 pub fn log_normaliser(prior: Prior) -> f64 {
     if !prior.is_fitted() {
         return 0.0;
@@ -267,8 +269,8 @@ pub fn log_normaliser(prior: Prior) -> f64 {
     -0.5 * std::f64::consts::TAU.ln() - prior.sd.ln() - inside.max(1e-12).ln()
 }
 
-/// Log of the marginal likelihood up to what all structures share (Laplace). The part of a normal law that lies beyond
-/// the end of a range is left out.
+/// Log marginal likelihood by Laplace's approximation, up to a constant shared by all structures. The probability mass
+/// beyond a bound is excluded.
 fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);
@@ -283,7 +285,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
         let push = if held { normal.gradient[k] * sd } else { 0.0 };
         let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
         let room = if push > 0.0 { to_high - push } else { to_low + push };
-        // ∫ over the range of exp(−½ (x − push)²) against that of the whole line at its height within the range.
+        // ∫ exp(−½ (x − push)²) within the bounds over that without bounds.
         match room < -5.0 {
             true => -(-room * std::f64::consts::TAU.sqrt()).ln(),
             false => law.cdf(room).ln() + 0.5 * push * push,
@@ -293,29 +295,29 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
     -0.5 * at.value + constants + volume + ends
 }
 
-/// A fitted structure.
+/// Maximum a posteriori estimate of a structure.
 #[derive(Debug, Clone)]
 pub struct StructureFit {
     /// The structure.
     pub structure: Structure,
     /// Parameters, in the order of [`Structure::entries`].
     pub theta: Vec<f64>,
-    /// Heading (rad) and yaw rate (rad/s) at the beginning of every record.
+    /// Initial heading (rad) and yaw rate (rad/s) of every record.
     pub initial: Vec<[f64; 2]>,
-    /// Measured less replayed heading at the observed rows of every record, rad.
+    /// Heading residual (measured minus replayed) at the observed rows of every record, rad.
     pub residual: Vec<Vec<f64>>,
-    /// Σ |W e|²/σ².
+    /// Misfit Σ |W e|²/σ².
     pub misfit: f64,
-    /// Σ ((θ − μ)/s)².
+    /// Prior penalty Σ ((θ − μ)/s)².
     pub penalty: f64,
-    /// Second derivatives of J/2 by the unknowns.
+    /// Posterior precision of the unknowns: second derivatives of J/2.
     pub precision: DMatrix<f64>,
-    /// Log of the marginal likelihood, up to what all structures on these records share.
+    /// Log marginal likelihood, up to a constant shared by all structures on these records.
     pub evidence: f64,
 }
 
 impl StructureFit {
-    /// The fit without one of its terms.
+    /// Refit without one of the terms.
     pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: Effort) -> Self {
         let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
         theta.drain(self.structure.ranges()[out].clone());
@@ -323,15 +325,15 @@ impl StructureFit {
         problem.fit(&self.structure.of(terms), theta, self.initial.clone(), weights, effort)
     }
 
-    /// Covariance of all entries of θ; zero for those that are not fitted. `None` when they cannot be told apart.
+    /// Covariance of all entries of θ, zero for fixed ones; `None` when the precision is singular.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
         let covariance = self.structure.spread(&inverse);
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
     }
 
-    /// Values of all entries of θ as the effects take them, with standard deviations: infinite where the records do not
-    /// tell them apart.
+    /// Physical values of all entries of θ with standard deviations, which are infinite where the precision is
+    /// singular.
     pub fn physical(&self) -> Vec<(f64, f64)> {
         let covariance = self.covariance().map(|all| self.structure.physical_covariance(&all));
         let sd = |place: usize| covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
@@ -339,7 +341,7 @@ impl StructureFit {
         values.map(|(place, value)| (value, sd(place))).collect()
     }
 
-    /// Covariance of the fitted entries of [`Structure::alone`] of a record.
+    /// Covariance of the fitted entries of [`Structure::alone`] for a record.
     pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();

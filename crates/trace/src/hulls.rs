@@ -1,4 +1,4 @@
-//! Hulls of three degrees of freedom beside the structures: what averages them when the records are not first order.
+//! Hull models of three degrees of freedom, averaged with the structures where the residual is more than noise.
 
 use identify::hull::{self, HullEstimate};
 use rayon::prelude::*;
@@ -8,23 +8,22 @@ use crate::comparison::RecordComparison;
 use crate::remainder::{Remainder, squares};
 use crate::settings::Settings;
 
-/// The hulls that the records speak for, about what earlier trials told of the ship, beside what the structures have
-/// left of them; none without length and speed. Without earlier trials none where the structures leave nothing but
-/// noise.
+/// Hulls that fit the records about as well as the structures, with earlier trials as priors. None without length and
+/// speed of the ship; without earlier trials, none where the structures leave only noise.
 pub fn fit(
     trials: &[Trial],
     settings: &Settings,
-    structures: &[RecordComparison],
+    comparisons: &[RecordComparison],
     remainder: &Remainder,
 ) -> Vec<HullEstimate> {
-    if !settings.hulls || remainder.holds && settings.earlier.is_empty() {
+    if !settings.hulls || remainder.is_noise && settings.earlier.is_empty() {
         return Vec::new();
     }
-    let rows: usize = structures.iter().map(|one| one.after.errors.rows).sum();
-    hull::members(hull::fit_all(trials, &settings.earlier), (squares(structures)[1] / rows as f64).sqrt())
+    let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
+    hull::members(hull::fit_all(trials, &settings.earlier), (squares(comparisons)[1] / rows as f64).sqrt())
 }
 
-/// The same hulls fitted to other records.
+/// The hulls refitted to other records under the same priors.
 pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
-    hulls.par_iter().filter_map(|own| hull::fit(trials, &own.expected).ok()).collect()
+    hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.expected).ok()).collect()
 }

@@ -1,12 +1,12 @@
-//! The noise of the records: what the full model leaves, as the one law that explains it best.
+//! Estimation of the noise law from the residual of a fit.
 //!
-//! Every kind of colour is tried; its level is that of largest marginal likelihood, in which all unknowns of the full
-//! model are integrated out to first order, so that what they have taken from the residual is given back:
+//! Every kind of colour is tried at its level of largest marginal likelihood. All unknowns of the fit are integrated
+//! out to first order, which corrects for the noise that they absorb:
 //!
 //! −2 log p = Σ n log σ² + Σ log S + J + log det(XᵀX/σ² + P).
 //!
-//! A colour pays log n for each of its parameters (Schwarz 1978). The law is common to all structures: what a structure
-//! without an effect leaves is never taken for weather.
+//! A colour pays log n for each of its parameters (Schwarz 1978). All structures share the law, so the misfit of a
+//! structure without an effect is never taken for weather. The criterion of a law is −2 log p plus this penalty.
 
 use estimation::levenberg_marquardt::Normal;
 use estimation::minimum::minimum;
@@ -19,52 +19,54 @@ use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::waves;
 use crate::weights::{NoiseLaw, Weights};
 
-/// No heading is believed to be better than this, rad: a thousandth of a degree.
-pub const FINEST: f64 = 1.75e-5;
+/// Lower bound of the standard deviation of a heading, rad: a thousandth of a degree.
+pub const MIN_HEADING_SD: f64 = 1.75e-5;
 
-/// Share of the rows whose rudder bends most, by which the error of the rudder between rows is judged.
-const BENT: f64 = 0.05;
+/// Share of the rows, those of largest second difference of the rudder, that give the error of the rudder between rows.
+const BEND_SHARE: f64 = 0.05;
 
-/// Levels of a colour that are tried: variance of the heading that it leaves, in units of that of a row.
+/// Bounds of the level of a colour (heading variance over that of a row), and points of the search grid.
 const LEVELS: [f64; 2] = [1e-2, 1e9];
 const GRID: usize = 6;
 
-/// Levels at which every kind of colour is tried, and the kinds whose level is then found.
-const ROUGH: i32 = 4;
+/// Number of levels at which every kind of colour is screened, and number of kinds whose level is then estimated.
+const COARSE_GRID: i32 = 4;
 const FINALISTS: usize = 3;
 
-/// How often the size of the noise is found anew for a colour.
+/// Iterations of the noise variances for a colour.
 const ROUNDS: usize = 2;
 
-/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
-/// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
+/// Lower bounds of the noise variance of the records, rad², from the sampling of the rudder.
+///
+/// A corner of the rudder between two rows is cut, which changes the integral of the rudder by up to an eighth of its
+/// second difference times the step, and the heading by that times K.
 pub fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
-    let of = |record: &crate::record::PreparedRecord| {
+    let floor = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
-        bends.sort_by(|one, other| other.total_cmp(one));
-        let most = ((bends.len() as f64 * BENT) as usize).max(1);
-        let square = bends.iter().take(most).sum::<f64>() / most as f64;
-        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(FINEST).powi(2)
+        bends.sort_by(|a, b| b.total_cmp(a));
+        let count = ((bends.len() as f64 * BEND_SHARE) as usize).max(1);
+        let square = bends.iter().take(count).sum::<f64>() / count as f64;
+        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(MIN_HEADING_SD).powi(2)
     };
-    problem.records.iter().map(of).collect()
+    problem.records.iter().map(floor).collect()
 }
 
-/// A fit as the law sees it.
+/// Linearisation of a fit at its solution, for the estimation of the noise law.
 #[derive(Debug, Clone)]
 pub struct LinearisedFit<'a> {
-    /// The records.
+    /// Fitted records.
     pub problem: &'a FittedRecords,
-    /// Residual and sensitivities.
+    /// Residual and heading sensitivities.
     pub linear: Linear,
-    /// Precision of what is expected of the unknowns, and where they stand beside it; none for those at the end.
+    /// Prior precision of every unknown and its offset from the prior mean; zero for the initial states.
     pub prior: Vec<(f64, f64)>,
     floors: Vec<f64>,
 }
 
 impl<'a> LinearisedFit<'a> {
-    /// That of a fit. States at the beginning stand behind the fitted parameters.
-    pub fn of(problem: &'a FittedRecords, fit: &StructureFit) -> Self {
+    /// Linearises a fit. Unknowns are the fitted parameters, then the initial states.
+    pub fn new(problem: &'a FittedRecords, fit: &StructureFit) -> Self {
         let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
         let prior = fit.structure.fitted_priors(&fit.theta).into_iter().map(|(prior, value)| {
             let precision = curvature(prior);
@@ -75,17 +77,18 @@ impl<'a> LinearisedFit<'a> {
         Self { problem, linear, prior, floors: floors(problem, fit.theta[1]) }
     }
 
-    /// The law of largest marginal likelihood beside the waves of a law, from its sizes.
+    /// Law of least criterion among some kinds, beside the waves of the law `start` and from its variances.
     pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> ChosenLaw {
-        let white = self.judge(NoiseColour { wander: None, ..start.colour }, &start.variance);
+        let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
-        let priced = |own: ChosenLaw| ChosenLaw { height: own.height + own.law.colour.freedom() as f64 * log_n, ..own };
-        let all = [white].into_iter().chain(coloured).map(priced);
-        all.min_by(|one, other| one.height.total_cmp(&other.height)).expect("white noise is one")
+        let sum = |c: ChosenLaw| ChosenLaw { criterion: c.criterion + c.law.colour.freedom() as f64 * log_n, ..c };
+        let all = [white].into_iter().chain(coloured).map(sum);
+        all.min_by(|a, b| a.criterion.total_cmp(&b.criterion)).expect("white noise is a candidate")
     }
 
-    /// Factor of the precision of all unknowns under weights, and their step from where they stand.
+    /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` where the
+    /// precision is singular.
     pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
         let (mut normal, _) = self.linear.normal(weights);
         self.add_prior(&mut normal);
@@ -94,38 +97,39 @@ impl<'a> LinearisedFit<'a> {
         Some((factor, step))
     }
 
-    /// Adds what is expected of the unknowns.
+    /// Adds the priors to normal equations.
     fn add_prior(&self, normal: &mut Normal) {
-        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
+        for (k, &(precision, offset)) in self.prior.iter().enumerate() {
             normal.matrix[(k, k)] += precision;
-            normal.gradient[k] -= precision * beside;
+            normal.gradient[k] -= precision * offset;
         }
     }
 
-    /// The sizes of the noise of all records under a colour, from `start`.
-    fn judge(&self, colour: NoiseColour, start: &[f64]) -> ChosenLaw {
+    /// Noise variances of all records under a colour, from `start`, with the criterion −2 log p.
+    fn evaluate(&self, colour: NoiseColour, start: &[f64]) -> ChosenLaw {
         let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
         let weights = self.problem.weights(&unit);
         let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
-        // Of every record by itself, under unit variance: the sums for other sizes follow.
-        let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
-        let mut height = f64::INFINITY;
+        // Normal equations of every record under unit variance: those for other variances are multiples.
+        let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|k| self.record_normal(k, &weights)).collect();
+        let mut criterion = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let Some((next, value)) = self.round(&law, &blocks, &weights) else { break };
+            let Some((next, value)) = self.update(&law, &blocks, &weights) else { break };
             law.variance = next;
-            height = value;
+            criterion = value;
         }
-        ChosenLaw { law, height, waves_gain: 0.0 }
+        ChosenLaw { law, criterion, waves_gain: 0.0 }
     }
 
-    fn of_record(&self, record: usize, weights: &Weights) -> (Normal, Vec<f64>) {
+    /// Normal equations and sum of squares of one record.
+    fn record_normal(&self, record: usize, all: &Weights) -> (Normal, Vec<f64>) {
         let alone = Linear { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
-        let own = Weights { whiteners: vec![weights.whiteners[record].clone()], scale: vec![weights.scale[record]] };
-        alone.normal(&own)
+        let weights = Weights { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
+        alone.normal(&weights)
     }
 
-    /// New sizes and the height at the old ones.
-    fn round(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
+    /// Updated variances and the criterion at the old ones; `None` where the precision is singular.
+    fn update(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
         let mut normal = Normal::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
             normal.matrix += &block.matrix / *variance;
@@ -133,98 +137,98 @@ impl<'a> LinearisedFit<'a> {
         }
         self.add_prior(&mut normal);
         let Normal { matrix, gradient } = normal;
-        let penalty = self.prior.iter().fold(0.0, |sum, &(precision, beside)| sum + precision * beside * beside);
+        let penalty = self.prior.iter().fold(0.0, |sum, &(precision, offset)| sum + precision * offset * offset);
         let factor = matrix.cholesky()?;
         let step = factor.solve(&gradient);
         let inverse = factor.inverse();
-        let mut height = factor.ln_determinant() + penalty - step.dot(&gradient);
-        let mut sizes = Vec::with_capacity(blocks.len());
+        let mut criterion = factor.ln_determinant() + penalty - step.dot(&gradient);
+        let mut variances = Vec::with_capacity(blocks.len());
         for (record, ((block, squares), variance)) in blocks.iter().zip(&law.variance).enumerate() {
             let square = squares[0];
             let rows = self.linear.blocks[record].residual.len() as f64;
-            height += rows * variance.ln() + weights.whiteners[record].log_variance + square / variance;
-            let left = square - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
-            let taken = (inverse.component_mul(&block.matrix)).sum() / variance;
-            sizes.push((left.max(0.0) / (rows - taken).max(0.2 * rows)).max(self.floors[record]));
+            criterion += rows * variance.ln() + weights.whiteners[record].log_variance + square / variance;
+            let residual = square - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
+            let absorbed = (inverse.component_mul(&block.matrix)).sum() / variance;
+            variances.push((residual.max(0.0) / (rows - absorbed).max(0.2 * rows)).max(self.floors[record]));
         }
-        height.is_finite().then_some((sizes, height))
+        criterion.is_finite().then_some((variances, criterion))
     }
 
-    /// Some kinds of colour at their best levels: all are tried roughly, the best few finely.
+    /// Some kinds of colour at their best levels: all are screened on a grid, the best few are minimised.
     fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<ChosenLaw> {
         let at = |kind: CorrelatedNoise, log: f64| {
-            let colour = NoiseColour { wander: Some((kind, log.exp())), ..white.colour };
-            self.judge(colour, &white.variance)
+            let colour = NoiseColour { correlated: Some((kind, log.exp())), ..white.colour };
+            self.evaluate(colour, &white.variance)
         };
         let [low, high] = LEVELS.map(f64::ln);
-        let roughly = |&kind: &CorrelatedNoise| {
-            let levels = (0..ROUGH).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(ROUGH));
-            (levels.map(|log| at(kind, log).height).fold(f64::INFINITY, f64::min), kind)
+        let screen = |&kind: &CorrelatedNoise| {
+            let levels = (0..COARSE_GRID).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(COARSE_GRID));
+            (levels.map(|log| at(kind, log).criterion).fold(f64::INFINITY, f64::min), kind)
         };
-        let mut all: Vec<(f64, CorrelatedNoise)> = kinds.par_iter().map(roughly).collect();
-        all.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut all: Vec<(f64, CorrelatedNoise)> = kinds.par_iter().map(screen).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all.truncate(FINALISTS);
-        all.into_par_iter().map(|(_, kind)| at(kind, minimum(low, high, GRID, |log| at(kind, log).height).0)).collect()
+        all.into_par_iter().map(|(_, k)| at(k, minimum(low, high, GRID, |log| at(k, log).criterion).0)).collect()
     }
 }
 
-/// A law, and the fall of −2 log p with the waves in it.
+/// Estimated noise law with its criterion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChosenLaw {
-    /// The law.
+    /// Noise law.
     pub law: NoiseLaw,
-    /// −2 log p; of the law that is chosen with the price of its colour.
-    pub height: f64,
-    /// How much better waves explain what is left, with the price of their parameters.
+    /// Criterion −2 log p; that of the chosen law includes the penalty of its colour.
+    pub criterion: f64,
+    /// Decrease of the criterion by waves, penalty included; 0 without waves.
     pub waves_gain: f64,
 }
 
-/// The law of what a fit leaves, of some kinds of colour; `variance` are sizes to begin with, rad².
-pub fn of(
+/// Estimates the noise law of the residual of a fit among some kinds of colour; `variance` (rad²) is the start.
+pub fn estimate(
     problem: &FittedRecords,
     fit: &StructureFit,
     variance: &[f64],
     with_waves: bool,
     kinds: &[CorrelatedNoise],
 ) -> ChosenLaw {
-    let linearised = LinearisedFit::of(problem, fit);
+    let linearised = LinearisedFit::new(problem, fit);
     let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
     let mut best = linearised.law(&start, kinds);
     if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [
-            Some(NoiseColour { waves: Some(sea), wander: None }),
-            best.law.colour.wander.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
+            Some(NoiseColour { waves: Some(sea), correlated: None }),
+            best.law.colour.correlated.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let ChosenLaw { law, height, .. } = linearised.judge(colour, &best.law.variance);
-            let height = height + colour.freedom() as f64 * log_n;
-            if height < best.height {
-                best = ChosenLaw { law, height, waves_gain: best.waves_gain + best.height - height };
+            let ChosenLaw { law, criterion, .. } = linearised.evaluate(colour, &best.law.variance);
+            let criterion = criterion + colour.freedom() as f64 * log_n;
+            if criterion < best.criterion {
+                best = ChosenLaw { law, criterion, waves_gain: best.waves_gain + best.criterion - criterion };
             }
         }
     }
-    ChosenLaw { law: best.law.of_model(problem), ..best }
+    ChosenLaw { law: best.law.with_model_error_bound(problem), ..best }
 }
 
-/// Smallest smooth error of a model, as a share of the standard deviation of the heading: no response is nearer to a
-/// hull.
-const OF_MODEL: f64 = 0.02;
+/// Smallest smooth error of a model over the standard deviation of the heading: no response describes a hull better.
+const MIN_MODEL_ERROR: f64 = 0.02;
 
-/// Independent readings for every length that the ship sails, where the noise holds the error of a model.
-const TOLD_PER_TIME: f64 = 3.0;
+/// Effective number of independent readings per time L/U, where the noise includes a model error.
+const READINGS_PER_TIME: f64 = 3.0;
 
 impl NoiseLaw {
-    /// A smooth error that is no smaller than that of any model.
-    fn of_model(mut self, problem: &FittedRecords) -> Self {
-        let Some((CorrelatedNoise::Smooth(_), level)) = self.colour.wander else { return self };
+    /// Raises a smooth model error to its lower bound, and sets the power of the likelihood to the effective number of
+    /// readings. Other laws are unchanged.
+    fn with_model_error_bound(mut self, problem: &FittedRecords) -> Self {
+        let Some((CorrelatedNoise::Smooth(_), level)) = self.colour.correlated else { return self };
         for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
             let rows = record.observed.len() as f64;
             let heading = || record.observed.iter().map(|&row| record.heading[row]);
             let mean = heading().sum::<f64>() / rows;
             let square = heading().map(|psi| (psi - mean).powi(2)).sum::<f64>() / rows;
-            *variance = variance.max(OF_MODEL * OF_MODEL * square / level);
-            *power = (TOLD_PER_TIME * record.duration() / problem.time / rows).min(1.0);
+            *variance = variance.max(MIN_MODEL_ERROR * MIN_MODEL_ERROR * square / level);
+            *power = (READINGS_PER_TIME * record.duration() / problem.time / rows).min(1.0);
         }
         self
     }

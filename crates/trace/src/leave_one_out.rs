@@ -1,5 +1,6 @@
-//! Every one of several records as if it had been held out: base and structures are fitted to the others, weighed by
-//! them, and the one left out is replayed. Which structures are in the running, and the noise, are those of all.
+//! Leave-one-out cross-validation over the fitted records (Stone 1974): base and structures are refitted to the other
+//! records and weighed by them, then the omitted record is replayed. The list of structures and the noise law are those
+//! of all records.
 
 use identify::hull::HullEstimate;
 use rayon::prelude::*;
@@ -9,86 +10,86 @@ use crate::average::AveragedModel;
 use crate::base::Base;
 use crate::comparison::RecordComparison;
 use crate::fit::{Effort, FittedRecords, StructureFit};
-use crate::full::Full;
+use crate::full::FullModel;
 use crate::hulls;
 use crate::model::Structure;
 use crate::structures::{Structures, WeighedStructure};
 use crate::watcher::Watcher;
 use crate::weights::NoiseLaw;
 
-/// Structures that take part.
-const MOST: usize = 4;
+/// Number of structures that are refitted.
+const MAX_STRUCTURES: usize = 4;
 
-/// Comparisons on every record that its fold has not seen; none at all where it was asked to stop.
+/// Comparisons on every record by the fold without it, `None` for a fold without a finite replay; empty if stopped.
 pub fn leave_one_out(
     trials: &[Trial],
     problem: &FittedRecords,
-    full: &Full,
+    full: &FullModel,
     structures: &Structures,
     hulls: &[HullEstimate],
     watcher: &dyn Watcher,
 ) -> Vec<Option<RecordComparison>> {
     watcher.begin_folds(trials.len());
-    let fold = |left: usize| -> Option<RecordComparison> {
-        let base = Base::of(&without(trials, left)).ok()?;
-        let others =
-            FittedRecords::new(without(&problem.records, left), base.estimate.response.inverse_T, problem.time);
+    let fold = |omitted: usize| -> Option<RecordComparison> {
+        let base = Base::fit(&without(trials, omitted)).ok()?;
+        let kept =
+            FittedRecords::new(without(&problem.records, omitted), base.estimate.response.inverse_T, problem.time);
         let law = NoiseLaw {
-            variance: without(&full.law.variance, left),
-            power: without(&full.law.power, left),
+            variance: without(&full.law.variance, omitted),
+            power: without(&full.law.power, omitted),
             ..full.law.clone()
         };
-        let weights = others.weights(&law);
-        let refitted = structures.all.iter().take(MOST).map(|member| {
-            let (structure, theta) = on_others(&member.fit, left);
-            others.fit(&structure, theta, without(&member.fit.initial, left), &weights, Effort::FINE)
+        let weights = kept.weights(&law);
+        let refitted = structures.all.iter().take(MAX_STRUCTURES).map(|member| {
+            let (structure, theta) = without_record(&member.fit, omitted);
+            kept.fit(&structure, theta, without(&member.fit.initial, omitted), &weights, Effort::FINE)
         });
         let fits: Vec<(f64, StructureFit)> =
-            refitted.zip(&structures.all).map(|(fit, member)| (height(&fit, member), fit)).collect();
-        let highest = fits.iter().map(|(height, _)| *height).fold(f64::NEG_INFINITY, f64::max);
-        let total: f64 = fits.iter().map(|(height, _)| (height - highest).exp()).sum();
+            refitted.zip(&structures.all).map(|(fit, member)| (log_posterior(&fit, member), fit)).collect();
+        let highest = fits.iter().map(|(log_posterior, _)| *log_posterior).fold(f64::NEG_INFINITY, f64::max);
+        let total: f64 = fits.iter().map(|(log_posterior, _)| (log_posterior - highest).exp()).sum();
         let members: Vec<(f64, &StructureFit)> = fits
             .iter()
-            .map(|(height, fit)| ((height - highest).exp() / total, fit))
+            .map(|(log_posterior, fit)| ((log_posterior - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let hulls = hulls::refitted(hulls, &without(trials, left));
-        let unseen = AveragedModel { members: &members, hulls: &hulls, law: &law, known: None, time: problem.time };
-        unseen.compared(&trials[left], &base.estimate.response, true).ok()
+        let (hulls, time) = (hulls::refitted(hulls, &without(trials, omitted)), problem.time);
+        let averaged = AveragedModel { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
+        averaged.compared(&trials[omitted], &base.estimate.response, true).ok()
     };
-    let watched = |left: usize| {
-        let found = (!watcher.is_asked_to_stop()).then(|| fold(left));
+    let watched = |omitted: usize| {
+        let comparison = (!watcher.is_asked_to_stop()).then(|| fold(omitted));
         watcher.end_fold();
-        found
+        comparison
     };
     let all: Option<Vec<_>> = (0..trials.len()).into_par_iter().map(watched).collect();
     all.unwrap_or_default()
 }
 
-/// Log of evidence and prior odds on the others.
-fn height(fit: &StructureFit, member: &WeighedStructure) -> f64 {
-    fit.evidence + (member.height - member.fit.evidence)
+/// Log evidence of the kept records plus log prior odds.
+fn log_posterior(fit: &StructureFit, member: &WeighedStructure) -> f64 {
+    fit.evidence + (member.log_posterior - member.fit.evidence)
 }
 
-fn without<T: Clone>(all: &[T], left: usize) -> Vec<T> {
-    all[..left].iter().chain(&all[left + 1..]).cloned().collect()
+fn without<T: Clone>(all: &[T], omitted: usize) -> Vec<T> {
+    all[..omitted].iter().chain(&all[omitted + 1..]).cloned().collect()
 }
 
-/// A structure with its parameters on all records but one, without what belongs to that one alone.
-fn on_others(fit: &StructureFit, left: usize) -> (Structure, Vec<f64>) {
+/// Structure and parameters without one record and the terms that act only in it.
+fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
     let structure = &fit.structure;
     let mut theta = fit.theta[..3].to_vec();
     if structure.records > 2 {
-        theta.extend(without(&fit.theta[3..structure.base_count()], left));
+        theta.extend(without(&fit.theta[3..structure.base_count()], omitted));
     }
     let mut terms = Vec::new();
     for (term, range) in structure.terms.iter().zip(structure.ranges()) {
-        if term.only == Some(left) {
+        if term.only == Some(omitted) {
             continue;
         }
         theta.extend_from_slice(&fit.theta[range]);
         let mut kept = term.as_ref().clone();
-        kept.only = kept.only.map(|own| if own > left { own - 1 } else { own });
+        kept.only = kept.only.map(|record| if record > omitted { record - 1 } else { record });
         terms.push(kept.into());
     }
     (Structure { records: structure.records - 1, terms, ..*structure }, theta)

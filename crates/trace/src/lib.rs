@@ -1,4 +1,7 @@
-//! From a residual to the effect the model lacks.
+//! Effects missing from a first-order model, identified from the residual of recorded zig-zags.
+//!
+//! Every subset of the candidate effects is weighed by its marginal likelihood (Laplace approximation) under the noise
+//! law that the full model leaves. [`trace`] runs the whole analysis; [`analysis`] lists its stages.
 
 pub mod analysis;
 pub mod average;
@@ -27,6 +30,7 @@ pub mod replay_errors;
 mod report;
 mod rudder;
 pub mod selection;
+mod sentences;
 pub mod settings;
 pub mod shape;
 mod signature;
@@ -36,7 +40,6 @@ pub mod transient;
 mod watcher;
 pub mod waves;
 pub mod weights;
-mod words;
 
 pub use analysis::{Analysis, trace, watched, without_spikes};
 pub use document::trace::{Document, Verdict};

@@ -1,4 +1,4 @@
-//! Residual and sensitivities of the records, and their normal equations.
+//! Linearisation of the headings: residual and sensitivities of the records, and their normal equations.
 
 use estimation::column::dot;
 use estimation::levenberg_marquardt::Normal;
@@ -11,17 +11,17 @@ use crate::model::{Structure, headings};
 use crate::record::PreparedRecord;
 use crate::weights::Weights;
 
-/// Residual and sensitivities of one record.
+/// Heading residual and sensitivities of one record.
 #[derive(Debug, Clone)]
 pub struct HeadingSensitivities {
-    /// Measured less replayed heading, rad.
+    /// Residual (measured minus replayed heading), rad.
     pub residual: Vec<f64>,
-    /// Unknowns that act, each with the change of the heading.
+    /// Unknowns that act in the record, each with the derivative of the heading.
     pub columns: Vec<(usize, Vec<f64>)>,
 }
 
 impl HeadingSensitivities {
-    /// The same, made white and of unit variance.
+    /// Residual and columns whitened to unit variance.
     pub fn white(&self, record: usize, weights: &Weights) -> Self {
         let mut white = self.clone();
         let mut all: Vec<&mut Vec<f64>> = white.columns.iter_mut().map(|(_, column)| column).collect();
@@ -30,13 +30,14 @@ impl HeadingSensitivities {
         white
     }
 
-    /// Products of its columns with another one, by unknown.
+    /// Adds the products of its columns with another column to `sums`, by unknown.
     pub fn products(&self, column: &[f64], sums: &mut DVector<f64>) {
-        self.columns.iter().for_each(|(unknown, own)| sums[*unknown] += dot(own, column));
+        self.columns.iter().for_each(|(unknown, values)| sums[*unknown] += dot(values, column));
     }
 }
 
-/// Replays one record with derivatives by some variables: their unknown, and their place in θ and behind it.
+/// Replays one record with forward derivatives (Griewank and Walther 2008) by some variables, each given as its unknown
+/// and its index in (θ, initial state).
 pub fn tangents(
     structure: &Structure,
     record: &PreparedRecord,
@@ -67,10 +68,10 @@ pub fn tangents(
     HeadingSensitivities { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
 }
 
-/// Residual and sensitivities of all records.
+/// Heading residual and sensitivities of all records.
 #[derive(Debug, Clone)]
 pub struct Linear {
-    /// One block a record.
+    /// One block per record.
     pub blocks: Vec<HeadingSensitivities>,
     /// Number of unknowns.
     pub unknowns: usize,
@@ -82,15 +83,15 @@ impl Linear {
         let (mut normal, mut squares) = (Normal::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
             let HeadingSensitivities { residual, columns } = block.white(record, weights);
-            for (k, (i, one)) in columns.iter().enumerate() {
+            for (k, (i, column)) in columns.iter().enumerate() {
                 for (j, other) in &columns[..=k] {
-                    let product = dot(one, other);
+                    let product = dot(column, other);
                     normal.matrix[(*i, *j)] += product;
                     if i != j {
                         normal.matrix[(*j, *i)] += product;
                     }
                 }
-                normal.gradient[*i] += dot(one, &residual);
+                normal.gradient[*i] += dot(column, &residual);
             }
             squares.push(dot(&residual, &residual));
         }

@@ -1,182 +1,183 @@
-//! Names held against shapes: an effect of the list is named only where no shape explains the records better in its
-//! place, and what is left beside the names is looked at for shapes.
+//! Selection between named effects and shapes: an effect is named only where no shape explains the records better in
+//! its place; the residual of the named effects is then searched for shapes.
 
 use std::sync::Arc;
 
 use crate::fit::{Effort, FittedRecords, StructureFit};
-use crate::full::Full;
+use crate::full::FullModel;
 use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named};
 use crate::rudder::RudderError;
 use crate::settings::Settings;
-use crate::shape::{self, ALIKE, BELIEVED, MomentSize, ShapeAnalysis};
-use crate::structures::{Structures, by_chance};
+use crate::shape::{self, EQUIVALENT_GAIN, MIN_GAIN, MomentSize, ShapeAnalysis};
+use crate::structures::{Structures, chi_square_p_value};
 
-/// Probability of a size as far from neutral by chance, above which an effect is not named.
-const BY_CHANCE: f64 = 0.05;
+/// Significance level (χ²): an effect with a larger p value is not named.
+const MAX_P_VALUE: f64 = 0.05;
 
-/// A white moment of less than so many times the density of the errors of the rudder is these.
-const OF_RUDDER: f64 = 4.0;
+/// Density of a white moment over that of the rudder noise, below which the moment is the rudder noise.
+const MIN_DENSITY_RATIO: f64 = 4.0;
 
-/// What is named, and what is left beside it.
+/// Named effects, and the shape analysis of their residual.
 #[derive(Debug, Clone)]
 pub struct Location {
-    /// Effects that stand, the most probable first.
+    /// Named effects, the most probable first.
     pub named: Vec<EffectNaming>,
-    /// Effects in whose place shapes, or a random moment, explain the records better.
+    /// Effects dropped because shapes or a random moment explain the records better in their place.
     pub displaced: Vec<EffectNaming>,
-    /// What the named effects leave; `None` where their parameters cannot be told apart.
+    /// Shape analysis of the residual of the named effects; `None` where their covariance is singular.
     pub shapes: Option<ShapeAnalysis>,
 }
 
 impl Location {
-    /// The random moment beside the names and shapes; none where errors of the rudders are one as large.
+    /// Random moment beside named effects and shapes; `None` where the rudder noise explains it.
     pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
-        let is_of_rudder = moment.white.is_some_and(|density| density < OF_RUDDER * instrument);
+        let is_of_rudder = moment.white.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
         (!is_of_rudder).then_some(moment)
     }
 
-    /// Whether shapes are believed.
+    /// Whether the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
         self.shapes.as_ref().is_some_and(ShapeAnalysis::is_located)
     }
 }
 
-/// What names are found among.
+/// Structures from which subsets of named effects are taken.
 struct NamedStructures<'a> {
     problem: &'a FittedRecords,
-    full: &'a Full,
+    full: &'a FullModel,
     structures: &'a Structures,
     candidates: &'a [Arc<Term>],
 }
 
-/// Holds the probable effects against shapes.
+/// Chooses between the probable effects and shapes.
 pub fn locate(
     problem: &FittedRecords,
-    full: &Full,
+    full: &FullModel,
     structures: &Structures,
     candidates: &[Arc<Term>],
     settings: &Settings,
 ) -> Location {
-    let among = NamedStructures { problem, full, structures, candidates };
+    let named_structures = NamedStructures { problem, full, structures, candidates };
     let is_asked = |effect: &EffectNaming| settings.selection.asks_for(effect.term.0);
     let mut probable = named(structures, settings.probability, &settings.selection);
-    probable.retain(|effect| is_asked(effect) || among.is_supported(effect));
+    probable.retain(|effect| is_asked(effect) || named_structures.is_supported(effect));
     let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
-    let all = among.shapes(&[asked.as_slice(), &open].concat());
+    let all = named_structures.shapes(&[asked.as_slice(), &open].concat());
     if open.is_empty() {
         return Location { named: asked, displaced: open, shapes: all };
     }
-    // Several names may stand where none is there, each in the place of a part of a shape.
-    let none = among.shapes(&asked);
+    // Several effects together can imitate one shape, so the shapes without any of them are compared first.
+    let none = named_structures.shapes(&asked);
     if is_better(&none, &all) {
-        return among.with_names(Location { named: asked, displaced: open, shapes: none });
+        return named_structures.with_names(Location { named: asked, displaced: open, shapes: none });
     }
-    let mut stand = Location { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
-    while let Some(next) = among.without_name(&stand, &none, is_asked) {
-        stand = next;
+    let mut current = Location { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
+    while let Some(next) = named_structures.without_name(&current, &none, is_asked) {
+        current = next;
     }
-    // Shapes beside names that a random moment replaces are held against that moment as well.
-    let [alone, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |own| [own.alone, own.power]);
-    if stand.is_located() && power * (alone - height(&stand.shapes)) < 2.0 * BELIEVED {
+    // Named effects with shapes also have to beat a random moment without either.
+    let [random, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.power]);
+    if current.is_located() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN {
         return Location { named: asked, displaced: open, shapes: none };
     }
-    stand
+    current
 }
 
-/// Whether what is left without a name is explained better than what is left with it: shapes by more than both are
-/// alike, a random law by anything.
+/// Whether the residual without an effect is explained better than with it: by shapes with a gain above
+/// [`EQUIVALENT_GAIN`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
-    let power = without.as_ref().map_or(1.0, |own| own.power);
-    power * (height(with) - height(without)) > if is_shape { 2.0 * ALIKE } else { 0.0 }
+    let power = without.as_ref().map_or(1.0, |shapes| shapes.power);
+    power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * EQUIVALENT_GAIN } else { 0.0 }
 }
 
-/// −2 log p of the best explanation.
-fn height(shapes: &Option<ShapeAnalysis>) -> f64 {
-    shapes.as_ref().map_or(f64::INFINITY, |own| own.best.height)
+/// Criterion −2 log p + penalty of the best explanation.
+fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
+    shapes.as_ref().map_or(f64::INFINITY, |shapes| shapes.best.criterion)
 }
 
 impl NamedStructures<'_> {
-    /// Names again what explains the records better beside shapes than these do alone.
-    fn with_names(&self, mut stand: Location) -> Location {
+    /// Adds dropped effects again as long as they improve the criterion beside the shapes.
+    fn with_names(&self, mut current: Location) -> Location {
         loop {
-            let with = (0..stand.displaced.len()).map(|place| {
-                let named = [stand.named.as_slice(), &stand.displaced[place..=place]].concat();
+            let with = (0..current.displaced.len()).map(|place| {
+                let named = [current.named.as_slice(), &current.displaced[place..=place]].concat();
                 (place, self.shapes(&named))
             });
-            let lowest = with.min_by(|(_, one), (_, other)| height(one).total_cmp(&height(other)));
-            match lowest.filter(|(_, with)| height(with) < height(&stand.shapes)) {
+            let lowest = with.min_by(|(_, a), (_, b)| criterion(a).total_cmp(&criterion(b)));
+            match lowest.filter(|(_, with)| criterion(with) < criterion(&current.shapes)) {
                 Some((place, shapes)) => {
-                    let effect = stand.displaced.remove(place);
-                    stand.named.push(effect);
-                    stand.shapes = shapes;
+                    let effect = current.displaced.remove(place);
+                    current.named.push(effect);
+                    current.shapes = shapes;
                 }
-                None => return stand,
+                None => return current,
             }
         }
     }
 
-    /// The location without the name that shapes explain best in its place; `None` where they explain none better. What
-    /// is left where `none` of the names stands is known.
+    /// Location without the effect that shapes replace best; `None` where they replace none. `none` is the shape
+    /// analysis without any of the open effects.
     fn without_name(
         &self,
-        stand: &Location,
+        current: &Location,
         none: &Option<ShapeAnalysis>,
         is_asked: impl Fn(&EffectNaming) -> bool,
     ) -> Option<Location> {
-        let open: Vec<usize> = (0..stand.named.len()).filter(|&place| !is_asked(&stand.named[place])).collect();
+        let open: Vec<usize> = (0..current.named.len()).filter(|&place| !is_asked(&current.named[place])).collect();
         let without = open.iter().map(|&place| {
-            let mut named = stand.named.clone();
+            let mut named = current.named.clone();
             let effect = named.remove(place);
             let shapes = if open.len() == 1 { none.clone() } else { self.shapes(&named) };
-            Location { named, displaced: [stand.displaced.as_slice(), &[effect]].concat(), shapes }
+            Location { named, displaced: [current.displaced.as_slice(), &[effect]].concat(), shapes }
         });
-        let lowest = without.min_by(|one, other| height(&one.shapes).total_cmp(&height(&other.shapes)));
-        lowest.filter(|next| is_better(&next.shapes, &stand.shapes))
+        let lowest = without.min_by(|a, b| criterion(&a.shapes).total_cmp(&criterion(&b.shapes)));
+        lowest.filter(|next| is_better(&next.shapes, &current.shapes))
     }
 
-    /// What speaks for an effect beside its probability: the evidence, and a size that is none by chance.
+    /// Whether an effect improves the evidence (not required of a group) with coefficients significant at
+    /// [`MAX_P_VALUE`].
     fn is_supported(&self, effect: &EffectNaming) -> bool {
         let (id, _, only) = effect.term;
         let is_gain = self.structures.support_of(id, only).gain > 0.0 || !effect.aliases.is_empty();
-        is_gain && self.chance(effect.term).is_none_or(|chance| chance < BY_CHANCE)
+        is_gain && self.p_value(effect.term).is_none_or(|p_value| p_value < MAX_P_VALUE)
     }
 
-    /// Probability of sizes of a term as far from neutral by chance (χ²), in the most probable structure that has it.
-    fn chance(&self, name: TermName) -> Option<f64> {
+    /// p value (χ²) of the coefficients of a term in the most probable structure that has it.
+    fn p_value(&self, name: TermName) -> Option<f64> {
         let with = |fit: &StructureFit| fit.structure.terms.iter().position(|term| term.name() == name);
-        let (fit, place) = self.structures.all.iter().find_map(|own| Some((&own.fit, with(&own.fit)?)))?;
+        let (fit, place) = self.structures.all.iter().find_map(|weighed| Some((&weighed.fit, with(&weighed.fit)?)))?;
         let (term, range) = (&fit.structure.terms[place], fit.structure.ranges()[place].clone());
         let sizes: Vec<(usize, f64)> = (range.zip(&term.priors).zip(term.neutral()))
             .filter(|((_, prior), _)| prior.is_fitted() && !prior.is_shape)
             .map(|((place, _), neutral)| (place, fit.theta[place] - neutral))
             .collect();
-        by_chance(&sizes, &fit.covariance()?)
+        chi_square_p_value(&sizes, &fit.covariance()?)
     }
 
-    /// What some named effects leave.
+    /// Shape analysis of the residual of some named effects.
     fn shapes(&self, named: &[EffectNaming]) -> Option<ShapeAnalysis> {
         let names: Vec<TermName> = named.iter().map(|effect| effect.term).collect();
         shape::analysis(self.problem, &self.fit(&names)?, &self.full.law)
     }
 
-    /// The structure of some terms: as it was weighed, else fitted from where they stand in others. `None` where one is
-    /// no candidate.
+    /// Fit of the structure of some terms: the weighed one, otherwise a new fit from their values in other structures.
+    /// `None` where a term is no candidate.
     fn fit(&self, names: &[TermName]) -> Option<StructureFit> {
-        let known = || self.structures.all.iter().map(|own| &own.fit);
+        let weighed = || self.structures.all.iter().map(|weighed| &weighed.fit);
         let is_same = |fit: &&StructureFit| {
             let terms = &fit.structure.terms;
             terms.len() == names.len() && terms.iter().all(|term| names.contains(&term.name()))
         };
-        if let Some(fit) = known().find(is_same) {
+        if let Some(fit) = weighed().find(is_same) {
             return Some(fit.clone());
         }
-        let near = known().next()?;
-        let (mut terms, mut theta) = (Vec::new(), near.theta[..near.structure.base_count()].to_vec());
-        let fits = || known().chain([&self.full.fit]);
+        let best = weighed().next()?;
+        let (mut terms, mut theta) = (Vec::new(), best.theta[..best.structure.base_count()].to_vec());
+        let fits = || weighed().chain([&self.full.fit]);
         // In the order in which the rudder passes through them.
         let mut candidates: Vec<&Arc<Term>> = Vec::new();
         for term in self.full.fit.structure.terms.iter().chain(self.candidates) {
@@ -185,7 +186,7 @@ impl NamedStructures<'_> {
             }
         }
         for term in candidates {
-            let place = |fit: &StructureFit| fit.structure.terms.iter().position(|own| own.name() == term.name());
+            let place = |fit: &StructureFit| fit.structure.terms.iter().position(|other| other.name() == term.name());
             let values = fits().find_map(|fit| Some(fit.theta[fit.structure.ranges()[place(fit)?].clone()].to_vec()));
             theta.extend(values.unwrap_or_else(|| term.priors.iter().map(|prior| prior.mean).collect()));
             terms.push(Arc::clone(term));
@@ -194,7 +195,7 @@ impl NamedStructures<'_> {
             return None;
         }
         let weights = self.problem.weights(&self.full.law);
-        let structure = near.structure.of(terms);
-        Some(self.problem.fit(&structure, theta, near.initial.clone(), &weights, Effort::FINE))
+        let structure = best.structure.of(terms);
+        Some(self.problem.fit(&structure, theta, best.initial.clone(), &weights, Effort::FINE))
     }
 }

@@ -1,4 +1,4 @@
-//! The missing moment of every fitted record, with the models that may explain it.
+//! Missing moments of the fitted records, with the models that may explain them.
 
 use std::sync::Arc;
 
@@ -9,39 +9,38 @@ use crate::analysis::Analysis;
 use crate::candidates::is_variant;
 use crate::fit::Effort;
 use crate::full::start;
-use crate::law::FINEST;
+use crate::law::MIN_HEADING_SD;
 use crate::missing_moment::{Explanation, MissingMoment};
 use crate::model::{Structure, TermName};
 
 impl Analysis {
-    /// The yaw moment that a base of constant K and T lacks on every fitted record; `None` for a record of too few
-    /// headings.
+    /// Yaw moment that the base lacks on every fitted record; `None` for a record of too few headings.
     ///
-    /// Explanations are first the average of the structures, where it is more than the base, then every candidate alone
-    /// on the base, the most probable first.
+    /// The explanations are the structure average, where it has terms, then every candidate alone on the base, the most
+    /// probable first.
     pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
-        let own = Structure::base(self.problem.records.len(), self.problem.time);
+        let structure = Structure::base(self.problem.records.len(), self.problem.time);
         let weights = self.problem.weights(&self.full.law);
-        let initial: Vec<[f64; 2]> = self.identification.iter().map(|one| one.before.replay.initial()).collect();
-        let theta = |values: &mut dyn Iterator<Item = f64>| start(&own, &self.base.response, values);
-        let base = self.problem.residual(&own, &theta(&mut std::iter::empty()), &initial);
+        let initial: Vec<[f64; 2]> = self.identification.iter().map(|fitted| fitted.before.replay.initial()).collect();
+        let theta = |values: &mut dyn Iterator<Item = f64>| start(&structure, &self.base.response, values);
+        let base = self.problem.residual(&structure, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
-        let mut alone: Vec<_> = self.candidates.iter().filter(|one| !is_variant(one.effect.as_ref())).collect();
-        alone.sort_by(|one, other| probable(&other.name()).total_cmp(&probable(&one.name())));
+        let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).collect();
+        alone.sort_by(|a, b| probable(&b.name()).total_cmp(&probable(&a.name())));
         let fits: Vec<(TermName, Vec<Vec<f64>>)> = alone
             .par_iter()
-            .filter(|one| !one.effect.has_instant())
-            .map(|one| {
-                let structure = own.of(vec![Arc::clone(one)]);
-                let mut values = one.priors.iter().map(|prior: &Prior| prior.mean);
+            .filter(|term| !term.effect.has_instant())
+            .map(|term| {
+                let structure = structure.of(vec![Arc::clone(term)]);
+                let mut values = term.priors.iter().map(|prior: &Prior| prior.mean);
                 let fit = self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, Effort::COARSE);
-                (one.name(), fit.residual)
+                (term.name(), fit.residual)
             })
             .collect();
         let model = self.structures.members();
-        let of = |number: usize| {
+        let missing = |number: usize| {
             let difference =
-                |residual: &[f64]| base[number].iter().zip(residual).map(|(base, own)| base - own).collect();
+                |residual: &[f64]| base[number].iter().zip(residual).map(|(base, other)| base - other).collect();
             let mut explanations = Vec::new();
             if let Some((_, best)) = model.first().filter(|(_, fit)| !fit.structure.terms.is_empty()) {
                 let acting = best.structure.terms.iter().filter(|term| term.only.is_none_or(|only| only == number));
@@ -58,9 +57,9 @@ impl Analysis {
                 effects: vec![(*id, *form)],
                 heading: difference(&residual[number]),
             }));
-            let sd = self.full.law.variance[number].sqrt().max(FINEST);
+            let sd = self.full.law.variance[number].sqrt().max(MIN_HEADING_SD);
             MissingMoment::new(&self.problem.records[number], &self.base.response, sd, explanations)
         };
-        (0..self.problem.records.len()).into_par_iter().map(of).collect()
+        (0..self.problem.records.len()).into_par_iter().map(missing).collect()
     }
 }

@@ -1,4 +1,7 @@
-//! What another trial would tell: which aliases it would separate and which blind spots it would reveal.
+//! Value of a planned trial: the aliases it would separate and the unobservable effects it would reveal.
+//!
+//! The expected posterior covariance of the full model is that of a Gaussian experiment design (Chaloner and Verdinelli
+//! 1995).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,59 +18,60 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::weights::NoiseLaw;
 
-/// Expected square of a size over its error from which an effect can be told from all others.
-const TOLD: f64 = 20.0;
+/// Smallest expected visibility (squared coefficient over its variance) of a distinguishable effect.
+const MIN_VISIBILITY: f64 = 20.0;
 
-/// What another trial would tell. An effect is written with its form: "wind moment (steady wind)".
+/// Value of one planned trial. Effects are named with their form: "wind moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prospect {
-    /// The manoeuvre.
+    /// Name of the manoeuvre.
     pub name: String,
-    /// Rivals (the named effect, the other one) that this trial together with the records would tell apart.
+    /// Pairs (named effect, alias) that the records and this trial together would separate.
     pub separated: Vec<[String; 2]>,
-    /// Rivals it would not.
+    /// Pairs that they would not.
     pub still_alike: Vec<[String; 2]>,
-    /// Effects that the records could not show and this trial would.
+    /// Unobservable effects that this trial would reveal.
     pub revealed: Vec<String>,
-    /// Effects that stay hidden.
+    /// Unobservable effects that it would not.
     pub still_hidden: Vec<String>,
-    /// Σ log(1 + expected squared size over error) of all candidates: what decides between trials that settle as many.
+    /// Σ log(1 + visibility) over all candidates; ranks trials that separate and reveal equally many.
     pub information: f64,
 }
 
 impl Analysis {
-    /// What each of some planned trials would tell beside the records, best first.
+    /// Values of planned trials, given the fitted records, the best first.
     ///
-    /// A planned trial is a record of the fitted ship itself, made by the caller; only its rudder and its times count.
+    /// A planned trial is a simulated record of the fitted ship; only its rudder and times are used.
     pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
         let mut prospects: Vec<Prospect> =
             planned.par_iter().filter_map(|(name, trial)| self.prospect(name, trial)).collect();
         let rank = |prospect: &Prospect| prospect.separated.len() + prospect.revealed.len();
-        prospects.sort_by(|one, other| rank(other).cmp(&rank(one)).then(other.information.total_cmp(&one.information)));
+        prospects.sort_by(|a, b| rank(b).cmp(&rank(a)).then(b.information.total_cmp(&a.information)));
         prospects
     }
 
     fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
-        let seen = self.seen_with(trial)?;
-        let is_told = |label: &String| seen.iter().any(|(own, seen)| own == label && *seen > TOLD);
+        let visibility = self.visibility_with(trial)?;
+        let is_visible = |label: &String| visibility.iter().any(|(name, x)| name == label && *x > MIN_VISIBILITY);
         let pair = |effect: &EffectEntry, other: &TermEntry| {
             [(&effect.id, &effect.form), (&other.id, &other.form)].map(|(id, form)| names::effect_form(id, form))
         };
         let effects = self.document.effects.iter();
-        let rivals = effects.flat_map(|effect| effect.alias_forms.iter().map(|other| pair(effect, other)));
-        let (separated, still_alike) = rivals.partition(|pair| pair.iter().all(is_told));
+        let pairs = effects.flat_map(|effect| effect.alias_forms.iter().map(|other| pair(effect, other)));
+        let (separated, still_alike) = pairs.partition(|pair| pair.iter().all(is_visible));
         let hidden = self.document.candidates.iter().flat_map(|candidate| {
             let forms = candidate.forms.iter();
             let hidden = forms.filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none());
             hidden.map(|form| names::effect_form(&candidate.id, &form.form))
         });
-        let (revealed, still_hidden) = hidden.partition(is_told);
-        let information = seen.iter().map(|(_, seen)| seen.ln_1p()).sum();
+        let (revealed, still_hidden) = hidden.partition(is_visible);
+        let information = visibility.iter().map(|(_, visibility)| visibility.ln_1p()).sum();
         Some(Prospect { name: name.to_owned(), separated, still_alike, revealed, still_hidden, information })
     }
 
-    /// Expected squared size over error of every candidate of the ship, from the records and another trial.
-    fn seen_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
+    /// Expected visibility of every candidate of the ship from the records and another trial; `None` where the
+    /// precision is singular.
+    fn visibility_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
         let full = &self.full.fit;
         let (structure, theta) = full.structure.alone(None, &full.theta);
         let record = PreparedRecord::averaged(trial, self.problem.time);
@@ -76,24 +80,24 @@ impl Analysis {
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
         let (normal, _) = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
-        let known = full.kept_covariance(None)?.try_inverse()?;
-        let count = known.nrows();
+        let fitted = full.kept_covariance(None)?.try_inverse()?;
+        let count = fitted.nrows();
         let mut precision = normal.matrix;
-        precision.view_mut((0, 0), (count, count)).zip_apply(&known, |own, known| *own += known);
+        precision.view_mut((0, 0), (count, count)).zip_apply(&fitted, |sum, fitted| *sum += fitted);
         let covariance = regular(precision)?;
         let places = structure.unknowns();
-        let seen = |(term, range): (&Arc<Term>, Range<usize>)| {
-            let own = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
+        let visibility = |(term, range): (&Arc<Term>, Range<usize>)| {
+            let squares = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
                 let place = places[place].filter(|_| !prior.is_shape)?;
                 Some((prior.sd.powi(2) + (prior.mean - neutral).powi(2)) / covariance[(place, place)])
             });
-            (names::effect_form(term.effect.id(), term.effect.form()), own.fold(0.0, f64::max))
+            (names::effect_form(term.effect.id(), term.effect.form()), squares.fold(0.0, f64::max))
         };
-        Some(structure.terms.iter().zip(structure.ranges()).map(seen).collect())
+        Some(structure.terms.iter().zip(structure.ranges()).map(visibility).collect())
     }
 }
 
-/// Inverse of a precision that may lack an unknown.
+/// Inverse of a precision after a tiny ridge, which keeps an undetermined unknown finite.
 fn regular(mut precision: DMatrix<f64>) -> Option<DMatrix<f64>> {
     for k in 0..precision.nrows() {
         precision[(k, k)] += 1e-12 * precision[(k, k)] + f64::MIN_POSITIVE;

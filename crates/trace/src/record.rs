@@ -1,10 +1,9 @@
-//! A trial as tracing needs it: from its first to its last heading, every channel as a signal, and dense rows averaged.
+//! Prepared record of a trial: from its first to its last heading, channels as signals, dense rows averaged.
 //!
-//! Averaging the same rows of all channels keeps the relation between rudder and heading, because a response that is
-//! linear does not care whether it is filtered before or after. It is done only where headings are far denser than the
-//! response, and only for the search; errors are always those of all rows. A heading that stands alone among rows of
-//! the rudder is not averaged, and the rudder about it keeps its detail. Every heading counts: a row knows how many
-//! readings it is the mean of, and stands at their mean time.
+//! Averaging the same rows of all channels keeps the relation between rudder and heading, because a linear filter
+//! commutes with a linear response. Rows are averaged only where headings are far denser than the response, and only
+//! for the search; reported errors use all rows. A single heading among several rows of the rudder is not averaged, and
+//! the rudder there keeps its resolution. Every row stores the number of its readings and stands at their mean time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,34 +11,34 @@ use ship::replay::Recorded;
 use ship::{Polyline, Real, Regressor, Replayable};
 use trial::{Channel, Trial};
 
-/// Rows that are kept at least, however dense they are.
-const FEWEST_ROWS: usize = 300;
+/// Smallest number of rows after averaging.
+const MIN_ROWS: usize = 300;
 
-/// Rows per time constant that are kept at least.
-const ROWS_PER_TIME: f64 = 10.0;
+/// Smallest number of rows per time constant after averaging.
+const MIN_ROWS_PER_TIME: f64 = 10.0;
 
-/// Rows that are kept at most.
-const MOST_ROWS: usize = 4000;
+/// Largest number of rows after averaging.
+const MAX_ROWS: usize = 4000;
 
-/// Rows of the rudder for one of the heading that are kept at most, where the rudder was recorded more often.
-const FINER: usize = 5;
+/// Largest number of rudder rows per heading row, where the rudder was recorded more often.
+const MAX_RUDDER_ROWS_PER_HEADING: usize = 5;
 
-/// An interval of more than this many usual ones ends a group of rows that are averaged.
-const GAP: f64 = 3.0;
+/// Interval in usual sampling periods above which a group of averaged rows ends.
+const MAX_GAP_PERIODS: f64 = 3.0;
 
-/// Smallest share of rows in which a channel has to be there to be used.
-const SMALLEST_SHARE: f64 = 0.5;
+/// Smallest share of finite rows of a usable channel.
+const MIN_FINITE_SHARE: f64 = 0.5;
 
-/// One record, ready to be replayed.
+/// Record ready to be replayed.
 #[derive(Debug, Clone)]
 pub struct PreparedRecord {
     /// Times of the rows, s.
     pub time: Vec<f64>,
     /// Heading of the rows, rad, the mean of their readings; NaN where it was not recorded.
     pub heading: Vec<f64>,
-    /// Number of readings behind the heading of every row.
+    /// Number of heading readings averaged in every row.
     pub readings: Vec<usize>,
-    /// Number of readings behind the heading of a row in which none is missing.
+    /// Number of heading readings of a complete row.
     pub full_readings: usize,
     /// Rows with a heading.
     pub observed: Vec<usize>,
@@ -62,51 +61,51 @@ pub struct PreparedRecord {
 }
 
 impl PreparedRecord {
-    /// Takes a trial with its headings averaged down to twenty per `time` (s, the time constant of the base), but to no
-    /// fewer than 400 and no more than 4000.
+    /// Record averaged to about [`MIN_ROWS_PER_TIME`] rows per `time` (s, L/U of the ship), within [`MIN_ROWS`] and
+    /// [`MAX_ROWS`].
     pub fn averaged(trial: &Trial, time: f64) -> Self {
         let rows =
             trial.observed_rows().last().zip(trial.observed_rows().next()).map_or(0, |(last, first)| last - first + 1);
         let per_heading = (rows / trial.observed_rows().count().max(1)).max(1);
         let headings = trial.len() / per_heading;
-        // Rows of the trial for one that is kept.
-        let share = time.min(0.1 * trial.duration()) / (ROWS_PER_TIME * trial.sampling_period());
-        let group = ((share / per_heading as f64) as usize).min(headings / FEWEST_ROWS).max(1);
-        let group = group.max(headings.div_ceil(MOST_ROWS));
+        // Trial rows per averaged row.
+        let share = time.min(0.1 * trial.duration()) / (MIN_ROWS_PER_TIME * trial.sampling_period());
+        let group = ((share / per_heading as f64) as usize).min(headings / MIN_ROWS).max(1);
+        let group = group.max(headings.div_ceil(MAX_ROWS));
         let rudder = if group == 1 && per_heading > 1 {
-            let fine = (share / FINER as f64) as usize;
-            fine.max(trial.len().div_ceil(FINER * MOST_ROWS)).clamp(1, per_heading)
+            let fine = (share / MAX_RUDDER_ROWS_PER_HEADING as f64) as usize;
+            fine.max(trial.len().div_ceil(MAX_RUDDER_ROWS_PER_HEADING * MAX_ROWS)).clamp(1, per_heading)
         } else {
             group * per_heading
         };
         Self::new(trial, group, group * per_heading, rudder)
     }
 
-    /// Takes a trial with all its rows.
+    /// Record with all rows of a trial.
     pub fn whole(trial: &Trial) -> Self {
         Self::new(trial, 1, 1, 1)
     }
 
-    /// Takes a trial with `of_heading` rows averaged for a heading, in which there are `full_readings` of them, and
-    /// `of_rudder` rows for a value of every other channel.
-    fn new(trial: &Trial, full_readings: usize, of_heading: usize, of_rudder: usize) -> Self {
+    /// Averages `heading_rows` rows per heading, which hold `full_readings` readings when complete, and `signal_rows`
+    /// rows per value of every other channel.
+    fn new(trial: &Trial, full_readings: usize, heading_rows: usize, signal_rows: usize) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
         let period = trial.sampling_period();
-        let grouped = |count| groups(&trial.time()[first..=last], count, GAP * period);
+        let grouped = |count| groups(&trial.time()[first..=last], count, MAX_GAP_PERIODS * period);
         let (mut time, mut heading, mut readings) = (Vec::new(), Vec::new(), Vec::new());
-        for (from, to) in grouped(of_heading) {
+        for (from, to) in grouped(heading_rows) {
             let rows = first + from..first + to;
             let read: Vec<usize> = rows.clone().filter(|&row| trial.heading()[row].is_finite()).collect();
             let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;
-            // Without any, a row stands at the mean of all times.
+            // A row without readings stands at the mean of all its times.
             time.push(if read.is_empty() { mean(&trial.time()[rows]) } else { mean_of(trial.time()) });
             heading.push(if read.is_empty() { f64::NAN } else { mean_of(trial.heading()) });
             readings.push(read.len());
         }
         let observed = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
 
-        let signals = grouped(of_rudder);
+        let signals = grouped(signal_rows);
         let take = |values: &[f64]| -> Vec<f64> {
             signals.iter().map(|&(from, to)| mean(&values[first + from..first + to])).collect()
         };
@@ -125,8 +124,8 @@ impl PreparedRecord {
             readings,
             full_readings,
             observed,
-            spacing: period * of_heading as f64,
-            rudder_spacing: period * of_rudder as f64,
+            spacing: period * heading_rows as f64,
+            rudder_spacing: period * signal_rows as f64,
             speed: signal(speed),
             sway: signal(channel(Channel::Sway)),
             wind_speed,
@@ -138,7 +137,7 @@ impl PreparedRecord {
         }
     }
 
-    /// The signals that drive a replay of a ship: those it needs.
+    /// Signals that drive the replay of a ship, reduced to those it needs.
     pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> Recorded<'_> {
         let needed = |channel| ship.needs(channel);
         Recorded {
@@ -151,13 +150,13 @@ impl PreparedRecord {
         }
     }
 
-    /// Length in time, s.
+    /// Duration, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
 }
 
-/// Ranges of rows that are averaged: `group` of them, fewer before a gap.
+/// Ranges of averaged rows: `group` rows each, fewer before a gap.
 fn groups(time: &[f64], group: usize, gap: f64) -> Vec<(usize, usize)> {
     let mut groups = Vec::new();
     let mut from = 0;
@@ -170,22 +169,23 @@ fn groups(time: &[f64], group: usize, gap: f64) -> Vec<(usize, usize)> {
     groups
 }
 
-/// Mean of the values that are there; NaN when fewer than half are.
+/// Mean of the finite values; NaN when fewer than half are finite.
 fn mean(values: &[f64]) -> f64 {
     let (sum, count) = values.iter().filter(|x| x.is_finite()).fold((0.0, 0usize), |(sum, n), x| (sum + x, n + 1));
     if 2 * count > values.len() { sum / count as f64 } else { f64::NAN }
 }
 
+/// Signal through the finite values; `None` where too few are finite.
 fn signal(time: &[f64], values: &[f64]) -> Option<Polyline> {
-    let there: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
-    if (there.len() as f64) < SMALLEST_SHARE * time.len() as f64 {
+    let finite: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
+    if (finite.len() as f64) < MIN_FINITE_SHARE * time.len() as f64 {
         return None;
     }
-    let pick = |from: &[f64]| there.iter().map(|&row| from[row]).collect::<Vec<_>>();
+    let pick = |from: &[f64]| finite.iter().map(|&row| from[row]).collect::<Vec<_>>();
     Polyline::new(pick(time), pick(values)).ok()
 }
 
-/// Angles without jumps of a whole turn; a missing one keeps the turn of the last.
+/// Unwrapped angles, rad; NaN values are kept and skipped.
 fn unwrapped(angles: &[f64]) -> Vec<f64> {
     let mut last = None;
     angles
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(groups(&[0.0, 1.0], 1, 3.0), [(0, 1), (1, 2)]);
     }
 
-    /// A mean of what was read stands at the mean of the times at which it was read, and knows how many they were.
+    /// A mean of readings stands at the mean of their times and stores their number.
     #[test]
     fn every_heading_counts() {
         let time: Vec<f64> = (0..6000).map(|k| 0.1 * f64::from(k)).collect();
@@ -225,7 +225,7 @@ mod tests {
         }
     }
 
-    /// Headings that stand alone are kept as they are, with a finer rudder between them.
+    /// Single headings are not averaged, and the rudder between them keeps a finer resolution.
     #[test]
     fn a_heading_among_rows_of_the_rudder_is_no_mean() {
         let time: Vec<f64> = (0..6001).map(|k| 0.1 * f64::from(k)).collect();

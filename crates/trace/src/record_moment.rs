@@ -1,8 +1,8 @@
-//! What is left of a replay where a moment of the record is fitted beside its initial state: a constant one, which is a
-//! rudder bias, or a slow one. What is gone then can be of the weather or the trim of that record.
+//! Replay error after fitting a moment of the record beside its initial state: a constant one (rudder bias) or a slow
+//! one. The decrease can be due to weather or trim of that record.
 //!
-//! A moment is an equivalent rudder angle and is added to the rudder. The base is linear in it: one solution of least
-//! squares is exact. An average is replayed with the moment that the answers of the base ask for, a few times over.
+//! A moment is an equivalent rudder angle and is added to the rudder. The base is linear in it, so one least-squares
+//! solution is exact. For an average, Gauss–Newton steps use the responses of the base.
 
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector};
@@ -13,113 +13,113 @@ use crate::average::Average;
 use crate::record::PreparedRecord;
 use crate::replay_errors::{MomentErrors, ReplayDepth};
 
-/// Evenly spaced instants between which a slow moment runs straight.
-const INSTANTS: usize = 5;
+/// Number of evenly spaced knots of a slow moment, which is linear between them.
+const KNOTS: usize = 5;
 
-/// Most replays of an average for a rudder bias, and for a slow moment beside it.
-const REPLAYS: [usize; 2] = [2, 4];
+/// Maximum number of replays of an average for a rudder bias, and for a slow moment.
+const MAX_REPLAYS: [usize; 2] = [2, 4];
 
-/// A moment that promises to lower the error by less than this share is not replayed.
-const NEGLIGIBLE: f64 = 0.01;
+/// Predicted relative decrease of the error below which the search ends.
+const MIN_DECREASE: f64 = 0.01;
 
-/// A step that brings no replay nearer is shortened to this share.
-const SHORTENED: f64 = 0.4;
+/// Factor by which a step that does not reduce the error is shortened.
+const STEP_FACTOR: f64 = 0.4;
 
-/// Combinations of answers whose size is less than this share of that of each of them cannot be seen.
-const SINGULAR: f64 = 1e-10;
+/// Relative singular value below which a combination of responses is treated as unobservable.
+const MIN_SINGULAR_VALUE: f64 = 1e-10;
 
-/// Least squares of a residual on what initial state and moment do to the heading of the base.
+/// Least squares of a residual on the heading responses of the base to initial state and moment.
 #[derive(Debug, Clone)]
-struct MomentAnswers {
+struct MomentRegression {
     /// Heading at the observed rows for a unit initial heading, a unit initial yaw rate, and unit moments.
     columns: DMatrix<f64>,
     inverse: DMatrix<f64>,
 }
 
-impl MomentAnswers {
-    /// `None` where the rows are no more than the columns, or one of these is not finite.
+impl MomentRegression {
+    /// `None` where there are no more rows than columns, or a column is not finite.
     fn new(columns: DMatrix<f64>) -> Option<Self> {
         let scale = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm()));
         let is_sound = columns.nrows() > columns.ncols() && scale.iter().all(|size| size.is_normal());
         let mut unit = is_sound.then(|| columns.clone())?;
         unit.column_iter_mut().zip(&scale).for_each(|(mut column, size)| column /= *size);
-        let mut inverse = unit.pseudo_inverse(SINGULAR).ok()?;
+        let mut inverse = unit.pseudo_inverse(MIN_SINGULAR_VALUE).ok()?;
         inverse.row_iter_mut().zip(&scale).for_each(|(mut row, size)| row /= *size);
         Some(Self { columns, inverse })
     }
 
-    /// The moment (rad of rudder at the instants) that comes nearest to a residual (rad), and the root mean square that
-    /// it would leave.
-    fn of(&self, residual: &DVector<f64>) -> ([f64; INSTANTS], f64) {
-        let found = &self.inverse * residual;
-        let left = (residual - &self.columns * &found).norm() / (residual.len() as f64).sqrt();
-        // A bias is the same at all instants.
-        let last = found.len() - 1;
-        (std::array::from_fn(|k| found[last.min(2 + k)]), left)
+    /// Least-squares moment (rad of rudder at the knots) for a residual (rad), and the remaining root mean square, rad.
+    fn solve(&self, residual: &DVector<f64>) -> ([f64; KNOTS], f64) {
+        let estimate = &self.inverse * residual;
+        let rms = (residual - &self.columns * &estimate).norm() / (residual.len() as f64).sqrt();
+        // A bias is the same at all knots.
+        let last = estimate.len() - 1;
+        (std::array::from_fn(|k| estimate[last.min(2 + k)]), rms)
     }
 }
 
-/// Answers of the base on one record: to a rudder bias, and to a slow moment.
+/// Regressions of one record on a rudder bias, and on a slow moment.
 #[derive(Debug, Clone)]
 pub struct RecordMoment<'a> {
     record: &'a PreparedRecord,
-    answers: [MomentAnswers; 2],
+    regressions: [MomentRegression; 2],
 }
 
 impl<'a> RecordMoment<'a> {
-    /// `None` where the record cannot show a moment.
+    /// Prepares a record; `None` where it cannot determine a moment.
     pub fn new(record: &'a PreparedRecord, base: &FirstOrder) -> Option<Self> {
         let slow = headings(record, base);
         let mut bias = slow.columns(0, 3).into_owned();
-        bias.set_column(2, &slow.columns(2, INSTANTS).column_sum());
-        Some(Self { record, answers: [MomentAnswers::new(bias)?, MomentAnswers::new(slow)?] })
+        bias.set_column(2, &slow.columns(2, KNOTS).column_sum());
+        Some(Self { record, regressions: [MomentRegression::new(bias)?, MomentRegression::new(slow)?] })
     }
 
-    /// Errors of the base beside its replay without a moment.
+    /// Errors of the base with a moment; `plain` is its replay without one.
     pub fn of_base(&self, plain: &Replay) -> MomentErrors {
         let residual = self.residual(plain);
-        let [bias, slow] = self.answers.each_ref().map(|answers| answers.of(&residual).1);
+        let [bias, slow] = self.regressions.each_ref().map(|regression| regression.solve(&residual).1);
         let bias = bias.min(plain.rms());
         MomentErrors { bias, slow: slow.min(bias) }
     }
 
-    /// Errors of an average beside its replay without a moment, which stands where its ships run away.
+    /// Errors of an average with a moment; `plain` is its replay without one, kept where its ships diverge.
     pub fn of_average(&self, average: &Average, plain: &Replay) -> MomentErrors {
         let mut record = self.record.clone();
-        let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; INSTANTS]);
-        let mut search = |answers: &MomentAnswers, replays: usize| {
+        let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; KNOTS]);
+        let mut search = |regression: &MomentRegression, replays: usize| {
             let mut share = 1.0;
             for _ in 0..replays {
-                let (step, left) = answers.of(&self.residual(&best));
-                if left > (1.0 - NEGLIGIBLE) * error {
+                let (step, predicted) = regression.solve(&self.residual(&best));
+                if predicted > (1.0 - MIN_DECREASE) * error {
                     break;
                 }
                 let next = std::array::from_fn(|k| moment[k] + share * step[k]);
                 let Some(rudder) = self.rudder(next) else { break };
                 record.rudder = rudder;
                 let replayed = average.replay(&record, &[best.initial()], ReplayDepth::Heading);
-                let Some(found) = replayed.filter(|all| !all.runs_away()).map(|all| all.replay) else { break };
-                if found.rms() < error {
-                    (error, best, moment) = (found.rms(), found, next);
+                let Some(replay) = replayed.filter(|all| !all.is_divergent()).map(|all| all.replay) else { break };
+                if replay.rms() < error {
+                    (error, best, moment) = (replay.rms(), replay, next);
                 } else {
-                    share *= SHORTENED;
+                    share *= STEP_FACTOR;
                 }
             }
             error
         };
-        let [bias, slow] = &self.answers;
-        MomentErrors { bias: search(bias, REPLAYS[0]), slow: search(slow, REPLAYS[1]) }
+        let [bias, slow] = &self.regressions;
+        MomentErrors { bias: search(bias, MAX_REPLAYS[0]), slow: search(slow, MAX_REPLAYS[1]) }
     }
 
+    /// Residual at the observed rows, rad.
     fn residual(&self, replay: &Replay) -> DVector<f64> {
         let observed = &self.record.observed;
         DVector::from_iterator(observed.len(), observed.iter().map(|&row| replay.residual[row]))
     }
 
-    /// The rudder of the record and a moment.
-    fn rudder(&self, moment: [f64; INSTANTS]) -> Option<Polyline> {
+    /// Rudder of the record plus a moment, rad.
+    fn rudder(&self, moment: [f64; KNOTS]) -> Option<Polyline> {
         let (start, interval) = (self.record.time[0], interval(self.record));
-        let times = (0..INSTANTS).map(|k| start + interval * k as f64).collect();
+        let times = (0..KNOTS).map(|k| start + interval * k as f64).collect();
         let moment = Polyline::new(times, moment.to_vec()).ok()?;
         let rudder = &self.record.rudder;
         let values = rudder.times().iter().zip(rudder.values()).map(|(&t, angle)| angle + moment.at(t)).collect();
@@ -127,21 +127,21 @@ impl<'a> RecordMoment<'a> {
     }
 }
 
-/// Time between two instants, s.
+/// Time between two knots, s.
 fn interval(record: &PreparedRecord) -> f64 {
-    record.duration() / (INSTANTS - 1) as f64
+    record.duration() / (KNOTS - 1) as f64
 }
 
-/// Heading of the base at the observed rows for a unit initial heading, a unit initial yaw rate, and a unit rudder
-/// angle at every instant.
+/// Heading responses of the base at the observed rows to a unit initial heading, a unit initial yaw rate, and a unit
+/// rudder angle at every knot.
 fn headings(record: &PreparedRecord, base: &FirstOrder) -> DMatrix<f64> {
-    let mut columns = DMatrix::from_element(record.observed.len(), 2 + INSTANTS, 1.0);
-    let mut states = [State::default(); 1 + INSTANTS];
+    let mut columns = DMatrix::from_element(record.observed.len(), 2 + KNOTS, 1.0);
+    let mut states = [State::default(); 1 + KNOTS];
     states[0].yaw_rate = 1.0;
     let interval = interval(record);
     let moment = |row: usize, number: usize| {
         let place = (record.time[row] - record.time[0]) / interval;
-        // The first state is of the initial yaw rate.
+        // State 0 is the response to the initial yaw rate.
         if number == 0 { 0.0 } else { base.K_over_T * (1.0 - (place - (number - 1) as f64).abs()).max(0.0) }
     };
     let mut row = 0;
@@ -176,7 +176,7 @@ mod tests {
         [errors.bias, errors.slow].map(f64::to_degrees)
     }
 
-    /// The base is linear: its replays find what least squares says at once, stable or not.
+    /// The base is linear: iterated replays agree with one least-squares solution, for either sign of T.
     #[test]
     fn replays_of_the_base_find_its_least_squares() {
         let trial = moved(&plain(1, 10.0), |t| 0.01 * (t / 80.0).sin());
@@ -192,11 +192,11 @@ mod tests {
             }
             let plain = replay.rms().to_degrees();
             assert!(plain > exact[0] && exact[0] > exact[1], "{plain} and {exact:?} deg");
-            assert!(inverse_time < 0.0 || exact[1] < 0.07, "what is left is noise: {exact:?} deg");
+            assert!(inverse_time < 0.0 || exact[1] < 0.07, "the residual is noise: {exact:?} deg");
         }
     }
 
-    /// A drift that is traced stays in its record, and bias or slow moment of another one are seen for what they are.
+    /// A traced drift stays in its record; bias and slow moment of another record are recognised as such.
     #[test]
     fn a_moment_of_the_record_is_no_error_of_the_ship() {
         let drifting = [moved(&plain(1, 10.0), |t| 1e-4 * t)];

@@ -1,11 +1,11 @@
-//! What the structures leave of the fitted records.
+//! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on what is left.
 
 use estimation::residuals::{GappedSeries, evenness, whiteness};
 use trial::Trial;
 
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::FittedRecords;
-use crate::full::Full;
+use crate::full::FullModel;
 use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
@@ -14,57 +14,57 @@ use crate::signature::{Signature, signature};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
-/// Errors of all records together, squared, before and after.
+/// Sums of squared heading errors over all records, rad²: base, average.
 pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
     let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
-    let before = all.iter().map(|one| square(&one.before.errors)).sum();
-    [before, all.iter().map(|one| square(&one.after.errors)).sum()]
+    let before = all.iter().map(|comparison| square(&comparison.before.errors)).sum();
+    [before, all.iter().map(|comparison| square(&comparison.after.errors)).sum()]
 }
 
-/// What is new in every heading of a record, given those before it and the noise, over its standard deviation: numbers
-/// that are normal, white and of unit variance where model and noise describe the record.
+/// Normalised innovations of a record: one-step prediction errors of the heading over their standard deviations. They
+/// are white, normal and of unit variance where model and noise law describe the record (Ljung 1999, chapter 16).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Innovations {
     /// Time, s.
     pub time: Vec<f64>,
-    /// Usual time between them, s.
+    /// Usual sampling period, s.
     pub spacing: f64,
-    /// Innovations, in standard deviations.
+    /// Innovations in standard deviations.
     pub values: Vec<f64>,
 }
 
 impl Innovations {
-    /// On an even clock.
+    /// Series on an even clock, with gaps.
     pub fn series(&self) -> GappedSeries {
         GappedSeries::new(&self.time, &self.values, self.spacing)
     }
 }
 
-/// What the structures leave.
+/// Residual of the structures.
 #[derive(Debug, Clone)]
 pub struct Remainder {
-    /// Whether the law describes it, and the bands that are made from the law hold.
-    pub holds: bool,
-    /// Whether it does, or the structures replay the records nearer than the base: probabilities under a noise that
-    /// does not describe the rest are worth nothing where no replay bears them out.
-    pub is_founded: bool,
-    /// Whether it is neither chance nor of a shape that was looked for.
+    /// `true` if the noise law describes the residual and its bands cover the records.
+    pub is_noise: bool,
+    /// `true` if the noise law describes the residual, or the structures replay better than the base; otherwise
+    /// probabilities are not reported.
+    pub is_credible: bool,
+    /// `true` if the residual is neither random nor of a shape that was searched for.
     pub is_unexplained: bool,
-    /// Where it is, where it is more than noise.
+    /// Location of a residual that is more than noise.
     pub signature: Option<Signature>,
 }
 
-/// Share of the error of the base from which a rest that is not white noise is looked at.
-const UNEXPLAINED: f64 = 0.3;
+/// Smallest residual, over the error of the base, that can be unexplained.
+const MIN_UNEXPLAINED_RATIO: f64 = 0.3;
 
-/// Standard deviations of the white noise below which a rest is too small to be looked at.
-const SMALL: f64 = 1.5;
+/// Smallest residual, in standard deviations of the white noise, that can be unexplained.
+const MIN_UNEXPLAINED_SD: f64 = 1.5;
 
 impl Remainder {
-    /// Looks at what is left.
+    /// Analyses the residual of the most probable structure and of the average.
     pub fn new(
         problem: &FittedRecords,
-        full: &Full,
+        full: &FullModel,
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
@@ -72,37 +72,37 @@ impl Remainder {
         rudder_errors: &[Option<RudderError>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
-            return Self { holds: true, is_founded: true, is_unexplained: false, signature: None };
+            return Self { is_noise: true, is_credible: true, is_unexplained: false, signature: None };
         };
-        let is_held = |one: &RecordComparison| one.after.coverage().is_none_or(|own| own.is_held());
+        let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
-        let holds = are_noise(&innovations) && identification.iter().all(is_held);
+        let is_noise = are_noise(&innovations) && identification.iter().all(is_covered);
         let [before, after] = squares(identification);
-        let is_founded = holds || after < before;
-        let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
+        let is_credible = is_noise || after < before;
+        let rows: f64 = identification.iter().map(|fitted| fitted.after.errors.rows as f64).sum();
         let white =
-            full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
-        let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
+            full.law.variance.iter().zip(&problem.records).map(|(row, record)| row * record.full_readings as f64);
+        let is_small = after / rows < MIN_UNEXPLAINED_SD * MIN_UNEXPLAINED_SD * white.fold(0.0, f64::max);
         let shapes = location.shapes.as_ref();
         let is_chance = match shapes {
-            Some(own) if own.is_located() || !holds => are_noise(&with_values(innovations, &own.innovations)),
-            _ => holds,
+            Some(all) if all.is_located() || !is_noise => are_noise(&with_values(innovations, &all.innovations)),
+            _ => is_noise,
         };
-        let is_smooth = shapes.is_some_and(|own| own.is_smooth);
-        let is_large = !is_small && (after / before).sqrt() >= UNEXPLAINED;
-        // In a calm nothing turns the ship at random.
+        let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
+        let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
+        // In a calm there is no random yaw moment, so one has to be explained.
         let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
-        let is_left = is_unexplained || location.is_located() || is_large && !holds;
-        let signature = is_left.then(|| worst(identification, trials)).flatten();
-        Self { holds, is_founded, is_unexplained, signature }
+        let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
+        let signature = is_left.then(|| worst_signature(identification, trials)).flatten();
+        Self { is_noise, is_credible, is_unexplained, signature }
     }
 }
 
-/// Where the rest of the record with the largest error lives.
-fn worst(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signature> {
+/// Signature of the residual in the record with the largest error.
+fn worst_signature(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signature> {
     let error = |number: usize| identification[number].after.errors.heading;
-    let number = (0..identification.len()).max_by(|&one, &other| error(one).total_cmp(&error(other)))?;
+    let number = (0..identification.len()).max_by(|&a, &b| error(a).total_cmp(&error(b)))?;
     let (ReplayResult { replay, .. }, trial) = (&identification[number].after, &trials[number]);
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = first..first + replay.time.len();
@@ -110,30 +110,29 @@ fn worst(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signat
     Some(signature(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
-/// Innovations of the same records with other values.
+/// Innovations at the same times with other values.
 fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
-    all.into_iter().zip(values).map(|(own, values)| Innovations { values: values.clone(), ..own }).collect()
+    all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }
 
-/// Probability below which innovations are not those of the law.
+/// Significance level below which innovations contradict the noise law.
 pub const IMPROBABLE: f64 = 1e-4;
 
-/// The residuals (rad) of all records, made white by a law.
+/// Normalised innovations of all records: their residuals (rad) whitened under a law.
 pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Vec<Innovations> {
     let weights = problem.weights(law);
-    let of = |(number, (record, residual)): (usize, (&PreparedRecord, &Vec<f64>))| {
+    let whitened = |(number, (record, residual)): (usize, (&PreparedRecord, &Vec<f64>))| {
         let mut values = residual.clone();
         weights.apply(number, &mut [&mut values]);
         let time = record.observed.iter().map(|&row| record.time[row]).collect();
         Innovations { time, spacing: record.spacing, values }
     };
-    problem.records.iter().zip(residual).enumerate().map(of).collect()
+    problem.records.iter().zip(residual).enumerate().map(whitened).collect()
 }
 
-/// Whether innovations are those of their law: white (Ljung and Box 1978), of one variance, and without a single
-/// surprise.
+/// Whether innovations agree with their law: white (Ljung and Box 1978), of constant variance, and without outliers.
 fn are_noise(all: &[Innovations]) -> bool {
-    let even = all.iter().map(|own| evenness(&own.values)).fold(1.0, f64::min);
+    let even = all.iter().map(|record| evenness(&record.values)).fold(1.0, f64::min);
     let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();
     whiteness(&series).p_value.min(even * series.len() as f64) > IMPROBABLE
 }

@@ -1,5 +1,5 @@
-//! How far a response is from a record: the recorded rudder replayed from the fitted initial state over all of it, and
-//! replays restarted every so many seconds. Only initial states are fitted here, never a parameter.
+//! Replay errors of a response on a record: the recorded rudder replayed from the fitted initial state over the whole
+//! record, and replays restarted at fixed intervals. Only initial states are fitted here, never a parameter.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -15,88 +15,88 @@ use trial::{Channel, Columns, Trial, ZigZag};
 use crate::model::step;
 use crate::record::PreparedRecord;
 
-/// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
+/// Solver steps per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
 
-/// Lengths of the windows after which a replay is restarted on every record, s.
+/// Window lengths of the restarted replays on every record, s.
 pub const HORIZONS: [f64; 2] = [20.0, 60.0];
 
-/// Shortest of the windows that show how the error grows, s; every further one is twice as long.
-const SHORTEST: f64 = 5.0;
+/// Shortest window of [`ReplayDepth::Growth`], s; every further one is twice as long.
+const MIN_WINDOW_S: f64 = 5.0;
 
-/// Share of a window below which a last piece belongs to the window before.
-const LAST_PIECE: f64 = 0.5;
+/// Share of a window below which the last piece is joined to the window before.
+const MIN_LAST_PIECE: f64 = 0.5;
 
-/// Fewest headings in a window: two are used up by its initial state.
-const FEWEST: usize = 4;
+/// Smallest number of headings in a window: two are used up by its initial state.
+const MIN_HEADINGS: usize = 4;
 
-/// Steps of the search for an initial state, and how often one is shortened.
-const STEPS: usize = 12;
-const HALVINGS: i32 = 10;
+/// Maximum number of Gauss–Newton steps for an initial state, and of step lengths tried in each.
+const MAX_STEPS: usize = 12;
+const MAX_STEP_LENGTHS: i32 = 10;
 
-/// Initial states whose heading, rad, is this near at either end are one.
-const SAME: f64 = 1e-6;
+/// Distance below which two initial states agree: of the heading, and of the yaw rate times the duration, rad.
+const STATE_TOLERANCE: f64 = 1e-6;
 
-/// A step that promises to lower the sum of squares by less than this share ends the search.
-const NEGLIGIBLE: f64 = 1e-7;
+/// Predicted relative decrease of the sum of squares below which the search ends.
+const MIN_DECREASE: f64 = 1e-7;
 
-/// Root mean square heading errors of a replay with a moment of the record, rad.
+/// Root mean square heading errors with a fitted moment of the record, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentErrors {
-    /// With a rudder bias of the record.
+    /// With a rudder bias.
     pub bias: f64,
-    /// With a moment that runs straight between five instants.
+    /// With a piecewise linear moment of five knots.
     pub slow: f64,
 }
 
-/// Error of replays that are restarted.
+/// Error of replays restarted at intervals of one length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowError {
-    /// Length of a window, s.
+    /// Window length, s.
     pub length: f64,
     /// Root mean square heading error, rad; `None` when a window holds too few headings.
     pub heading: Option<f64>,
 }
 
-/// Errors of a response on one record.
+/// Replay errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReplayErrors {
     /// Root mean square heading error of the full replay, rad.
     pub heading: f64,
-    /// Headings compared.
+    /// Number of headings compared.
     pub rows: usize,
     /// Root mean square yaw-rate error of the full replay, rad/s, where the record has a yaw rate.
     pub yaw_rate: Option<f64>,
-    /// Mean absolute error of the overshoot angles, rad, where both are a zig-zag.
+    /// Mean absolute error of the overshoot angles, rad, where record and replay are zig-zags.
     pub overshoot: Option<f64>,
-    /// Errors of replays restarted every so many seconds, by the lengths of their windows.
+    /// Errors of the restarted replays, by window length.
     pub windows: Vec<WindowError>,
-    /// The heading error with a moment of the record fitted, on records that were not fitted.
+    /// Heading errors with a fitted moment of the record, on held-out records.
     pub with_moment: Option<MomentErrors>,
 }
 
 impl ReplayErrors {
-    /// Root mean square heading error of replays restarted every so many seconds, rad.
+    /// Root mean square heading error of replays restarted every `length` seconds, rad.
     pub fn within(&self, length: f64) -> Option<f64> {
         self.windows.iter().find(|window| window.length == length)?.heading
     }
 }
 
-/// What of a replay is compared.
+/// Extent of the comparison of a replay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReplayDepth {
-    /// The heading of the whole replay.
+    /// Heading of the full replay.
     Heading,
-    /// Yaw rate, overshoots, and replays restarted after each of [`HORIZONS`] as well.
+    /// Also yaw rate, overshoots, and replays restarted after each of [`HORIZONS`].
     Windows,
-    /// Replays restarted after 5, 10, 20 s and so on as well, as long as the record holds more than one window.
+    /// Also replays restarted after 5, 10, 20 s and so on, as long as the record holds more than one window.
     Growth,
 }
 
 impl ReplayDepth {
-    /// Lengths of the windows on a record with headings at these instants, s, from short to long.
+    /// Window lengths (s) for a record with rows at these times (s), ascending.
     pub fn lengths(self, time: &[f64]) -> Vec<f64> {
-        let doubled = std::iter::successors(Some(SHORTEST), |length| Some(2.0 * length));
+        let doubled = std::iter::successors(Some(MIN_WINDOW_S), |length| Some(2.0 * length));
         let mut lengths: Vec<f64> = match self {
             Self::Heading => Vec::new(),
             Self::Windows => HORIZONS.into(),
@@ -108,25 +108,25 @@ impl ReplayDepth {
     }
 }
 
-/// Whether a record with headings at these instants holds more than one window of a length.
+/// Whether a record with rows at these times holds more than one window of a length, s.
 pub fn is_shorter(length: f64, time: &[f64]) -> bool {
-    (1.0 + LAST_PIECE) * length <= duration(time)
+    (1.0 + MIN_LAST_PIECE) * length <= duration(time)
 }
 
-/// Seconds from the first to the last of some instants.
+/// Time from the first to the last of some instants, s; 0 without any.
 pub fn duration(time: &[f64]) -> f64 {
     time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first)
 }
 
-/// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
+/// Full replay of a record from the best initial state near one of the `starts`; `None` when no replay is finite.
 pub fn full(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
-    let mut found: Vec<(f64, [f64; 2])> = Vec::new();
+    let mut minima: Vec<(f64, [f64; 2])> = Vec::new();
     for &start in starts {
-        let known: Vec<[f64; 2]> = found.iter().map(|(_, initial)| *initial).collect();
-        found.extend(settle(ship, record, rows.clone(), start, None, &known));
+        let visited: Vec<[f64; 2]> = minima.iter().map(|(_, initial)| *initial).collect();
+        minima.extend(fit_initial_state(ship, record, rows.clone(), start, None, &visited));
     }
-    let (_, start) = found.into_iter().min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let (_, start) = minima.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let mut state = vec![0.0; ship.dimension()];
     enter(ship, record, 0, start, None, &mut state);
     let count = record.time.len();
@@ -144,12 +144,12 @@ pub fn full(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]
     replayed.heading.iter().all(|psi| psi.is_finite()).then_some(replayed)
 }
 
-/// Root mean square; `None` of nothing.
+/// Root mean square; `None` without values.
 pub fn root_mean_square(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt())
 }
 
-/// The zig-zag of a replayed heading under the rudder of its record.
+/// Zig-zag characteristics of a replayed heading under the recorded rudder; `None` where it is no zig-zag.
 pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     let first = trial.observed_rows().next().unwrap_or(0);
     let range = first..first + replayed.time.len();
@@ -160,26 +160,26 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     ZigZag::of(&twin).ok()
 }
 
-/// Mean absolute error of the overshoot angles of a replay, rad; `None` where not both are a zig-zag.
+/// Mean absolute error of the overshoot angles of a replay, rad; `None` unless record and replay are zig-zags.
 pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
-    // Both have the executes of the recorded rudder; a peak may be seen in one of them alone.
+    // Both have the executes of the recorded rudder; a peak may be missing in one of them.
     let time = |zigzag: &ZigZag, overshoot: &Overshoot| zigzag.executes[overshoot.execute].time.value;
-    let other = |one: &Overshoot| {
-        let own = time(&measured, one);
-        twin.overshoots.iter().find(|other| (time(&twin, other) - own).abs() < trial.sampling_period())
+    let replayed = |overshoot: &Overshoot| {
+        let execute = time(&measured, overshoot);
+        twin.overshoots.iter().find(|other| (time(&twin, other) - execute).abs() < trial.sampling_period())
     };
     let pairs: Vec<f64> = measured
         .overshoots
         .iter()
-        .filter_map(|one| Some((one.angle.value - other(one)?.angle.value).abs()))
+        .filter_map(|overshoot| Some((overshoot.angle.value - replayed(overshoot)?.angle.value).abs()))
         .filter(|d| d.is_finite())
         .collect();
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)
 }
 
-/// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the
-/// window; the memory of the effects goes on. `None` when a window holds too few headings.
+/// Headings (rad) of a replay restarted every `length` seconds from the best initial heading and yaw rate of each
+/// window; other states continue. `None` when a window holds too few headings.
 pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; ship.dimension()];
@@ -189,17 +189,17 @@ pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64
     while from < count {
         let end = record.time[from] + length;
         let mut to = record.time.partition_point(|&t| t < end);
-        if record.time[count - 1] < end + LAST_PIECE * length {
+        if record.time[count - 1] < end + MIN_LAST_PIECE * length {
             to = count;
         }
         // The window ends where the next one begins.
         let until = (to + 1).min(count);
-        if (from..to).filter(|&row| record.heading[row].is_finite()).count() < FEWEST {
+        if (from..to).filter(|&row| record.heading[row].is_finite()).count() < MIN_HEADINGS {
             return None;
         }
         let memory = state.clone();
         let start = [state[0], state[1]];
-        let (_, best) = settle(ship, record, from..to, start, Some(&memory), &[])?;
+        let (_, best) = fit_initial_state(ship, record, from..to, start, Some(&memory), &[])?;
         enter(ship, record, from, best, Some(&memory), &mut state);
         run(ship, record, from..until, &mut state, |row, heading, _| {
             if row < to {
@@ -214,7 +214,7 @@ pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64
     Some(headings)
 }
 
-/// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
+/// Sets the state at a row to heading and yaw rate `start`, with effect states at rest or from `memory`.
 fn enter<R: Real>(
     ship: &(impl Replayable<R> + ?Sized),
     record: &PreparedRecord,
@@ -235,7 +235,7 @@ fn enter<R: Real>(
     }
 }
 
-/// Replays some rows of a record and visits heading and yaw rate at each of them.
+/// Replays some rows of a record and calls `visit` with row, heading and yaw rate.
 fn run<R: Real>(
     ship: &(impl Replayable<R> + ?Sized),
     record: &PreparedRecord,
@@ -250,8 +250,8 @@ fn run<R: Real>(
     });
 }
 
-/// Residual of some rows, and how the heading there changes with its first value and with the first yaw rate times the
-/// length of the rows.
+/// Residual of some rows for an initial state, and its sensitivities to the initial heading and to the initial yaw rate
+/// times the duration.
 struct InitialStateFit {
     initial: [f64; 2],
     residual: Vec<f64>,
@@ -259,15 +259,15 @@ struct InitialStateFit {
     square: f64,
 }
 
-/// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving),
-/// and the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
-fn settle(
+/// Least-squares initial heading and yaw rate of some rows (Gauss–Newton with damped steps), preceded by the sum of
+/// squares; `None` when it is not finite, or when the search reaches a state already `visited`.
+fn fit_initial_state(
     ship: &dyn ReplayedShip,
     record: &PreparedRecord,
     rows: Range<usize>,
     start: [f64; 2],
     memory: Option<&[f64]>,
-    known: &[[f64; 2]],
+    visited: &[[f64; 2]],
 ) -> Option<(f64, [f64; 2])> {
     let ship = ship.tangent();
     let ship = ship.as_ref();
@@ -287,21 +287,21 @@ fn settle(
         InitialStateFit { initial, square: dot(&residual, &residual), residual, by }
     };
     let mut now = at(start);
-    for _ in 0..STEPS {
-        let [one, two] = &now.by;
-        let (cross, count) = (dot(one, two), now.residual.len());
-        let matrix = Matrix2::new(dot(one, one), cross, cross, dot(two, two) + 1e-12 * count as f64);
-        let gradient = Vector2::new(dot(one, &now.residual), dot(two, &now.residual));
+    for _ in 0..MAX_STEPS {
+        let [heading, rate] = &now.by;
+        let (cross, count) = (dot(heading, rate), now.residual.len());
+        let matrix = Matrix2::new(dot(heading, heading), cross, cross, dot(rate, rate) + 1e-12 * count as f64);
+        let gradient = Vector2::new(dot(heading, &now.residual), dot(rate, &now.residual));
         let Some(direction) = matrix.lu().solve(&gradient) else { break };
-        if direction.dot(&gradient) < NEGLIGIBLE * now.square {
+        if direction.dot(&gradient) < MIN_DECREASE * now.square {
             break;
         }
         let ahead = [now.initial[0] + direction[0], now.initial[1] + direction[1] / span];
-        let is_ahead = |known: &[f64; 2]| (known[0] - ahead[0]).abs().max((known[1] - ahead[1]).abs() * span) < SAME;
-        if known.iter().any(is_ahead) {
+        let distance = |state: &[f64; 2]| (state[0] - ahead[0]).abs().max((state[1] - ahead[1]).abs() * span);
+        if visited.iter().any(|state| distance(state) < STATE_TOLERANCE) {
             return None;
         }
-        let shares = (0..HALVINGS).map(|k| 0.4_f64.powi(k));
+        let shares = (0..MAX_STEP_LENGTHS).map(|k| 0.4_f64.powi(k));
         let next = shares
             .map(|share| at([now.initial[0] + share * direction[0], now.initial[1] + share * direction[1] / span]))
             .find(|next| next.square < now.square);
@@ -318,11 +318,12 @@ mod tests {
 
     #[test]
     fn the_ship_of_a_record_is_on_it_in_every_window() {
-        let own = ship(Vec::new());
-        let trial = record(&own, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
+        let base = ship(Vec::new());
+        let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
         for length in HORIZONS {
-            let headings = restarted(&own, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
-            let largest = headings.iter().zip(trial.heading()).map(|(own, psi)| (own - psi).abs()).fold(0.0, f64::max);
+            let headings = restarted(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
+            let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());
+            let largest = errors.fold(0.0, f64::max);
             assert!(headings.len() == trial.len() && largest < 1e-5, "{length} s: {largest}");
         }
     }

@@ -1,4 +1,4 @@
-//! The document of a trace, from what its stages made. Nothing is fitted here.
+//! Document of a trace, assembled from the results of its stages. Nothing is fitted here.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,21 +17,21 @@ use crate::base::Base;
 use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME, is_becalmed};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
-use crate::full::Full;
+use crate::full::FullModel;
 use crate::location::Location;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::record::PreparedRecord;
 use crate::remainder::Remainder;
 use crate::rudder::RudderError;
+use crate::sentences;
 use crate::settings::Settings;
 use crate::structures::Structures;
-use crate::words;
 
 mod left;
 mod prior_odds;
 
-/// Everything that is said something about.
+/// Results of the stages of a trace.
 pub struct TraceParts<'a> {
     /// Fitted records.
     pub trials: &'a [Trial],
@@ -40,7 +40,7 @@ pub struct TraceParts<'a> {
     /// Base.
     pub base: &'a Base,
     /// Full model.
-    pub full: &'a Full,
+    pub full: &'a FullModel,
     /// Structures.
     pub structures: &'a Structures,
     /// Candidates.
@@ -49,34 +49,34 @@ pub struct TraceParts<'a> {
     pub identification: &'a [RecordComparison],
     /// Held-out records with their comparisons.
     pub validation: (&'a [Trial], &'a [RecordComparison]),
-    /// Comparisons on records left out in turn.
+    /// Leave-one-out comparisons.
     pub left_out: &'a [Option<RecordComparison>],
-    /// What is left.
+    /// Residual analysis.
     pub remainder: &'a Remainder,
-    /// What is named, and shapes beside it.
+    /// Named effects and shapes.
     pub location: &'a Location,
-    /// Readings that were left out of the fitted records, s.
+    /// Times of the removed compass outliers of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
-    /// Errors of the rudders of the fitted records.
+    /// Measurement errors of the rudders of the fitted records.
     pub rudder_errors: &'a [Option<RudderError>],
-    /// Whether the structures replay the fitted records no nearer than the base.
-    pub no_nearer: bool,
-    /// The records as they were fitted.
+    /// Whether the replay of the base is kept on the fitted records.
+    pub keeps_base: bool,
+    /// Prepared records.
     pub problem: &'a FittedRecords,
 }
 
-/// Squared size over its error below which a candidate cannot be seen.
-const SEEN: f64 = 4.0;
+/// Smallest visibility of an observable candidate.
+const MIN_VISIBILITY: f64 = 4.0;
 
-/// Structures that are listed.
-const LISTED: usize = 20;
+/// Maximum number of listed structures.
+const MAX_LISTED: usize = 20;
 
 impl TraceParts<'_> {
     /// The document.
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = self.location.named.clone();
-        named.retain(|own| self.remainder.is_founded || selection.asks_for(own.term.0));
+        named.retain(|naming| self.remainder.is_credible || selection.asks_for(naming.term.0));
         let effects = self.effects(&named);
         let signature = self.remainder.signature.as_ref();
         let error = self.errors();
@@ -92,8 +92,8 @@ impl TraceParts<'_> {
         let (base, indices) = (&self.base.estimate, self.indices());
         Document {
             schema: SCHEMA.into(),
-            headline: words::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }
-                .sentence(),
+            headline: sentences::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }
+                .text(),
             verdict,
             base: self.with_prime([base.K(), base.T(), base.rudder_bias()]),
             candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
@@ -108,13 +108,13 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: self.remainder.is_unexplained,
-                signature: signature.map(|own| words::signature(own, &self.trials[own.record].title()) + &self.bands()),
+                signature: signature.map(|s| sentences::signature(s, &self.trials[s.record].title()) + &self.bands()),
             },
             disturbance,
             located,
             residual: ResidualEntry {
-                before: self.whiteness(|one| &one.before),
-                after: self.whiteness(|one| &one.after),
+                before: self.whiteness(|comparison| &comparison.before),
+                after: self.whiteness(|comparison| &comparison.after),
             },
             noise: self.noise(),
             model: ModelEntry {
@@ -130,11 +130,11 @@ impl TraceParts<'_> {
         }
     }
 
-    /// The fitted records whose bands do not hold what they are made for.
+    /// Text on the fitted records whose bands miss their nominal coverage.
     fn bands(&self) -> String {
         let records = self.trials.iter().zip(self.identification);
-        let covered = records.filter_map(|(trial, one)| Some((trial, one.after.coverage()?)));
-        covered.filter(|(_, own)| !own.is_held()).map(|(trial, own)| words::band(&trial.title(), &own)).collect()
+        let bands = records.filter_map(|(trial, comparison)| Some((trial, comparison.after.coverage()?)));
+        bands.filter(|(_, band)| !band.is_nominal()).map(|(t, band)| sentences::band(&t.title(), &band)).collect()
     }
 
     fn ship(&self) -> Option<Particulars> {
@@ -146,8 +146,8 @@ impl TraceParts<'_> {
     }
 
     fn equation(&self, id: &str, form: &str) -> &'static str {
-        let own = self.candidates.iter().map(|one| &one.effect).find(|own| own.id() == id && own.form() == form);
-        own.map_or("", |own| own.equation())
+        let mut effects = self.candidates.iter().map(|term| &term.effect);
+        effects.find(|effect| effect.id() == id && effect.form() == form).map_or("", |effect| effect.equation())
     }
 
     fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
@@ -160,45 +160,46 @@ impl TraceParts<'_> {
         let members = self.structures.members();
         let pair = |(weight, fit): &(f64, &StructureFit)| {
             let covariance = fit.covariance();
-            let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
-            let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
-            NormalPair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
+            let entry = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
+            let (denominator, numerator) = ((fit.theta[0], entry(0, 0)), (fit.theta[1], entry(1, 1)));
+            NormalPair { weight: *weight, denominator, numerator, covariance: entry(0, 1) }
         };
         let pairs: Vec<NormalPair> = members.iter().map(pair).collect();
-        let one = |pair: &NormalPair| NormalPair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
-        let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(one).collect::<Vec<_>>()));
+        let reciprocal = |pair: &NormalPair| NormalPair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
+        let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(reciprocal).collect::<Vec<_>>()));
         let bias = members.iter().map(|(weight, fit)| (*weight, fit.physical()[2].0, fit.physical()[2].1));
         self.with_prime([k, t, NormalMixture { parts: bias.collect() }.summary()].map(quantity))
     }
 
-    /// All parameters of a structure as its effects take them.
+    /// Physical parameters of a structure.
     fn parameters(&self, fit: &StructureFit) -> Vec<ParameterEntry> {
         let values = fit.structure.entries().into_iter().zip(fit.physical()).zip(&fit.theta);
-        values.map(|((entry, (value, sd)), &own)| self.parameter(&entry, vec![(1.0, value, sd)], own)).collect()
+        values.map(|((entry, (value, sd)), &fitted)| self.parameter(&entry, vec![(1.0, value, sd)], fitted)).collect()
     }
 
-    /// An entry of θ from its weights, values and standard deviations in some structures; `own` is that of the first.
-    fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, own: f64) -> ParameterEntry {
+    /// Entry of θ averaged over structures (weight, value, standard deviation); `fitted` is its fitted value in the
+    /// first.
+    fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, fitted: f64) -> ParameterEntry {
         let quantity = match entry.prior.is_fitted() {
             true => quantity(NormalMixture { parts }.summary()),
             false => Quantity::bare(parts[0].1),
         };
-        self.number(entry.parameter, quantity, entry.only, entry.ends_at(own))
+        self.number(entry.parameter, quantity, entry.only, entry.is_at_bound(fitted))
     }
 
-    fn number(&self, own: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
-        let prime = self.ship().filter(|_| own.dimension() != [0, 0]).map(|ship| PrimeEntry {
-            quantity: quantity.scaled(ship.prime(own.dimension())),
-            unit: prime_unit(own.unit),
+    fn number(&self, parameter: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
+        let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
+            quantity: quantity.scaled(ship.prime(parameter.dimension())),
+            unit: prime_unit(parameter.unit),
         });
-        let (key, symbol, unit) = (own.key.into(), own.symbol.into(), own.unit.into());
+        let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
         ParameterEntry { key, symbol, quantity, unit, prime, only: self.only(only), at_bound }
     }
 
     /// Parameters of a term, averaged over the structures that have it.
-    fn of_term(&self, name: TermName) -> BTreeMap<String, ParameterEntry> {
+    fn term_parameters(&self, name: TermName) -> BTreeMap<String, ParameterEntry> {
         let members = self.structures.members().into_iter();
-        let all = members.chain(self.structures.all.iter().map(|one| (1e-9 * one.weight, &one.fit)));
+        let all = members.chain(self.structures.all.iter().map(|weighed| (1e-9 * weighed.weight, &weighed.fit)));
         let with = all.filter_map(|(weight, fit)| {
             let place = fit.structure.terms.iter().position(|term| term.name() == name)?;
             let range = fit.structure.ranges()[place].clone();
@@ -206,22 +207,22 @@ impl TraceParts<'_> {
             Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
         });
         let fits: Vec<_> = with.collect();
-        let Some((_, _, entries, own)) = fits.first() else { return BTreeMap::new() };
-        let of = |k: usize| {
+        let Some((_, _, entries, first)) = fits.first() else { return BTreeMap::new() };
+        let average = |k: usize| {
             let parts = fits.iter().map(|(weight, values, ..)| (*weight, values[k].0, values[k].1));
-            let entry = self.parameter(&entries[k], parts.collect(), own[k]);
+            let entry = self.parameter(&entries[k], parts.collect(), first[k]);
             (entry.symbol.clone(), entry)
         };
-        (0..own.len()).map(of).collect()
+        (0..first.len()).map(average).collect()
     }
 
     fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
-        let entry = |one: &EffectNaming| {
-            let (id, form, only) = one.term;
+        let entry = |naming: &EffectNaming| {
+            let (id, form, only) = naming.term;
             let support = self.structures.support_of(id, only);
-            let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
+            let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
-            let alias_forms = one.aliases.iter().chain(&one.forms).map(|name| self.term(*name)).collect();
+            let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
             let asked = self.settings.selection.asks_for(id);
             EffectEntry {
                 id: id.into(),
@@ -230,12 +231,12 @@ impl TraceParts<'_> {
                 only: self.only(only),
                 asked,
                 alias_forms,
-                parameters: self.of_term(one.term),
-                probability: one.probability,
-                probability_by_prior_odds: self.by_prior_odds(|name| one.includes(name)),
+                parameters: self.term_parameters(naming.term),
+                probability: naming.probability,
+                probability_by_prior_odds: self.by_prior_odds(|name| naming.includes(name)),
                 delta_bic: -2.0 * support.gain,
                 p_value: support.p_value,
-                evidence: words::evidence(one, support.gain, asked, self.trials),
+                evidence: sentences::evidence(naming, support.gain, asked, self.trials),
                 aliases,
             }
         };
@@ -244,58 +245,57 @@ impl TraceParts<'_> {
         effects
     }
 
-    /// Waves are named where the noise holds a narrow band.
+    /// Waves as a named effect, where the noise law has them.
     fn waves(&self) -> Option<EffectEntry> {
         let sea = self.full.law.colour.waves?;
-        let own = effects::WaveYaw;
+        let waves = effects::WaveYaw;
         let sd = sea.sd * self.full.law.variance[0].sqrt();
         let values = [sd, sea.frequency, sea.damping];
-        let parameters = own.parameters().iter().zip(values).map(|(parameter, value)| {
+        let parameters = waves.parameters().iter().zip(values).map(|(parameter, value)| {
             (parameter.symbol.into(), self.number(parameter, Quantity::bare(value), None, false))
         });
         let gain = self.full.waves_gain;
+        let probability = |factor: f64| prior_odds::from_gain(0.5 * gain, factor);
         Some(EffectEntry {
-            id: own.id().into(),
-            form: own.form().into(),
-            equation: own.equation().into(),
+            id: waves.id().into(),
+            form: waves.form().into(),
+            equation: waves.equation().into(),
             only: None,
-            asked: self.settings.selection.asks_for(own.id()),
+            asked: self.settings.selection.asks_for(waves.id()),
             aliases: Vec::new(),
             alias_forms: Vec::new(),
             parameters: parameters.collect(),
-            probability: prior_odds::of_gain(0.5 * gain, 1.0),
-            probability_by_prior_odds: prior_odds::FACTORS.map(|factor| prior_odds::of_gain(0.5 * gain, factor)).into(),
+            probability: probability(1.0),
+            probability_by_prior_odds: prior_odds::FACTORS.map(probability).into(),
             delta_bic: -gain,
             p_value: (-0.5 * gain).exp().min(1.0),
-            evidence: words::waves(sd, sea.frequency),
+            evidence: sentences::waves(sd, sea.frequency),
         })
     }
 
     fn candidate(&self, id: &'static str, named: &[EffectNaming]) -> CandidateEntry {
-        let own = self.candidates.iter().filter(|one| one.effect.id() == id);
-        let forms: Vec<FormEntry> = own.map(|one| self.form(one.name(), named)).collect();
+        let terms = self.candidates.iter().filter(|term| term.effect.id() == id);
+        let forms: Vec<FormEntry> = terms.map(|term| self.form(term.name(), named)).collect();
         let is_sea = id == effects::WaveYaw.id();
         let sea = self.full.law.colour.waves.is_some();
         let selection = &self.settings.selection;
         let excluded = !selection.allows(id);
-        let mut known = selection.effects();
-        known.retain(|form| form.id() == id);
-        let becalmed = known.iter().any(|form| is_becalmed(form.as_ref(), None, self.trials, selection));
+        let mut effects = selection.effects();
+        effects.retain(|form| form.id() == id);
+        let becalmed = effects.iter().any(|form| is_becalmed(form.as_ref(), None, self.trials, selection));
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
             (true, false) if !is_sea => {
-                let needs = known.iter().find_map(|form| form.needs());
-                Some(needs.map_or("the records leave no place for it", Regressor::lacking))
+                let needs = effects.iter().find_map(|form| form.needs());
+                Some(needs.map_or("the records cannot show it", Regressor::lacking))
             }
             _ => None,
         };
-        let best = forms
-            .iter()
-            .min_by(|one, other| one.outcome.cmp(&other.outcome).then(other.probability.total_cmp(&one.probability)));
+        let best = forms.iter().min_by(|a, b| a.outcome.cmp(&b.outcome).then(b.probability.total_cmp(&a.probability)));
         let probability = match is_sea {
             true => f64::from(u8::from(sea)),
-            false => self.structures.of_any(|name| name.0 == id),
+            false => self.structures.probability_of_any(|name| name.0 == id),
         };
         let outcome = match (is_sea && !excluded && !becalmed, sea) {
             (true, true) => Outcome::Added,
@@ -310,7 +310,7 @@ impl TraceParts<'_> {
             delta_bic: best.and_then(|best| best.delta_bic),
             p_value: best.and_then(|best| best.p_value),
             reason: reason.map(String::from),
-            sides: self.settings.selection.formula(id).map(|own| own.sides().as_str().into()),
+            sides: self.settings.selection.formula(id).map(|formula| formula.sides().as_str().into()),
             forms,
         }
     }
@@ -318,11 +318,11 @@ impl TraceParts<'_> {
     fn form(&self, name: TermName, named: &[EffectNaming]) -> FormEntry {
         let (_, form, only) = name;
         let visibility = self.structures.visibility.get(&name).copied();
-        let outcome = if named.iter().any(|one| one.term == name) {
+        let outcome = if named.iter().any(|naming| naming.term == name) {
             Outcome::Added
-        } else if named.iter().any(|one| one.aliases.contains(&name) || one.forms.contains(&name)) {
+        } else if named.iter().any(|naming| naming.aliases.contains(&name) || naming.forms.contains(&name)) {
             Outcome::Alias
-        } else if visibility.is_some_and(|seen| seen < SEEN) {
+        } else if visibility.is_some_and(|visibility| visibility < MIN_VISIBILITY) {
             Outcome::NotObservable
         } else {
             Outcome::Rejected
@@ -332,9 +332,9 @@ impl TraceParts<'_> {
             form: form.into(),
             only: self.only(only),
             outcome,
-            probability: self.structures.probabilities.get(&name).map_or(0.0, |own| own.clamp(0.0, 1.0)),
-            delta_bic: support.map(|own| -2.0 * own.gain.clamp(-1e6, 1e6)),
-            p_value: support.map(|own| own.p_value),
+            probability: self.structures.probabilities.get(&name).map_or(0.0, |weight| weight.clamp(0.0, 1.0)),
+            delta_bic: support.map(|support| -2.0 * support.gain.clamp(-1e6, 1e6)),
+            p_value: support.map(|support| support.p_value),
             visibility,
         }
     }
@@ -345,65 +345,65 @@ impl TraceParts<'_> {
 
     fn listed(&self) -> Vec<StructureEntry> {
         let members = self.structures.members().len();
-        let of = |(number, one): (usize, &crate::structures::WeighedStructure)| StructureEntry {
-            effects: one.fit.structure.terms.iter().map(|own| self.term(own.name())).collect(),
-            weight: one.weight,
-            parameters: self.parameters(&one.fit),
+        let entry = |(number, weighed): (usize, &crate::structures::WeighedStructure)| StructureEntry {
+            effects: weighed.fit.structure.terms.iter().map(|term| self.term(term.name())).collect(),
+            weight: weighed.weight,
+            parameters: self.parameters(&weighed.fit),
             member: number < members,
         };
-        self.structures.all.iter().take(LISTED).enumerate().map(of).collect()
+        self.structures.all.iter().take(MAX_LISTED).enumerate().map(entry).collect()
     }
 
     fn errors(&self) -> ErrorEntry {
-        let of = |(trial, one): (&Trial, &RecordComparison)| BeforeAfter {
-            file: words::file_of(trial),
-            before: (&one.before).into(),
-            after: (&one.after).into(),
+        let entry = |(trial, comparison): (&Trial, &RecordComparison)| BeforeAfter {
+            file: sentences::file_of(trial),
+            before: (&comparison.before).into(),
+            after: (&comparison.after).into(),
             horizons: Vec::new(),
         };
-        let judged = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..of((trial, on)) };
-        let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, one)| Some((trial, one.as_ref()?)));
+        let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
+        let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
         ErrorEntry {
-            kept_base: match (self.remainder.is_founded, self.no_nearer) {
-                (false, _) => Some(words::UNFOUNDED.into()),
-                (true, no_nearer) => no_nearer.then(|| words::NO_NEARER.into()),
+            kept_base: match (self.remainder.is_credible, self.keeps_base) {
+                (false, _) => Some(sentences::NOT_CREDIBLE.into()),
+                (true, keeps_base) => keeps_base.then(|| sentences::KEEPS_BASE.into()),
             },
-            identification: self.trials.iter().zip(self.identification).map(of).collect(),
-            validation: self.validation.0.iter().zip(self.validation.1).map(judged).collect(),
-            leave_one_out: left_out.map(judged).collect(),
+            identification: self.trials.iter().zip(self.identification).map(entry).collect(),
+            validation: self.validation.0.iter().zip(self.validation.1).map(unfitted).collect(),
+            leave_one_out: left_out.map(unfitted).collect(),
         }
     }
 
-    /// Whiteness of what a model leaves of the fitted records.
-    fn whiteness(&self, of: fn(&RecordComparison) -> &ReplayResult) -> WhitenessEntry {
-        let records = self.identification.iter().map(of).zip(self.trials);
-        let series = records
-            .map(|(one, trial)| GappedSeries::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
+    /// Whiteness of the residual of one model on the fitted records.
+    fn whiteness(&self, model: fn(&RecordComparison) -> &ReplayResult) -> WhitenessEntry {
+        let records = self.identification.iter().map(model).zip(self.trials);
+        let series =
+            records.map(|(on, trial)| GappedSeries::new(&on.replay.time, &on.replay.residual, trial.sampling_period()));
         whiteness(&series.collect::<Vec<_>>()).into()
     }
 
-    /// The noise of every fitted record.
+    /// Heading noise of every fitted record.
     pub fn heading_noise(&self) -> Vec<HeadingNoise> {
         let law = &self.full.law;
         let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
-        let of = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
+        let noise = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
             heading_sd_rad: (variance * record.full_readings as f64).sqrt(),
             moment: law.colour.moment(*variance, self.problem.longest(), gain.abs()),
         };
-        law.variance.iter().zip(&self.problem.records).map(of).collect()
+        law.variance.iter().zip(&self.problem.records).map(noise).collect()
     }
 
     fn noise(&self) -> Vec<RecordNoiseEntry> {
         let law = &self.full.law;
-        let of = |(number, noise): (usize, HeadingNoise)| {
+        let entry = |(number, noise): (usize, HeadingNoise)| {
             let variance = law.variance[number];
-            let heading = law.colour.wander.filter(|(kind, _)| kind.is_of_heading());
+            let heading = law.colour.correlated.filter(|(kind, _)| kind.is_of_heading());
             let (kind, correlation) = match noise.moment {
                 RandomMoment::OrnsteinUhlenbeck { correlation_s, .. } => (noise.moment.kind(), Some(correlation_s)),
                 other => (other.kind(), None),
             };
             RecordNoiseEntry {
-                file: words::file_of(&self.trials[number]),
+                file: sentences::file_of(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation(self.problem.longest())),
@@ -414,12 +414,12 @@ impl TraceParts<'_> {
                 moment_correlation_s: correlation,
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
-                describes_what_is_left: self.remainder.holds,
+                describes_what_is_left: self.remainder.is_noise,
                 rudder_sd_deg: self.rudder_errors[number].map(|error| to_deg(error.sd)),
                 outliers_s: self.outliers[number].clone(),
             }
         };
-        self.heading_noise().into_iter().enumerate().map(of).collect()
+        self.heading_noise().into_iter().enumerate().map(entry).collect()
     }
 }
 

@@ -1,21 +1,21 @@
-//! What a user wants to be in the model, or kept out of it, whatever the evidence says.
+//! Effects that a user requires in the model, excludes from it, or adds as formulas.
 
 use std::sync::Arc;
 
 use identify::settings::SettingsError;
 use ship::effects::{self, Effect, Formula};
 
-/// Identifier of an effect on the list.
+/// Identifier of a listed effect or of a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EffectId(&'static str);
 
 impl EffectId {
-    /// The effect of this name; `None` where there is none.
+    /// Listed effect of this name; `None` where there is none.
     pub fn find(name: &str) -> Option<Self> {
         effects::all().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
     }
 
-    /// Every effect once, in the order of reports.
+    /// Listed effects, in the order of reports.
     pub fn all() -> Vec<Self> {
         let mut ids: Vec<Self> = effects::all().iter().map(|effect| Self(effect.id())).collect();
         // The forms of an effect follow one another.
@@ -23,30 +23,29 @@ impl EffectId {
         ids
     }
 
-    /// The effect of a formula.
+    /// Identifier of a formula.
     pub fn of(formula: &Formula) -> Self {
         Self(formula.id())
     }
 
-    /// The name.
+    /// Name in files.
     pub fn as_str(self) -> &'static str {
         self.0
     }
 }
 
-/// Effects that are in the model on request, effects that are no candidates, and whether others are looked for.
+/// Selection of the candidate effects.
 ///
-/// An effect that was asked for is fitted in its most probable form, judged and replayed like any other, and never
-/// dropped.
+/// A required effect is fitted in its most probable form, evaluated and replayed like any other, and never dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
-    /// In the model whatever the evidence says.
+    /// Required effects: in the model whatever their evidence.
     pub with: Vec<EffectId>,
-    /// No candidates.
+    /// Excluded effects.
     pub without: Vec<EffectId>,
-    /// Whether effects that were not asked for are looked for.
+    /// Whether effects that are not required are candidates.
     pub search: bool,
-    /// Effects written as formulas, candidates like those of the list.
+    /// Effects given as formulas, candidates like the listed ones.
     pub formulas: Vec<Arc<Formula>>,
 }
 
@@ -57,39 +56,39 @@ impl Default for Selection {
 }
 
 impl Selection {
-    /// Exactly these effects and no search.
+    /// Selection of exactly these effects, without a search.
     pub fn only(with: Vec<EffectId>) -> Self {
         Self { with, search: false, ..Self::default() }
     }
 
-    /// A search that has these effects alone on its menu.
+    /// Search among these listed effects only.
     pub fn among(menu: &[EffectId]) -> Self {
         let without = EffectId::all().into_iter().filter(|id| !menu.contains(id)).collect();
         Self { without, ..Self::default() }
     }
 
-    /// Every effect in every form: those of the list, then the formulas.
+    /// Effects in all their forms: the listed ones, then the formulas.
     pub fn effects(&self) -> Vec<Arc<dyn Effect>> {
         let formulas = self.formulas.iter().map(|formula| Arc::clone(formula) as Arc<dyn Effect>);
         effects::all().into_iter().chain(formulas).collect()
     }
 
-    /// Every effect once, in the order of reports.
+    /// Identifiers of all effects, in the order of reports.
     pub fn ids(&self) -> Vec<EffectId> {
         EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
     }
 
-    /// The formula of this name.
+    /// Formula of this name; `None` where there is none.
     pub fn formula(&self, name: &str) -> Option<&Formula> {
         self.formulas.iter().find(|formula| formula.id() == name).map(Arc::as_ref)
     }
 
-    /// The effect of this name, on the list or a formula; `None` where there is none.
+    /// Listed effect or formula of this name; `None` where there is none.
     pub fn find(&self, name: &str) -> Option<EffectId> {
         EffectId::find(name).or_else(|| self.formula(name).map(EffectId::of))
     }
 
-    /// Refuses an effect that is asked for and excluded at once, and two formulas of one name.
+    /// Fails for an effect that is both required and excluded, and for two formulas of one name.
     pub fn check(&self) -> Result<(), SettingsError> {
         let ids: Vec<&str> = self.formulas.iter().map(|formula| formula.id()).collect();
         if let Some(twice) = (1..ids.len()).find(|&place| ids[..place].contains(&ids[place])) {
@@ -104,12 +103,12 @@ impl Selection {
         }
     }
 
-    /// Whether an effect was asked for.
+    /// Whether an effect is required.
     pub fn asks_for(&self, id: &str) -> bool {
         self.with.iter().any(|asked| asked.as_str() == id)
     }
 
-    /// Whether an effect may be in the model.
+    /// Whether an effect is a candidate.
     pub fn allows(&self, id: &str) -> bool {
         self.asks_for(id) || self.search && !self.without.iter().any(|excluded| excluded.as_str() == id)
     }
@@ -124,14 +123,14 @@ mod tests {
     }
 
     #[test]
-    fn effects_are_known_by_name() {
+    fn effects_are_found_by_name() {
         assert_eq!(EffectId::find("wind"), None);
         let all = EffectId::all();
-        assert!(all.len() == 12 && all.iter().all(|one| EffectId::find(one.as_str()) == Some(*one)), "{all:?}");
+        assert!(all.len() == 12 && all.iter().all(|id| EffectId::find(id.as_str()) == Some(*id)), "{all:?}");
     }
 
     #[test]
-    fn what_is_asked_for_is_allowed_and_what_is_excluded_is_not() {
+    fn required_effects_are_allowed_and_excluded_ones_are_not() {
         let usual =
             Selection { with: vec![id("speed_loss")], without: vec![id("wind_moment")], ..Selection::default() };
         assert_eq!(usual.check(), Ok(()));

@@ -1,4 +1,4 @@
-//! What a trace is asked, and why there may be none.
+//! Settings of a trace, and its errors.
 
 use identify::IdentifyError;
 use identify::hull::EarlierHull;
@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::selection::{EffectId, Selection};
 
-/// How structures are weighed.
+/// Weighting rule of the structures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -23,7 +23,7 @@ impl Rule {
     /// All rules.
     pub const ALL: [Self; 2] = [Self::Posterior, Self::Bic];
 
-    /// The word used in files.
+    /// Name in files.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Posterior => "posterior",
@@ -35,22 +35,21 @@ impl Rule {
 /// Settings of a trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Probability from which an effect is named.
+    /// Smallest probability of a named effect.
     pub probability: f64,
-    /// How structures are weighed.
+    /// Weighting rule of the structures.
     pub rule: Rule,
-    /// Number of monomials that stand among the candidates as effects without a name ([`crate::empirical::all`]).
+    /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all`]).
     pub monomials: usize,
-    /// Effects that are in the model on request, and effects that are no candidates.
+    /// Required and excluded effects.
     pub selection: Selection,
-    /// Whether errors of restarted replays, bands and records left out in turn are computed; a benchmark may do
-    /// without.
+    /// Whether errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
     pub thorough: bool,
-    /// Whether heading, yaw rate and rudder are all that is read, as by a method that knows no other channel.
+    /// Whether only heading, yaw rate and rudder are used, as by methods without other channels.
     pub heading_alone: bool,
-    /// Whether hulls of three degrees of freedom are fitted where the structures leave more than noise.
+    /// Whether hull models of three degrees of freedom are fitted where the residual is more than noise.
     pub hulls: bool,
-    /// Hulls that earlier trials of the ship, or of one like her, left: what is expected of hers.
+    /// Hulls from earlier trials of the ship or a similar one, used as priors.
     pub earlier: Vec<EarlierHull>,
 }
 
@@ -70,7 +69,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Refuses what is out of its range.
+    /// Fails for a setting out of its range.
     pub fn check(&self) -> Result<(), SettingsError> {
         if !(0.5..1.0).contains(&self.probability) {
             return Err(SettingsError::new("probability", self.probability, "a number from 0.5 to below 1"));
@@ -79,7 +78,7 @@ impl Settings {
     }
 }
 
-/// Why there is no trace.
+/// Error of a trace.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TraceError {
     /// A setting is out of its range.
@@ -88,16 +87,16 @@ pub enum TraceError {
     /// The base cannot be fitted.
     #[error(transparent)]
     Base(#[from] IdentifyError),
-    /// An effect was asked for that these records cannot hold.
-    #[error("{} was asked for, but {reason}", effect.as_str())]
+    /// A requested effect is no candidate for these records.
+    #[error("{} cannot be included as requested: {reason}", effect.as_str())]
     Asked {
         /// The effect.
         effect: EffectId,
-        /// What is in its way.
+        /// Reason.
         reason: &'static str,
     },
     /// A record cannot be replayed.
-    #[error("{trial} cannot be replayed through the model: its response leaves the range of numbers")]
+    #[error("{trial}: the replay of the model diverges; check units and signs of its rudder and heading")]
     Replay {
         /// Name of the trial.
         trial: String,

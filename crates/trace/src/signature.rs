@@ -1,29 +1,29 @@
-//! Where in a record a residual lives: time, frequency, heading, side of the rudder.
+//! Location of a residual within a record: time, frequency, heading, side of the rudder.
 
 use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
 
-/// Where a residual lives.
+/// Location of a residual.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signature {
-    /// Number of the record.
+    /// Index of the record.
     pub record: usize,
-    /// Span of time, s, that holds most of it for its length, and its share of the sum of squares.
+    /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
     /// Strongest line of its spectrum; `None` where it has none.
     pub line: Option<SpectralLine>,
-    /// Band of headings, rad, in which it is largest, and the root mean square there, rad.
+    /// Quarter of the headings (rad) with the largest root mean square, and its value, rad.
     pub heading: ([f64; 2], f64),
-    /// Root mean square while the rudder is to port and to starboard, rad.
+    /// Root mean square with the rudder to port and to starboard, rad.
     pub side: [f64; 2],
-    /// Root mean square of all of it, rad.
+    /// Root mean square over the record, rad.
     pub all: f64,
 }
 
-/// Parts of a record among which the fullest is looked for, and bands of headings.
+/// Windows per record, and bands of headings.
 const PARTS: usize = 8;
 const BANDS: usize = 4;
 
-/// Describes the residual of one record, row by row.
+/// Signature of the residual of one record; the slices are rows of the record.
 pub fn signature(
     number: usize,
     time: &[f64],
@@ -51,22 +51,20 @@ pub fn signature(
     let fullest = rows
         .windows(length)
         .enumerate()
-        .max_by(|(one, _), (other, _)| {
-            (sums[one + length] - sums[*one]).total_cmp(&(sums[other + length] - sums[*other]))
-        })
+        .max_by(|(a, _), (b, _)| (sums[a + length] - sums[*a]).total_cmp(&(sums[b + length] - sums[*b])))
         .map(|(_, part)| (rms(part).powi(2) * part.len() as f64, part));
     let span = match fullest {
         Some((square, part)) => ([time[part[0]], time[part[part.len() - 1]]], square / total.max(f64::MIN_POSITIVE)),
         None => ([f64::NAN; 2], 0.0),
     };
     let series = GappedSeries::new(time, residual, spacing);
-    let line = spectrum(&series).into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
+    let line = spectrum(&series).into_iter().max_by(|a, b| a.share.total_cmp(&b.share));
     let mut by_heading = rows.clone();
-    by_heading.sort_by(|&one, &other| heading[one].total_cmp(&heading[other]));
+    by_heading.sort_by(|&a, &b| heading[a].total_cmp(&heading[b]));
     let largest = by_heading
         .chunks(rows.len().div_ceil(BANDS).max(1))
         .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
-        .max_by(|one, other| one.1.total_cmp(&other.1))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or(([0.0; 2], 0.0));
     let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
     Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all }

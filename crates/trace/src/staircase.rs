@@ -1,8 +1,8 @@
-//! The way from the base to the most probable structure, an effect a step: what each of them carries of the heading.
+//! Stepwise replay errors from the base to the most probable structure, one effect per step, by backward elimination
+//! (Draper and Smith 1998).
 //!
-//! Every step is fitted anew for the nearest replay, under white noise, so that a step is what its effect adds and not
-//! what others give way to. Effects stand in the order in which they are missed: the last is that without which the
-//! replay loses least.
+//! Every step is refitted under white noise for the nearest replay. Terms are removed in the order of least loss, so
+//! the last step adds the least important effect.
 
 use rayon::prelude::*;
 
@@ -12,23 +12,23 @@ use crate::model::TermName;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
 
-/// The base, and behind it a step for every term.
+/// Base and one step for every term.
 #[derive(Debug, Clone)]
 pub struct Staircase {
     /// Times of the observed rows of the first record, s.
     pub time: Vec<f64>,
-    /// The steps.
+    /// Steps, the base first.
     pub steps: Vec<StairStep>,
 }
 
-/// A model on the way.
+/// Model of one step.
 #[derive(Debug, Clone)]
 pub struct StairStep {
-    /// The term that is added to the step before; none of the base.
+    /// Term added to the step before; `None` for the base.
     pub term: Option<TermName>,
     /// Root mean square heading error over the rows of all fitted records, rad.
     pub rmse: f64,
-    /// Measured less replayed heading of the first record, rad.
+    /// Heading residual (measured minus replayed) of the first record, rad.
     pub residual: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ fn root_mean_square(fit: &StructureFit) -> f64 {
 }
 
 impl Analysis {
-    /// The staircase of the most probable structure; `None` where it adds nothing to the base.
+    /// Steps to the most probable structure; `None` where it has no terms.
     pub fn staircase(&self) -> Option<Staircase> {
         let problem = &self.problem;
         let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
@@ -56,8 +56,8 @@ impl Analysis {
             let places = 0..fit.structure.terms.len();
             let without = |out: usize| (out, fit.without(out, problem, &weights, Effort::FINE));
             let fewer: Vec<(usize, StructureFit)> = places.into_par_iter().map(without).collect();
-            let nearest = |(_, one): &(usize, StructureFit), (_, other): &(usize, StructureFit)| {
-                root_mean_square(one).total_cmp(&root_mean_square(other))
+            let nearest = |(_, a): &(usize, StructureFit), (_, b): &(usize, StructureFit)| {
+                root_mean_square(a).total_cmp(&root_mean_square(b))
             };
             let (out, next) = fewer.into_iter().min_by(nearest)?;
             steps.push(StairStep::new(Some(fit.structure.terms[out].name()), &fit));

@@ -1,4 +1,4 @@
-//! Records with known truth, for tests of this crate only: an alternating rudder replayed through a response, with
+//! Simulated records with known truth, for tests of this crate: an alternating rudder replayed through a response, plus
 //! white heading noise.
 
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
     ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
 }
 
-/// How a record is made.
+/// Plan of a simulated record.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialPlan {
     /// Rows.
@@ -32,7 +32,7 @@ pub struct TrialPlan {
     pub rudder_deg: f64,
     /// Standard deviation of the heading noise, deg.
     pub noise_deg: f64,
-    /// Rows from one heading to the next.
+    /// Rows per heading.
     pub every: usize,
     /// Seed of the noise.
     pub seed: u64,
@@ -44,13 +44,13 @@ impl Default for TrialPlan {
     }
 }
 
-/// Times at which the rudder is on its way to the other side, s; uneven, so that no effect repeats itself.
+/// Times of the executes, s; uneven, so that the record is not periodic.
 const ORDERS: [f64; 9] = [4.0, 22.0, 60.0, 101.0, 139.0, 184.0, 220.0, 261.0, 300.0];
 
-/// After this time, s, they begin anew.
+/// Period after which the executes repeat, s.
 const LAP: f64 = 336.0;
 
-/// A record of a ship.
+/// Simulates a record of a ship.
 pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
     let time: Vec<f64> = (0..plan.rows).map(|row| row as f64 * plan.period).collect();
     let (mut corners, mut angles, mut angle) = (vec![-1.0], vec![0.0], 0.0);
@@ -80,14 +80,14 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
     of_columns(time, heading, rudder)
 }
 
-/// A record of these columns, s and rad.
+/// Record of these columns, s and rad.
 pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
     let origin = Origin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
     Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 
-/// A record with the answer of the base to a moment, rad of rudder, over time, s.
+/// Record plus the response of the base to a moment (rad of rudder) over time (s).
 pub fn moved(trial: &Trial, moment: impl Fn(f64) -> f64) -> Trial {
     let [mut heading, mut rate, h] = [0.0, 0.0, 0.02];
     let mut measured = trial.heading().to_vec();
@@ -101,8 +101,8 @@ pub fn moved(trial: &Trial, moment: impl Fn(f64) -> f64) -> Trial {
     of_columns(trial.time().to_vec(), measured, trial.rudder().to_vec())
 }
 
-/// A base in a moment that walks: `level` is the standard deviation, deg, that a ship without damping would have at the
-/// end of 300 s.
+/// Record of the base under a random-walk moment: `level` (deg) is the heading standard deviation of a ship without
+/// damping after 300 s.
 pub fn wandering(level: f64, seed: u64) -> Trial {
     let calm = record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() });
     let mut generator = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
@@ -122,7 +122,7 @@ pub fn wandering(level: f64, seed: u64) -> Trial {
     of_columns(calm.time().to_vec(), measured, calm.rudder().to_vec())
 }
 
-/// Strokes of 2.5 deg/s between ±10 deg, off the rows: times, s, and angles, rad.
+/// Rudder strokes of 2.5 deg/s between ±10 deg that begin between rows: times (s) and angles (rad).
 pub fn strokes(rows: usize) -> (Vec<f64>, Vec<f64>) {
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let angle = |t: &f64| {
@@ -133,9 +133,9 @@ pub fn strokes(rows: usize) -> (Vec<f64>, Vec<f64>) {
     (time.clone(), time.iter().map(angle).collect())
 }
 
-/// The same with white noise of a standard deviation in degrees.
+/// Angles (rad) plus white noise of a standard deviation in degrees.
 pub fn noisy(angle: &[f64], sd_deg: f64) -> Vec<f64> {
     let mut generator = ChaCha8Rng::seed_from_u64(7);
     let noise = Normal::new(0.0, from_deg(sd_deg)).expect("a standard deviation");
-    angle.iter().map(|own| own + noise.sample(&mut generator)).collect()
+    angle.iter().map(|angle| angle + noise.sample(&mut generator)).collect()
 }

@@ -1,5 +1,5 @@
-//! Where in a record a moment may have been present for a while, or have set in: boxes of several lengths, or steps,
-//! are tried at every place with the response of the base in closed form, beside all unknowns of the full model.
+//! Start values of moments with an instant: boxes of several lengths, or steps, are tried at all times of a record by
+//! their closed-form response of the base, orthogonal to all unknowns of the full model (score test; Rao 1948).
 
 use estimation::column::dot;
 use nalgebra::{Cholesky, DVector, Dyn};
@@ -10,14 +10,14 @@ use crate::linear::Linear;
 use crate::model::Term;
 use crate::weights::Weights;
 
-/// Lengths of the boxes as shares of the record.
+/// Durations of the boxes as shares of the record.
 const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 
-/// Time between steps that are tried, as a share of the record.
-const BETWEEN_STEPS: f64 = 1.0 / 80.0;
+/// Spacing of the steps that are tried, as a share of the record.
+const STEP_SPACING: f64 = 1.0 / 80.0;
 
-/// The best place of every one of some moments on top of a fit, (m, t_c, d) of one that passes and (m, t₀) of one that
-/// stays; `None` where the unknowns of the fit cannot be told apart.
+/// Best start values of some moments beside a fit: (m, t_c, d) of a transient one and (m, t₀) of a step; `None` where
+/// the precision of the fit is singular.
 pub fn places(
     problem: &FittedRecords,
     fit: &StructureFit,
@@ -31,7 +31,7 @@ pub fn places(
     terms.iter().map(|term| place(problem, fit, weights, term, &linear, &factor, &explained)).collect()
 }
 
-/// The best place of one moment beside a linearised fit, whose unknowns step by `explained`.
+/// Best start values of one moment beside a linearised fit, whose Gauss–Newton step is `explained`.
 fn place(
     problem: &FittedRecords,
     fit: &StructureFit,
@@ -49,8 +49,8 @@ fn place(
     let (start, duration) = (record.time[0], record.duration());
     let lasts = term.priors.len() == 2;
     let boxes: Vec<[f64; 2]> = match lasts {
-        // A moment that stays is a box that outlasts the record.
-        true => vec![[2.0 * duration, BETWEEN_STEPS * duration]],
+        // A step is a box that outlasts the record.
+        true => vec![[2.0 * duration, STEP_SPACING * duration]],
         false => LENGTHS
             .map(|share| share * duration)
             .into_iter()
@@ -69,12 +69,12 @@ fn place(
             let mut cross = DVector::zeros(linear.unknowns);
             block.products(&column, &mut cross);
             let prior = term.priors[0].sd.powi(-2);
-            let own = dot(&column, &column) - cross.dot(&factor.solve(&cross)) + prior;
-            let with = dot(&column, &block.residual) - cross.dot(explained);
-            let gain = with * with / own;
-            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+            let square = dot(&column, &column) - cross.dot(&factor.solve(&cross)) + prior;
+            let product = dot(&column, &block.residual) - cross.dot(explained);
+            let gain = product * product / square;
+            if best.as_ref().is_none_or(|(largest, _)| gain > *largest) {
                 let middle = if lasts { from } else { from + 0.5 * length };
-                best = Some((gain, [with / own, middle, length][..term.priors.len()].to_vec()));
+                best = Some((gain, [product / square, middle, length][..term.priors.len()].to_vec()));
             }
         }
     }
@@ -82,7 +82,7 @@ fn place(
     best.map(|(_, place)| place.into_iter().zip(&term.priors).map(inside).collect())
 }
 
-/// Heading after a unit yaw acceleration has acted for t seconds.
+/// Heading (rad) of a first-order ship after a unit yaw acceleration (1 rad/s²) for t seconds.
 fn step_response(inverse_time: f64, t: f64) -> f64 {
     if t > 0.0 { Transition::new(inverse_time, t).phi2 } else { 0.0 }
 }

@@ -1,20 +1,20 @@
-//! Who waits for a long analysis.
+//! Observer of the leave-one-out folds of a long analysis.
 
-/// Who waits for an analysis of several records, which goes on for long after its result is there.
+/// Observer of an analysis of several records: its leave-one-out folds take long after the main result is known.
 pub trait Watcher: Sync {
-    /// The result is there; every one of so many records is now looked at as if it had been held out.
+    /// The main result is known; `_count` leave-one-out folds begin.
     fn begin_folds(&self, _count: usize) {}
 
-    /// One of them is done.
+    /// One fold is done.
     fn end_fold(&self) {}
 
-    /// Whether to do without; then no record is [left out](crate::Analysis::left_out).
+    /// Whether to stop; [`Analysis::left_out`](crate::Analysis::left_out) is then empty.
     fn is_asked_to_stop(&self) -> bool {
         false
     }
 }
 
-/// Nobody waits.
+/// Observer that does nothing.
 pub(crate) struct NoWatcher;
 
 impl Watcher for NoWatcher {}

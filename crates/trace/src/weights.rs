@@ -1,57 +1,57 @@
-//! The law of the noise, and what makes columns of a record white under it.
+//! Noise law of the records, and the whitening of columns under it.
 
 use estimation::column::dot;
 use estimation::kalman::Whitener;
 
 use crate::noise::{CorrelatedNoise, NoiseColour};
 
-/// The law of the noise: one colour for all records, a size for each.
+/// Noise law: one colour for all records, one variance for each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseLaw {
     /// Colour, in units of the white noise of a row.
     pub colour: NoiseColour,
     /// Variance of the white noise of a full row of every record, rad².
     pub variance: Vec<f64>,
-    /// Power to which the likelihood of every record is raised: below one where the noise holds the error of a model,
-    /// which more rows do not average out (coarsened posterior; Miller and Dunson 2019).
+    /// Power of the likelihood of every record: below one where the noise includes a model error, which more rows do
+    /// not average out (coarsened posterior; Miller and Dunson 2019).
     pub power: Vec<f64>,
 }
 
 impl NoiseLaw {
-    /// Whether it holds a smooth error of a model that is not quite that of the ship.
+    /// Whether it includes a smooth model error.
     pub fn is_of_model(&self) -> bool {
-        matches!(self.colour.wander, Some((CorrelatedNoise::Smooth(_), _)))
+        matches!(self.colour.correlated, Some((CorrelatedNoise::Smooth(_), _)))
     }
 
-    /// Whether it holds a random moment.
+    /// Whether it includes a random yaw moment.
     pub fn is_random_moment(&self) -> bool {
-        self.colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading())
+        self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
     }
 
-    /// Whether two laws are of one kind and about of one size.
+    /// Whether two laws have the same kind and similar variances.
     pub fn is_alike(&self, other: &Self) -> bool {
-        let kind = |law: &Self| (law.colour.wander.map(|(kind, _)| kind), law.colour.waves.is_some());
-        let size = |(one, two): (&f64, &f64)| (one / two).ln().abs() < 0.4;
-        kind(self) == kind(other) && self.variance.iter().zip(&other.variance).all(size)
+        let kind = |law: &Self| (law.colour.correlated.map(|(kind, _)| kind), law.colour.waves.is_some());
+        let is_similar = |(a, b): (&f64, &f64)| (a / b).ln().abs() < 0.4;
+        kind(self) == kind(other) && self.variance.iter().zip(&other.variance).all(is_similar)
     }
 
-    /// White noise of one variance, rad².
+    /// White noise of one variance (rad²) in all records.
     pub fn white(records: usize, variance: f64) -> Self {
         Self { colour: NoiseColour::WHITE, variance: vec![variance; records], power: vec![1.0; records] }
     }
 }
 
-/// Filters of all records, and one over the standard deviation of their rows.
+/// Whitening filters of all records with their scales.
 #[derive(Debug, Clone)]
 pub struct Weights {
-    /// Filters.
+    /// Whitening filters.
     pub whiteners: Vec<Whitener>,
-    /// One over the standard deviation of the noise of a row, 1/rad.
+    /// Inverse standard deviation of the noise of a row, 1/rad.
     pub scale: Vec<f64>,
 }
 
 impl Weights {
-    /// Makes columns of one record white and of unit variance.
+    /// Whitens columns of one record to unit variance.
     pub fn apply(&self, record: usize, columns: &mut [&mut Vec<f64>]) {
         self.whiteners[record].apply(columns);
         let scale = self.scale[record];
@@ -64,13 +64,13 @@ impl Weights {
         column.iter_mut().for_each(|x| *x *= self.scale[record]);
     }
 
-    /// Σ |W e|²/σ² of a residual.
+    /// Misfit Σ |W e|²/σ² of a residual.
     pub fn misfit(&self, residual: &[Vec<f64>]) -> f64 {
-        let of = |(record, residual): (usize, &Vec<f64>)| {
+        let square = |(record, residual): (usize, &Vec<f64>)| {
             let mut white = residual.clone();
             self.apply(record, &mut [&mut white]);
             dot(&white, &white)
         };
-        residual.iter().enumerate().map(of).sum()
+        residual.iter().enumerate().map(square).sum()
     }
 }

@@ -1,5 +1,5 @@
-//! Entries of a trace: parameters, what is left beside the named effects, and records with the yaw moment that the base
-//! lacks on them.
+//! Entries of a trace: parameters, random moment and shapes beside the named effects, records with their missing
+//! moments.
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -33,16 +33,16 @@ pub struct PrimeIndices {
 }
 
 impl PrimeIndices {
-    /// Those of K and T of a ship of these particulars.
+    /// K' and T' from K and T of a ship of these particulars.
     pub fn of([k, t]: [Quantity; 2], ship: Particulars) -> Self {
         Self { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) }
     }
 }
 
-/// A parameter, averaged over the structures that have it.
+/// Parameter, averaged over the structures that have it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ParameterEntry {
-    /// Name in files.
+    /// Key.
     pub key: String,
     /// Symbol, as in the equation.
     pub symbol: String,
@@ -51,174 +51,173 @@ pub struct ParameterEntry {
     pub quantity: Quantity,
     /// Unit.
     pub unit: String,
-    /// The same without dimension, where length and speed of the ship are known and it has one.
+    /// Dimensionless value, where length and speed of the ship are known and the parameter has a dimension.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeEntry>,
-    /// The one record it belongs to.
+    /// Record to which it belongs; `null` for all.
     pub only: Option<String>,
-    /// Whether it ends at an end of its range; left out where it does not.
+    /// Whether it lies at its bound; left out where it does not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_bound: bool,
 }
 
-/// A number without dimension; angles in radians.
+/// Dimensionless number; angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PrimeEntry {
     /// Value, standard deviation and 95 % interval.
     #[serde(flatten)]
     pub quantity: Quantity,
-    /// Unit: 1, or one of angles.
+    /// Unit: 1, or a unit of angles.
     pub unit: String,
 }
 
-/// What a moment depends on.
+/// Dependence of a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Dependence {
     /// Time.
     Time,
-    /// The heading.
+    /// Heading.
     Heading,
-    /// The way to one side of the first course.
+    /// Way to one side of the initial course.
     #[serde(rename = "way to one side")]
     Way,
-    /// The yaw rate.
+    /// Yaw rate.
     #[serde(rename = "yaw rate")]
     YawRate,
-    /// The rudder.
+    /// Rudder.
     Rudder,
-    /// What rudder and yaw rate were before.
+    /// Earlier rudder and yaw rate.
     #[serde(rename = "history of the rudder")]
     History,
 }
 
-/// What is left.
+/// Unexplained residual.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct UnexplainedEntry {
-    /// Whether it is neither chance nor of a shape that was looked for.
+    /// Whether the residual is neither random nor of a shape that was searched for.
     pub present: bool,
-    /// Where it is, where it is more than noise.
+    /// Location of the residual, where it is more than noise.
     pub signature: Option<String>,
 }
 
-/// A random moment beside what is named and located.
+/// Random moment beside named effects and shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct DisturbanceEntry {
-    /// Its size as a rudder angle: the root mean square over the longest record.
+    /// Root mean square over the longest record, as a rudder angle.
     pub rudder_deg: f64,
-    /// Share of the square of the heading error that it carries.
+    /// Share of the squared heading error that it explains.
     pub heading_error_share: f64,
 }
 
-/// A moment that is no effect of the list.
+/// Located moment that is no listed effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct LocatedEntry {
-    /// What it depends on: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
+    /// Dependence: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
     pub depends_on: Dependence,
-    /// The moment in words.
+    /// Description of the moment.
     pub form: String,
-    /// The one record in which it acts.
+    /// Record in which it acts; `null` for all.
     pub only: Option<String>,
-    /// Since when, where it is a matter of instants.
+    /// Start of its action, for a moment with instants.
     pub from_s: Option<f64>,
-    /// Until when.
+    /// End of its action.
     pub until_s: Option<f64>,
-    /// How much worse the records are explained without it, by any random moment as well.
+    /// Decrease of the log evidence without it, under the best random law.
     pub nats: f64,
-    /// Rudder angle that its root mean square is worth.
+    /// Root mean square of the moment, as a rudder angle.
     pub rudder_deg: f64,
-    /// What the records cannot tell from it: other moments, and effects of the list.
+    /// Equivalent explanations: other moments, and listed effects.
     pub alternatives: Vec<String>,
-    /// The moment as an effect that a trace can be asked for, where a formula says it.
+    /// Formula for `--effect`, where there is one.
     pub formula: Option<String>,
 }
 
-/// A record of a trace.
+/// Record of a trace.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct RecordEntry {
-    /// A name that no other record has.
+    /// Unique name.
     pub name: String,
-    /// Its file.
+    /// File.
     pub file: String,
-    /// SHA-256 of its bytes.
+    /// SHA-256 of the file.
     #[serde(default)]
     pub sha256: String,
     /// Whether it was held out.
     pub held_out: bool,
-    /// The table of the record and its replays.
+    /// File of the record and its replays.
     pub curves: String,
-    /// The table of its innovations, where it was fitted.
+    /// File of its innovations, where it was fitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub innovations: Option<String>,
-    /// Length of its ship, where it is known, m.
+    /// Length of the ship, where it is known, m.
     pub length_m: Option<f64>,
-    /// Approach speed of its ship, where it is known, m/s.
+    /// Approach speed of the ship, where it is known, m/s.
     pub speed_m_s: Option<f64>,
 }
 
 impl RecordEntry {
-    /// Length and speed of its ship.
+    /// Length and speed of the ship; `None` where one is unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 }
 
-/// Errors on one record, and how it was used.
+/// Errors on one record, with its use.
 #[derive(Clone, Copy)]
 pub struct RecordErrors<'a> {
     /// Name of the record.
     pub name: &'a str,
     /// `fitted`, `held out` or `left out`.
     pub used: &'static str,
-    /// The errors.
+    /// Errors.
     pub errors: &'a BeforeAfter,
 }
 
-/// A step from the base to the most probable structure.
+/// Step from the base to the most probable structure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct StairEntry {
-    /// Identifier of the effect that is added; none of the base.
+    /// Identifier of the added effect; `null` for the base.
     pub id: Option<String>,
-    /// Its form.
+    /// Form of the added effect.
     pub form: Option<String>,
-    /// Root mean square heading error on the fitted records, every step fitted anew for the nearest replay.
+    /// Root mean square heading error on the fitted records, after a refit for the nearest replay.
     pub heading_rmse_deg: f64,
 }
 
-/// The moment of one record in `trace.json`.
+/// Missing moment of one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MissingMomentEntry {
-    /// The record.
+    /// File of the record.
     pub file: String,
-    /// Its name.
+    /// Name of the record.
     pub record: String,
-    /// The table of the smoothed moment.
+    /// File of the smoothed moment.
     pub moment: String,
-    /// The table of the curves over the channels.
+    /// File of the curves over the channels.
     pub curves: String,
-    /// Root mean square of the moment, as an angle of the rudder.
+    /// Root mean square of the moment, as a rudder angle.
     pub rms_rudder_deg: f64,
-    /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
+    /// Explanation in the tables: the named effects together, otherwise the best candidate alone.
     pub explanation: Option<String>,
-    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all curves that show
-    /// something.
+    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all significant curves.
     pub unlisted: bool,
-    /// Effects inside the bands of all curves that show something.
+    /// Effects inside the bands of all significant curves.
     pub inside_all: Vec<String>,
     /// Curves over the channels, the most likely first.
     pub over: Vec<PanelEntry>,
 }
 
-/// One curve.
+/// Curve of a missing moment over one channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PanelEntry {
-    /// The channel.
+    /// Channel.
     pub channel: String,
-    /// Its column in the tables.
+    /// Column of the channel in the tables.
     pub column: String,
-    /// Share of the variance of its walk that the curve takes away.
+    /// Share of the variance of the walk that the curve explains.
     pub variance_share: Option<f64>,
-    /// Whether the band leaves zero.
+    /// Whether the curve is significant: its band excludes zero somewhere.
     pub shows: bool,
     /// Effects inside the band everywhere.
     pub inside: Vec<String>,

@@ -1,10 +1,10 @@
-//! The missing moment as a smooth function of one channel, with a simultaneous band.
+//! Missing moment as a smooth function of one channel, with a simultaneous band.
 //!
-//! m(t) = f(x(t)) + walk, with f a cubic spline of two inner knots at the thirds of the range that the record visits.
-//! Its coefficients are found by generalised least squares on the headings: what every spline does to the heading goes
-//! through the same filter as the record, whose walk carries what f does not, and the size of that walk is chosen by
-//! likelihood together with f. So the neighbourhood of rows is counted as what it is, and not as so many independent
-//! values of m. The walk begins anywhere, so f is determined up to a constant: its mean over the rows is zero.
+//! m(t) = f(x(t)) + walk, with f a cubic spline of two inner knots at the thirds of the range of the record. Its
+//! coefficients are estimated by generalised least squares on the headings: the heading response to every spline is
+//! whitened by the same filter as the record. The walk absorbs the remaining moment; its intensity is the maximum
+//! likelihood estimate given f. The correlation of neighbouring rows is thus accounted for. The initial value of the
+//! walk is free, so f is determined up to a constant: its mean over the rows is zero.
 //!
 //! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
 
@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::smoother::{HeadingColumn, MomentFilter, MomentRows, STATES};
-use crate::law::FINEST;
+use crate::law::MIN_HEADING_SD;
 
 /// Inner knots, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
@@ -22,23 +22,22 @@ const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
 /// Coefficients of a curve without its constant.
 const COEFFICIENTS: usize = 3 + KNOTS.len();
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 61;
 
-/// Smallest share of its largest magnitude over which a channel has to vary.
-const VARIES: f64 = 5e-3;
+/// Smallest range of a channel over its largest magnitude.
+const MIN_RELATIVE_RANGE: f64 = 5e-3;
 
-/// Smallest pivot of the normalised normal equations: below it the rows do not determine the curve.
-const SINGULAR: f64 = 1e-10;
+/// Smallest pivot of the normalised normal equations for which the rows determine the curve.
+const MIN_PIVOT: f64 = 1e-10;
 
-/// Sizes of the walk that are tried: variance of the heading that it would leave at the end of the record of a ship
-/// without damping, over σ².
+/// Bounds of the level of the walk: heading variance over σ² at the end of the record for a ship without damping.
 const LEVELS: [f64; 2] = [1e-3, 1e13];
 
-/// Points of the grid of sizes.
+/// Number of points of the grid of levels.
 const GRID: usize = 12;
 
-/// The logarithm of λ of largest likelihood, by −2 log L of a filter.
+/// Maximum likelihood estimate of log λ; `value` is −2 log L of a filter.
 pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilter) -> Option<f64>) -> f64 {
     let length = rows.time[rows.count() - 1] - rows.time[0];
     let unit = 20.0 / (length.powi(5) * gain * gain);
@@ -46,21 +45,21 @@ pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilt
     minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
 }
 
-/// −2 log L up to a constant, with σ² at its best value.
+/// Deviance −2 log L up to a constant, with σ² at its estimate.
 pub(super) fn deviance(square: f64, filter: &MomentFilter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
-    n * (square / n + FINEST * FINEST).ln() + filter.log_variance()
+    n * (square / n + MIN_HEADING_SD * MIN_HEADING_SD).ln() + filter.log_variance()
 }
 
-/// σ² from a whitened sum of squares after `coefficients` were fitted, rad².
+/// Estimate of σ² (rad²) from a whitened sum of squares after a fit of `coefficients`.
 pub(super) fn variance(square: f64, rows: usize, coefficients: usize) -> f64 {
-    square / (rows - STATES - coefficients) as f64 + FINEST * FINEST
+    square / (rows - STATES - coefficients) as f64 + MIN_HEADING_SD * MIN_HEADING_SD
 }
 
-/// Fewest rows for a curve.
-pub(super) const FEWEST: usize = 4 * (STATES + COEFFICIENTS);
+/// Smallest number of rows for a curve.
+pub(super) const MIN_ROWS: usize = 4 * (STATES + COEFFICIENTS);
 
-/// The splines on the range of a channel, each with mean zero over the rows.
+/// Spline basis on the range of a channel, each spline with mean zero over the rows.
 struct SplineBasis {
     middle: f64,
     half: f64,
@@ -71,7 +70,7 @@ impl SplineBasis {
     fn new(x: &[f64]) -> Option<Self> {
         let (low, high) = x.iter().fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
         let largest = low.abs().max(high.abs());
-        let varies = high - low > VARIES * largest;
+        let varies = high - low > MIN_RELATIVE_RANGE * largest;
         let mut basis = Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), means: [0.0; COEFFICIENTS] };
         let mut sums = [0.0; COEFFICIENTS];
         for &x in x {
@@ -83,8 +82,8 @@ impl SplineBasis {
 
     fn at(&self, x: f64) -> [f64; COEFFICIENTS] {
         let z = (x - self.middle) / self.half;
-        let [one, other] = KNOTS.map(|knot| (z - knot).max(0.0).powi(3));
-        let values = [z, z * z, z * z * z, one, other];
+        let [first, second] = KNOTS.map(|knot| (z - knot).max(0.0).powi(3));
+        let values = [z, z * z, z * z * z, first, second];
         std::array::from_fn(|k| values[k] - self.means[k])
     }
 
@@ -106,67 +105,67 @@ impl CurveEquations {
         let matrix = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| dot(&columns[i], &columns[j]));
         let scale = DVector::from_fn(COEFFICIENTS, |i, _| matrix[(i, i)].sqrt().recip());
         let scaled = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| matrix[(i, j)] * scale[i] * scale[j]);
-        let factor = scaled.cholesky().filter(|factor| factor.l_dirty().diagonal().min().powi(2) > SINGULAR)?;
+        let factor = scaled.cholesky().filter(|factor| factor.l_dirty().diagonal().min().powi(2) > MIN_PIVOT)?;
         let inverse = factor.inverse();
         let inverse = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
         Some(Self { columns, inverse })
     }
 
-    /// Coefficients, and the sum of squares that is left.
+    /// Coefficients, and the residual sum of squares.
     fn solve(&self, whitened: &[f64]) -> (DVector<f64>, f64) {
         let side = DVector::from_iterator(COEFFICIENTS, self.columns.iter().map(|column| dot(column, whitened)));
         let coefficients = &self.inverse * &side;
-        let left = dot(whitened, whitened) - side.dot(&coefficients);
-        (coefficients, left.max(0.0))
+        let square = dot(whitened, whitened) - side.dot(&coefficients);
+        (coefficients, square.max(0.0))
     }
 }
 
-/// A curve over one channel.
+/// Curve over one channel with its band.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MomentCurve {
-    /// Values of the channel, SI units and rad, over the range that the record visits.
+    /// Values of the channel over the range of the record, SI units and rad.
     pub x: Vec<f64>,
-    /// The moment there, rad of rudder, with mean zero over the rows of the record.
+    /// Moment, rad of rudder, with mean zero over the rows of the record.
     pub moment: Vec<f64>,
-    /// Half the width of the band that holds the whole curve with 95 %, rad of rudder.
+    /// Half-width of the simultaneous 95 % band, rad of rudder.
     pub half_width: Vec<f64>,
-    /// The curves of other explanations, in the order in which they were asked for, found in the same way from what
-    /// they do to the heading.
+    /// Curves of the explanations, in their order, estimated in the same way from their heading responses, rad of
+    /// rudder.
     pub others: Vec<Vec<f64>>,
-    /// Variance per second of the walk that is left beside the curve, rad² of rudder per s.
-    pub left: f64,
-    /// −2 log L with the curve, up to a constant of the record.
+    /// Variance per second of the remaining walk, rad² of rudder per s.
+    pub walk: f64,
+    /// Deviance −2 log L with the curve, up to a constant of the record.
     pub deviance: f64,
 }
 
 impl MomentCurve {
-    /// The curve of a record over a channel, and what it makes of the headings (rad) that other explanations add to
-    /// those of the base. `None` where the channel does not vary or the rows do not determine the curve.
+    /// Curve of a record over a channel, with those of explanations from their heading responses beside the base (rad).
+    /// `None` where the channel does not vary or the rows do not determine the curve.
     pub(super) fn new(
         rows: &MomentRows,
         gain: f64,
         record: &HeadingColumn,
         x: &[f64],
-        others: &[HeadingColumn],
+        explanations: &[HeadingColumn],
     ) -> Option<Self> {
         let count = rows.count();
-        let basis = SplineBasis::new(x).filter(|_| count >= FEWEST)?;
+        let basis = SplineBasis::new(x).filter(|_| count >= MIN_ROWS)?;
         let values: Vec<[f64; COEFFICIENTS]> = x.iter().map(|&x| basis.at(x)).collect();
-        // A moment adds to the heading as the record has it: with the opposite sign it would be an input.
+        // The record contains the response to the moment; as an input of the filter it has the opposite sign.
         let spline = |k: usize| {
             let moment: Vec<f64> = values.iter().map(|values| -values[k]).collect();
             HeadingColumn { heading: vec![0.0; count], forced: rows.pushed(&moment) }
         };
         let splines: Vec<HeadingColumn> = (0..COEFFICIENTS).map(spline).collect();
         let value = |filter: &MomentFilter| {
-            let (_, left) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
-            Some(deviance(left, filter, count))
+            let (_, square) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
+            Some(deviance(square, filter, count))
         };
         let intensity = likeliest(rows, gain, value).exp();
         let filter = rows.filter(intensity);
         let normal = CurveEquations::new(&filter, &splines)?;
-        let (coefficients, left) = normal.solve(&filter.whitened(record));
-        let variance = variance(left, count, COEFFICIENTS);
+        let (coefficients, square) = normal.solve(&filter.whitened(record));
+        let variance = variance(square, count, COEFFICIENTS);
         let width = ChiSquared::new(COEFFICIENTS as f64).ok()?.inverse_cdf(0.95).sqrt();
         let along = |coefficients: &DVector<f64>, values: &[f64; COEFFICIENTS]| dot(coefficients.as_slice(), values);
         let grid = basis.grid();
@@ -182,21 +181,21 @@ impl MomentCurve {
         Some(Self {
             moment: of_grid.iter().map(|values| along(&coefficients, values)).collect(),
             half_width: of_grid.iter().map(half_width).collect(),
-            others: others.iter().map(other).collect(),
-            left: intensity * variance,
-            deviance: deviance(left, &filter, count),
+            others: explanations.iter().map(other).collect(),
+            walk: intensity * variance,
+            deviance: deviance(square, &filter, count),
             x: grid,
         })
     }
 
     /// Whether another curve lies inside the band everywhere.
-    pub fn holds(&self, other: &[f64]) -> bool {
+    pub fn contains(&self, other: &[f64]) -> bool {
         let rows = self.moment.iter().zip(&self.half_width).zip(other);
-        rows.fold(true, |all, ((own, half), other)| all && (own - other).abs() <= *half)
+        rows.fold(true, |all, ((moment, half), other)| all && (moment - other).abs() <= *half)
     }
 
-    /// Whether no moment at all lies inside the band.
+    /// Whether zero lies inside the band everywhere.
     pub fn holds_nothing(&self) -> bool {
-        self.holds(&[0.0; POINTS])
+        self.contains(&[0.0; POINTS])
     }
 }

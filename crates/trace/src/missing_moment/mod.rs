@@ -1,11 +1,9 @@
-//! The yaw moment that the base lacks, seen: smoothed over the time of a record, and as a function of what it may
-//! depend on.
+//! Missing yaw moment of the base: smoothed over the time of a record, and as a function of candidate channels.
 //!
-//! The suspect term is a random state (Kristensen, Madsen and Jørgensen 2004): a moment that walks, beside the heading
-//! and the yaw rate of the fitted base. Smoothed, it is what the base lacks, as the rudder angle with the same moment.
-//! As a function of yaw rate, rudder, heading, speed, wind or sway it shows its shape, and a known effect whose curve
-//! lies inside the band everywhere is one that looks like it. The parameters of the base are taken as known: their
-//! uncertainty is not in the bands.
+//! The missing term is modelled as a random-walk state (Kristensen, Madsen and Jørgensen 2004) beside heading and yaw
+//! rate of the fitted base, given as the rudder angle with the same moment. Its curve over yaw rate, rudder, heading,
+//! speed, wind or sway shows its shape; an effect whose curve lies inside the band everywhere is consistent with it.
+//! The parameters of the base are fixed: the bands do not include their uncertainty.
 
 mod curve;
 mod smoother;
@@ -15,12 +13,12 @@ mod tests;
 use ship::{FirstOrder, Polyline};
 
 use crate::record::PreparedRecord;
-use curve::{FEWEST, deviance, likeliest, variance};
+use curve::{MIN_ROWS, deviance, likeliest, variance};
 use smoother::{HeadingColumn, MomentFilter, MomentRows};
 
 pub use curve::MomentCurve;
 
-/// A channel that a missing moment may depend on.
+/// Channel over which a missing moment is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Over {
     /// Smoothed yaw rate, rad/s.
@@ -41,7 +39,7 @@ impl Over {
     /// Every channel.
     pub const ALL: [Self; 6] = [Self::YawRate, Self::Rudder, Self::Heading, Self::Speed, Self::WindFrom, Self::Sway];
 
-    /// The words used in files.
+    /// Name in files.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::YawRate => "yaw rate",
@@ -54,45 +52,44 @@ impl Over {
     }
 }
 
-/// What another model of a record does to its heading beside the base.
+/// Heading response of another model of a record, relative to the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explanation {
-    /// Effects and forms of the model.
+    /// Effects of the model with their forms.
     pub effects: Vec<(&'static str, &'static str)>,
-    /// Replayed heading of the model less that of the base, rad, at the observed rows.
+    /// Replayed heading of the model minus that of the base at the observed rows, rad.
     pub heading: Vec<f64>,
 }
 
-/// The missing moment as a function of one channel.
+/// Missing moment as a function of one channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// The channel.
+    /// Channel.
     pub over: Over,
-    /// The curve with its band; the others are those of the explanations.
+    /// Curve with its band.
     pub curve: MomentCurve,
-    /// Share of the variance with which the moment wanders (that of its walk per second) that the curve takes away;
-    /// `None` where the moment does not wander.
+    /// Share of the variance per second of the walk that the curve explains; `None` where the moment is constant.
     pub share: Option<f64>,
-    /// Places of the explanations that lie inside the band everywhere; none where no moment at all does, too.
+    /// Indices of the explanations inside the band everywhere; empty where zero is inside as well.
     pub inside: Vec<usize>,
 }
 
-/// The missing moment of one record.
+/// Missing moment of one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MissingMoment {
     /// Times of the rows with a heading, s.
     pub time: Vec<f64>,
     /// Smoothed moment, rad of rudder.
     pub moment: Vec<f64>,
-    /// Its standard deviation, rad of rudder.
+    /// Standard deviation of the smoothed moment, rad of rudder.
     pub sd: Vec<f64>,
-    /// Every channel at the rows that the record has.
+    /// Values of the channels that the record has, at the rows with a heading.
     pub channels: Vec<(Over, Vec<f64>)>,
-    /// Models that may explain it.
+    /// Candidate explanations.
     pub explanations: Vec<Explanation>,
-    /// The moment of every explanation as the same smoother sees it, rad of rudder.
+    /// Moment of every explanation after the same smoother, rad of rudder.
     pub explained: Vec<Vec<f64>>,
-    /// Curves over the channels that vary: first those whose band leaves zero, the most likely of them first.
+    /// Curves over the channels that vary: first those whose band excludes zero, by increasing deviance.
     pub panels: Vec<Panel>,
 }
 
@@ -106,16 +103,16 @@ fn spread(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - mean).powi(2)).sum()
 }
 
-/// A moment whose mean square distance from its mean, rad² of rudder, is below this one does not wander.
-const STILL: f64 = 1e-12;
+/// Smallest variance of a varying moment, rad² of rudder.
+const MIN_VARIANCE: f64 = 1e-12;
 
 impl MissingMoment {
-    /// The moment that a base with these parameters lacks on a record whose heading noise is about `sd`, rad; `None`
-    /// for a record of too few headings, and for a rudder without effect.
+    /// Missing moment of the base on a record with heading noise of about `sd` (rad); `None` for a record of too few
+    /// headings, and for a rudder without effect.
     pub fn new(record: &PreparedRecord, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
         let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
         let count = time.len();
-        if count < FEWEST || !base.K_over_T.is_normal() {
+        if count < MIN_ROWS || !base.K_over_T.is_normal() {
             return None;
         }
         let noise = |&row: &usize| record.full_readings as f64 / record.readings[row] as f64;
@@ -123,13 +120,13 @@ impl MissingMoment {
         let rows = MomentRows::new(*base, time.clone(), variances, sd);
         let first = record.heading[record.observed[0]];
         let heading = record.observed.iter().map(|&row| record.heading[row] - first).collect();
-        let own = HeadingColumn { heading, forced: rows.steered(&record.rudder) };
-        let square = |filter: &MomentFilter| filter.whitened(&own).iter().map(|nu| nu * nu).sum::<f64>();
+        let column = HeadingColumn { heading, forced: rows.steered(&record.rudder) };
+        let square = |filter: &MomentFilter| filter.whitened(&column).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
         let intensity = likeliest(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
         let filter = rows.filter(intensity);
         let unit = variance(square(&filter), count, 0);
-        let states = filter.smoothed(&own);
+        let states = filter.smoothed(&column);
         let moment: Vec<f64> = states.iter().map(|state| state[2]).collect();
 
         let mut channels = vec![
@@ -142,33 +139,33 @@ impl MissingMoment {
             .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
 
         let still = vec![[0.0; 2]; count];
-        let others: Vec<HeadingColumn> = explanations
+        let responses: Vec<HeadingColumn> = explanations
             .iter()
-            .map(|one| HeadingColumn { heading: one.heading.clone(), forced: still.clone() })
+            .map(|model| HeadingColumn { heading: model.heading.clone(), forced: still.clone() })
             .collect();
-        let wanders = spread(&moment) > STILL * count as f64;
+        let varies = spread(&moment) > MIN_VARIANCE * count as f64;
         let mut panels: Vec<Panel> = channels
             .iter()
             .filter_map(|(over, x)| {
-                let curve = MomentCurve::new(&rows, gain, &own, x, &others)?;
-                let share = wanders.then(|| (1.0 - curve.left / (intensity * unit)).max(0.0));
+                let curve = MomentCurve::new(&rows, gain, &column, x, &responses)?;
+                let share = varies.then(|| (1.0 - curve.walk / (intensity * unit)).max(0.0));
                 let inside = match curve.holds_nothing() {
                     true => Vec::new(),
-                    false => (0..others.len()).filter(|&k| curve.holds(&curve.others[k])).collect(),
+                    false => (0..responses.len()).filter(|&k| curve.contains(&curve.others[k])).collect(),
                 };
                 Some(Panel { over: *over, curve, share, inside })
             })
             .collect();
         let rank = |panel: &Panel| (panel.curve.holds_nothing(), panel.curve.deviance);
-        panels.sort_by(|one, other| {
-            let ((one, first), (other, second)) = (rank(one), rank(other));
-            one.cmp(&other).then(first.total_cmp(&second))
+        panels.sort_by(|a, b| {
+            let ((a, first), (b, second)) = (rank(a), rank(b));
+            a.cmp(&b).then(first.total_cmp(&second))
         });
         Some(Self {
             sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
-            explained: others
+            explained: responses
                 .iter()
-                .map(|other| filter.smoothed(other).iter().map(|state| state[2]).collect())
+                .map(|response| filter.smoothed(response).iter().map(|state| state[2]).collect())
                 .collect(),
             time,
             moment,

@@ -1,9 +1,10 @@
-//! Heading, yaw rate and missing moment of a first-order ship as a linear stochastic system: filter and smoother.
+//! Kalman filter and smoother of heading, yaw rate and missing moment of a first-order ship.
 //!
 //! ψ' = r, r' = −a r + b (δ + δ_r + m), m' = w, with a = 1/T, b = K/T, the moment m in rad of rudder and white w of
-//! density λσ² (rad²/s), where σ is the standard deviation of the heading noise of a full row, in whose square all
-//! variances here are counted. Steps between rows are exact. The state begins with a large variance, so that the first
-//! heading, rate and moment are the smoother's.
+//! density λσ² (rad²/s), where σ is the standard deviation of the heading noise of a full row. All variances are in
+//! units of σ². Steps between rows are exact. The initial state has a large variance, so the data determine it.
+//!
+//! Source: Rauch, Tung and Striebel (1965), Maximum likelihood estimates of linear dynamic systems.
 
 use estimation::kalman::smoother::Smoother;
 use estimation::kalman::{Step, System};
@@ -11,21 +12,21 @@ use nalgebra::DMatrix;
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Polyline};
 
-/// Standard deviations with which heading (rad), yaw rate (rad/s) and moment (rad of rudder) begin.
-const LARGE: f64 = 1.0;
+/// Initial standard deviations of heading (rad), yaw rate (rad/s) and moment (rad of rudder).
+const INITIAL_SD: f64 = 1.0;
 
-/// States that are not known in the beginning.
+/// Number of states.
 pub(super) const STATES: usize = 3;
 
-/// Headings of all rows, rad, and what a known input adds to heading (rad) and yaw rate (rad/s) in the step before
-/// each.
+/// Headings of all rows (rad), with the responses of heading (rad) and yaw rate (rad/s) to an input in the step before
+/// each row.
 #[derive(Debug, Clone)]
 pub(super) struct HeadingColumn {
     pub heading: Vec<f64>,
     pub forced: Vec<[f64; 2]>,
 }
 
-/// The rows of one record for a known base.
+/// Rows of one record for a fixed base.
 #[derive(Debug, Clone)]
 pub(super) struct MomentRows {
     base: FirstOrder,
@@ -34,9 +35,9 @@ pub(super) struct MomentRows {
     variance: Vec<f64>,
     /// Transition and covariance for λ = 1 of every distinct step.
     steps: Vec<(f64, Step<STATES>)>,
-    /// The step before every row; the first has none.
+    /// Index of the step before every row; that of the first is unused.
     of_row: Vec<usize>,
-    /// Large initial variances over σ².
+    /// Initial variances over σ².
     prior: f64,
 }
 
@@ -51,13 +52,13 @@ impl MomentRows {
         let mut of_row = vec![0];
         for pair in time.windows(2) {
             let h = pair[1] - pair[0];
-            let known = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
-            of_row.push(known.unwrap_or_else(|| {
+            let equal = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
+            of_row.push(equal.unwrap_or_else(|| {
                 steps.push((h, Step::over(&generator, 1.0, h)));
                 steps.len() - 1
             }));
         }
-        Self { base, time, variance, steps, of_row, prior: (LARGE / sd).powi(2) }
+        Self { base, time, variance, steps, of_row, prior: (INITIAL_SD / sd).powi(2) }
     }
 
     /// Number of rows.
@@ -65,7 +66,7 @@ impl MomentRows {
         self.time.len()
     }
 
-    /// What the recorded rudder and δ_r do to a ship at rest in the step before every row.
+    /// Responses to the recorded rudder and δ_r in the step before every row, from rest.
     pub fn steered(&self, rudder: &Polyline) -> Vec<[f64; 2]> {
         let (a, b) = (self.base.inverse_T, self.base.K_over_T);
         let input = |t: f64| b * (rudder.at(t) + self.base.rudder_bias);
@@ -85,7 +86,7 @@ impl MomentRows {
         forced
     }
 
-    /// What a moment, rad of rudder, known at the rows and linear between them, does in the step before every row.
+    /// Responses to a moment (rad of rudder, linear between rows) in the step before every row, from rest.
     pub fn pushed(&self, moment: &[f64]) -> Vec<[f64; 2]> {
         let steps: Vec<Transition> =
             self.steps.iter().map(|step| Transition::new(self.base.inverse_T, step.0)).collect();
@@ -98,7 +99,7 @@ impl MomentRows {
         (0..self.count()).map(|row| if row == 0 { [0.0; 2] } else { step(row) }).collect()
     }
 
-    /// The filter for a moment that walks with λ, 1/s.
+    /// Filter for a random walk of the moment with λ, 1/s.
     pub fn filter(&self, intensity: f64) -> MomentFilter {
         let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
@@ -106,17 +107,17 @@ impl MomentRows {
     }
 }
 
-/// The filter for one size of the walk.
+/// Filter for one intensity of the walk.
 #[derive(Debug, Clone)]
 pub(super) struct MomentFilter(Smoother<STATES>);
 
 impl MomentFilter {
-    /// Σ log S.
+    /// Σ log S, the log determinant of the covariance over σ².
     pub fn log_variance(&self) -> f64 {
         self.0.filter.log_variance()
     }
 
-    /// The innovations in units of their standard deviation over σ.
+    /// Innovations over the square root of S.
     pub fn whitened(&self, column: &HeadingColumn) -> Vec<f64> {
         self.0.whitened(&column.heading, forced(column))
     }
@@ -132,7 +133,7 @@ impl MomentFilter {
     }
 }
 
-/// What the known input of a column adds to the state before a row.
+/// State response to the input of a column in the step before a row.
 fn forced(column: &HeadingColumn) -> impl Fn(usize) -> [f64; STATES] {
     |row| {
         let [heading, rate] = column.forced[row];

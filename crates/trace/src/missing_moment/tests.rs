@@ -30,14 +30,14 @@ fn the_smoother_is_the_conditional_mean() {
         let of = |t: f64| -> [f64; 3] { [1.0, slope(t).phi1, 0.02 * slope(t).phi2] };
         let prior = sd.powi(-2);
         let (mut seen, mut cross) = (DMatrix::<f64>::from_diagonal(&DVector::from_vec(noise)), DMatrix::zeros(n, n));
-        let mut own = DMatrix::<f64>::zeros(n, n);
+        let mut moments = DMatrix::<f64>::zeros(n, n);
         let since = |row: usize| time[row] - time[0];
         for i in 0..n {
             for j in 0..n {
-                let (one, other) = (of(since(i)), of(since(j)));
-                seen[(i, j)] += prior * (0..3).map(|k| one[k] * other[k]).sum::<f64>();
+                let (row, other) = (of(since(i)), of(since(j)));
+                seen[(i, j)] += prior * (0..3).map(|k| row[k] * other[k]).sum::<f64>();
                 cross[(i, j)] = prior * other[2];
-                own[(i, j)] = prior + intensity * since(i.min(j));
+                moments[(i, j)] = prior + intensity * since(i.min(j));
                 let until = since(i.min(j));
                 let both = |s: f64| of(since(i) - s)[2] * of(since(j) - s)[2];
                 seen[(i, j)] += intensity * integral(until, both);
@@ -47,7 +47,7 @@ fn the_smoother_is_the_conditional_mean() {
         }
         let factor = seen.cholesky().expect("a covariance");
         let mean = &cross * factor.solve(&DVector::from_vec(heading));
-        let left = &own - &cross * factor.solve(&cross.transpose());
+        let left = &moments - &cross * factor.solve(&cross.transpose());
         let filter = rows.filter(intensity);
         let (states, variances) = (filter.smoothed(&column), filter.moment_variance());
         for row in 0..n {
@@ -82,15 +82,15 @@ fn a_known_input_acts_between_rows() {
     let rows = MomentRows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
     let steered = rows.steered(&record.rudder);
     let rudder: Vec<f64> = at_rows(&record.rudder, &time).iter().map(|delta| delta + BASE[2]).collect();
-    for (one, other) in steered.iter().zip(rows.pushed(&rudder)) {
-        assert_relative_eq!(one[0], other[0], epsilon = 1e-14);
-        assert_relative_eq!(one[1], other[1], epsilon = 1e-14);
+    for (steered, pushed) in steered.iter().zip(rows.pushed(&rudder)) {
+        assert_relative_eq!(steered[0], pushed[0], epsilon = 1e-14);
+        assert_relative_eq!(steered[1], pushed[1], epsilon = 1e-14);
     }
 }
 
-/// Of a ship without secrets the band holds zero, and no panel shows anything.
+/// For a ship that is the base the interval contains zero, and no curve excludes it.
 #[test]
-fn nothing_is_missing_where_nothing_is() {
+fn no_moment_is_missing_from_the_true_base() {
     let (mut inside, mut all, mut shown) = (0, 0, 0);
     for seed in 1..=20 {
         let record = PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() }));
@@ -149,14 +149,14 @@ fn cubic_damping_has_its_shape() {
     let rates = &missing.channels[0].1;
     let mean = rates.iter().map(|r| -per * r.powi(3)).sum::<f64>() / rates.len() as f64;
     let truth: Vec<f64> = panel.curve.x.iter().map(|r| -per * r.powi(3) - mean).collect();
-    assert!(panel.curve.holds(&truth));
+    assert!(panel.curve.contains(&truth));
     let (x, moment) = (&panel.curve.x, &panel.curve.moment);
     let at = |r: f64| {
         let place = (1..x.len()).find(|&k| x[k] >= r).unwrap_or(x.len() - 1);
         moment[place - 1] + (moment[place] - moment[place - 1]) * (r - x[place - 1]) / (x[place] - x[place - 1])
     };
     let reach = 0.9 * x[0].abs().min(x[x.len() - 1]);
-    let size = moment.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+    let size = moment.iter().fold(0.0_f64, |largest, m| largest.max(m.abs()));
     for share in [0.3, 0.6, 1.0] {
         let sum = at(share * reach) + at(-share * reach) - 2.0 * at(0.0);
         assert!(sum.abs() < 0.15 * size, "{sum} against {size}");

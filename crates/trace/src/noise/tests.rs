@@ -14,10 +14,10 @@ fn record(time: &[f64]) -> PreparedRecord {
 fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatrix<f64> {
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
-    if let Some((kind @ CorrelatedNoise::Compass(_), level)) = colour.wander {
+    if let Some((kind @ CorrelatedNoise::Compass(_), level)) = colour.correlated {
         let tau = kind.correlation(longest).expect("an error that lasts");
         total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
-    } else if let Some((kind, level)) = colour.wander {
+    } else if let Some((kind, level)) = colour.correlated {
         // Heading after a unit impulse of yaw acceleration, after a unit step, and after one that dies away.
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
         let tau = kind.correlation(longest).unwrap_or(f64::NAN);
@@ -72,13 +72,13 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let a = 0.08;
         let noise = RecordNoise::new(&record, a, longest, 1);
         let colours = [
-            NoiseColour { wander: Some((CorrelatedNoise::White, 50.0)), waves: None },
-            NoiseColour { wander: Some((CorrelatedNoise::Walk, 400.0)), waves: None },
-            NoiseColour { wander: Some((CorrelatedNoise::OrnsteinUhlenbeck(2), 80.0)), waves: None },
-            NoiseColour { wander: Some((CorrelatedNoise::Compass(3), 9.0)), waves: None },
-            NoiseColour { wander: Some((CorrelatedNoise::Compass(2), 2.0)), waves: Some(waves) },
-            NoiseColour { wander: None, waves: Some(waves) },
-            NoiseColour { wander: Some((CorrelatedNoise::Walk, 100.0)), waves: Some(waves) },
+            NoiseColour { correlated: Some((CorrelatedNoise::White, 50.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::Walk, 400.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::OrnsteinUhlenbeck(2), 80.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::Compass(3), 9.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::Compass(2), 2.0)), waves: Some(waves) },
+            NoiseColour { correlated: None, waves: Some(waves) },
+            NoiseColour { correlated: Some((CorrelatedNoise::Walk, 100.0)), waves: Some(waves) },
         ];
         for colour in colours {
             let dense = covariance(&time, a, &colour, longest).cholesky().expect("positive definite");
@@ -107,7 +107,7 @@ fn rows_count_by_their_readings() {
     record.readings.fill(4);
     record.readings[7] = 1;
     let noise = RecordNoise::new(&record, 0.1, 19.0, 4);
-    for colour in [NoiseColour::WHITE, NoiseColour { wander: Some((CorrelatedNoise::White, 1e-12)), waves: None }] {
+    for colour in [NoiseColour::WHITE, NoiseColour { correlated: Some((CorrelatedNoise::White, 1e-12)), waves: None }] {
         let whitener = noise.whitener(&colour);
         let mut column = vec![1.0; 20];
         whitener.apply(&mut [&mut column]);

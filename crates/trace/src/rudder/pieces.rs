@@ -1,25 +1,26 @@
-//! A rudder as a gear moves it: rests and strokes of one rate, fitted to readings with white noise.
+//! Piecewise linear rudder of a steering gear: rests and strokes of one rate, fitted to readings with white noise.
 //!
 //! δ(t) = δ_k + ρ_k (t − t_k) in piece k, ρ_k = 0 in a rest. The pieces are those of the least
-//! Σ (δ_i − δ(t_i))²/s² + price, where a rest costs 2 log n and a stroke 3 log n (optimal partitioning with pruning;
-//! Jackson et al. 2005, Killick et al. 2012; prices as Schwarz 1978). Levels of rests, and rates of strokes, that the
-//! noise does not tell apart are those of one gear and become their mean; a stroke meets a rest where their lines do.
+//! Σ (δ_i − δ(t_i))²/s² + penalty, where a rest costs 2 log n and a stroke 3 log n (optimal partitioning with pruning;
+//! Jackson et al. 2005, Killick et al. 2012; penalties as Schwarz 1978). Levels of rests, and rates of strokes, that do
+//! not differ significantly are pooled; a stroke meets a rest where their lines intersect.
 
-/// Fewest readings of a stroke.
-const STROKE: usize = 3;
+/// Smallest number of readings of a stroke.
+const MIN_STROKE_ROWS: usize = 3;
 
-/// Fewest readings of a piece whose end is moved to where it meets the next.
-const MOVABLE: usize = 2;
+/// Largest shift of an end to the intersection with the next piece, rows; pieces of less than twice as many rows keep
+/// their ends.
+const MAX_SHIFT_ROWS: usize = 2;
 
-/// How often ends and gear are found in turn.
-const ROUNDS: usize = 3;
+/// Maximum number of iterations of ends and pooled rates.
+const MAX_ROUNDS: usize = 3;
 
 /// A rest or a stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RudderPiece {
     /// First row.
     pub from: usize,
-    /// Row behind the last.
+    /// One past the last row.
     pub to: usize,
     /// Mean time of its rows, s.
     time: f64,
@@ -44,8 +45,8 @@ impl RudderPiece {
         self.angle + self.rate * (time - self.time)
     }
 
-    /// The line through some rows by least squares; level where the rudder rests.
-    fn of(time: &[f64], angle: &[f64], from: usize, to: usize, is_stroke: bool) -> Self {
+    /// Least-squares line through some rows, level for a rest.
+    fn fit(time: &[f64], angle: &[f64], from: usize, to: usize, is_stroke: bool) -> Self {
         let rows = (to - from) as f64;
         let mean = |values: &[f64]| values[from..to].iter().sum::<f64>() / rows;
         let (at, level) = (mean(time), mean(angle));
@@ -60,43 +61,43 @@ impl RudderPiece {
 /// Sums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
 type PieceSums = [f64; 5];
 
-/// Squares that a level and a line leave of the rows between two sums.
-fn left(one: &PieceSums, other: &PieceSums, rows: f64) -> [f64; 2] {
-    let [t, tt, y, ty, yy] = std::array::from_fn(|k| other[k] - one[k]);
+/// Residual sums of squares of a level and of a line for the rows between two sums.
+fn residual_squares(from: &PieceSums, to: &PieceSums, rows: f64) -> [f64; 2] {
+    let [t, tt, y, ty, yy] = std::array::from_fn(|k| to[k] - from[k]);
     let (level, spread, product) = (yy - y * y / rows, tt - t * t / rows, ty - t * y / rows);
     let line = if spread > 0.0 { level - product * product / spread } else { level };
     [level.max(0.0), line.max(0.0)]
 }
 
-/// The pieces of least squares and price: first rows, rows behind the last, and whether each is a stroke.
+/// Partition of least squares plus penalty: first row, one past the last row, and whether each piece is a stroke.
 fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> {
     let rows = time.len();
-    let price = (rows as f64).ln();
+    let penalty = (rows as f64).ln();
     let mut sums: Vec<PieceSums> = vec![[0.0; 5]];
     for (t, y) in time.iter().map(|t| t - time[0]).zip(angle.iter().map(|y| (y - angle[0]) / sd)) {
         let last = sums[sums.len() - 1];
-        let own = [t, t * t, y, t * y, y * y];
-        sums.push(std::array::from_fn(|k| last[k] + own[k]));
+        let row = [t, t * t, y, t * y, y * y];
+        sums.push(std::array::from_fn(|k| last[k] + row[k]));
     }
     let mut best = vec![(0.0, 0, false)];
     let mut open: Vec<usize> = Vec::new();
     for end in 1..=rows {
         open.push(end - 1);
         let squares: Vec<[f64; 2]> =
-            open.iter().map(|&from| left(&sums[from], &sums[end], (end - from) as f64)).collect();
+            open.iter().map(|&from| residual_squares(&sums[from], &sums[end], (end - from) as f64)).collect();
         let mut lowest = (f64::INFINITY, 0, false);
         for (&from, [level, line]) in open.iter().zip(&squares) {
-            let rest = best[from].0 + level + 2.0 * price;
-            let stroke = best[from].0 + line + 3.0 * price;
-            if rest < lowest.0 {
-                lowest = (rest, from, false);
+            let level = best[from].0 + level + 2.0 * penalty;
+            let stroke = best[from].0 + line + 3.0 * penalty;
+            if level < lowest.0 {
+                lowest = (level, from, false);
             }
-            if end - from >= STROKE && stroke < lowest.0 {
+            if end - from >= MIN_STROKE_ROWS && stroke < lowest.0 {
                 lowest = (stroke, from, true);
             }
         }
         best.push(lowest);
-        // What is no better without a price is never better.
+        // A start that is no better without its penalty is never better.
         let mut squares = squares.into_iter();
         open.retain(|&from| squares.next().is_some_and(|[_, line]| best[from].0 + line < lowest.0));
     }
@@ -111,17 +112,17 @@ fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> 
     pieces
 }
 
-/// Values with weights (one over their variance), where those that their errors do not tell apart are their mean.
-fn pooled(values: &[(f64, f64)], price: f64) -> Vec<f64> {
+/// Values pooled to their weighted mean where they do not differ significantly; weights are inverse variances.
+fn pooled(values: &[(f64, f64)], penalty: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&one, &other| values[one].0.total_cmp(&values[other].0));
+    order.sort_by(|&a, &b| values[a].0.total_cmp(&values[b].0));
     let mut groups: Vec<(f64, f64, Vec<usize>)> = order.iter().map(|&k| (values[k].0, values[k].1, vec![k])).collect();
     loop {
-        let apart = |pair: &[(f64, f64, Vec<usize>)]| {
+        let distance = |pair: &[(f64, f64, Vec<usize>)]| {
             (pair[1].0 - pair[0].0).powi(2) * pair[0].1 * pair[1].1 / (pair[0].1 + pair[1].1)
         };
-        let nearest = groups.windows(2).map(apart).enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
-        let Some((place, _)) = nearest.filter(|(_, apart)| *apart < price) else { break };
+        let nearest = groups.windows(2).map(distance).enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((place, _)) = nearest.filter(|(_, distance)| *distance < penalty) else { break };
         let (value, weight, members) = groups.remove(place + 1);
         let into = &mut groups[place];
         into.0 = (into.0 * into.1 + value * weight) / (into.1 + weight);
@@ -133,42 +134,42 @@ fn pooled(values: &[(f64, f64)], price: f64) -> Vec<f64> {
     pooled
 }
 
-/// Gives rests and strokes the levels and rates of a gear.
-fn by_gear(pieces: &mut [RudderPiece], sd: f64, price: f64) {
+/// Pools the levels of rests and the rates of strokes.
+fn pool_gear(pieces: &mut [RudderPiece], sd: f64, penalty: f64) {
     let weight = 1.0 / (sd * sd);
     let rests: Vec<usize> = (0..pieces.len()).filter(|&k| !pieces[k].is_stroke && pieces[k].rows() > 1).collect();
     let levels: Vec<(f64, f64)> = rests.iter().map(|&k| (pieces[k].angle, pieces[k].rows() as f64 * weight)).collect();
-    rests.iter().zip(pooled(&levels, price)).for_each(|(&k, level)| pieces[k].angle = level);
+    rests.iter().zip(pooled(&levels, penalty)).for_each(|(&k, level)| pieces[k].angle = level);
     let strokes: Vec<usize> = (0..pieces.len()).filter(|&k| pieces[k].is_stroke).collect();
     let rates: Vec<(f64, f64)> = strokes.iter().map(|&k| (pieces[k].rate.abs(), pieces[k].spread * weight)).collect();
-    for (&k, rate) in strokes.iter().zip(pooled(&rates, price)) {
+    for (&k, rate) in strokes.iter().zip(pooled(&rates, penalty)) {
         pieces[k].rate = rate.copysign(pieces[k].rate);
     }
 }
 
-/// The row at which a piece ends and the next begins: where their lines meet, if that is near to where it was.
-fn meeting(time: &[f64], one: &RudderPiece, other: &RudderPiece) -> usize {
-    let bend = one.rate - other.rate;
-    let near = 2 * MOVABLE;
-    if one.is_stroke == other.is_stroke || one.rows() < near || other.rows() < near {
-        return one.to;
+/// Row at which a piece ends and the next begins: the intersection of their lines, if it is near the old end.
+fn intersection(time: &[f64], piece: &RudderPiece, next: &RudderPiece) -> usize {
+    let bend = piece.rate - next.rate;
+    let near = 2 * MAX_SHIFT_ROWS;
+    if piece.is_stroke == next.is_stroke || piece.rows() < near || next.rows() < near {
+        return piece.to;
     }
-    let met = time[one.to] + (other.at(time[one.to]) - one.at(time[one.to])) / bend;
-    let row = time.partition_point(|t| *t < met);
-    if row.abs_diff(one.to) <= MOVABLE { row } else { one.to }
+    let end = time[piece.to];
+    let row = time.partition_point(|t| *t < end + (next.at(end) - piece.at(end)) / bend);
+    if row.abs_diff(piece.to) <= MAX_SHIFT_ROWS { row } else { piece.to }
 }
 
-/// The pieces of a rudder (s, rad) whose readings have noise of a standard deviation `sd`, rad.
+/// Pieces of a rudder (s, rad) with measurement noise of standard deviation `sd`, rad.
 pub fn pieces(time: &[f64], angle: &[f64], sd: f64) -> Vec<RudderPiece> {
     let mut parts = partition(time, angle, sd);
-    let price = (time.len() as f64).ln();
+    let penalty = (time.len() as f64).ln();
     for round in 0.. {
         let mut all: Vec<RudderPiece> =
-            parts.iter().map(|&(from, to, is_stroke)| RudderPiece::of(time, angle, from, to, is_stroke)).collect();
-        by_gear(&mut all, sd, price);
-        let ends: Vec<usize> = all.windows(2).map(|pair| meeting(time, &pair[0], &pair[1])).collect();
+            parts.iter().map(|&(from, to, is_stroke)| RudderPiece::fit(time, angle, from, to, is_stroke)).collect();
+        pool_gear(&mut all, sd, penalty);
+        let ends: Vec<usize> = all.windows(2).map(|pair| intersection(time, &pair[0], &pair[1])).collect();
         let is_settled = ends.iter().zip(&parts).all(|(end, part)| *end == part.1);
-        if is_settled || round == ROUNDS {
+        if is_settled || round == MAX_ROUNDS {
             return all;
         }
         for (k, end) in ends.into_iter().enumerate() {
@@ -187,15 +188,15 @@ mod tests {
     fn rests_and_strokes_are_those_of_the_gear() {
         let (time, clean) = strokes(400);
         let read = noisy(&clean, 0.3);
-        let found = pieces(&time, &read, 0.3_f64.to_radians());
-        let rates: Vec<f64> = found.iter().filter(|piece| piece.is_stroke).map(|piece| piece.rate.abs()).collect();
+        let fitted = pieces(&time, &read, 0.3_f64.to_radians());
+        let rates: Vec<f64> = fitted.iter().filter(|piece| piece.is_stroke).map(|piece| piece.rate.abs()).collect();
         let is_near = |rate: &f64| (rate.to_degrees() - 2.5).abs() < 0.1;
         assert!(rates.len() > 5 && rates.iter().all(is_near), "{rates:?}");
         let mut distinct = rates.clone();
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
         assert!(distinct.len() < 3, "{distinct:?}");
-        let path = found.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
         let left = |values: &mut dyn Iterator<Item = f64>| -> f64 {
             values.zip(&clean).map(|(value, clean)| (value - clean).powi(2)).sum::<f64>().sqrt()
         };
@@ -203,19 +204,19 @@ mod tests {
     }
 
     #[test]
-    fn what_noise_does_not_tell_apart_is_one() {
+    fn values_that_do_not_differ_significantly_are_pooled() {
         let mean = pooled(&[(1.0, 4.0), (3.0, 4.0), (1.1, 4.0)], 2.0);
         assert_eq!((mean[0], mean[0], mean[1]), (mean[2], 0.5 * (1.0 + 1.1), 3.0));
     }
 
-    /// A jump is no stroke, and a single reading stays what it is.
+    /// A jump is no stroke, and a single deviating reading is kept.
     #[test]
     fn a_helm_that_jumps_has_rests_alone() {
         let time: Vec<f64> = (0..60).map(f64::from).collect();
         let angle: Vec<f64> = (0..60).map(|row| if row == 31 { 0.2 } else { 0.1 * f64::from(row / 20) }).collect();
-        let found = pieces(&time, &angle, 0.003);
-        assert!(found.iter().all(|piece| !piece.is_stroke), "{found:?}");
-        let path = found.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        let fitted = pieces(&time, &angle, 0.003);
+        assert!(fitted.iter().all(|piece| !piece.is_stroke), "{fitted:?}");
+        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
         assert!(path.zip(&angle).all(|(path, angle)| (path - angle).abs() < 1e-12));
     }
 }

@@ -1,11 +1,11 @@
-//! The moments that are looked for beside the list of effects: functions of heading, way to one side, yaw rate, rudder
-//! and its history, and of time.
+//! Dictionary of moment shapes beside the listed effects: functions of heading, way to one side, yaw rate, rudder and
+//! its history, and of time.
 
 use std::f64::consts::{PI, TAU};
 
 use document::trace::Dependence;
 
-use super::motion::ForeseenMotion;
+use super::motion::PredictedMotion;
 
 /// A signal of the ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,8 @@ pub enum ShipSignal {
 }
 
 impl ShipSignal {
-    fn of<'a>(self, motion: &'a ForeseenMotion) -> &'a [f64] {
+    /// Values of the signal at the rows.
+    fn values<'a>(self, motion: &'a PredictedMotion) -> &'a [f64] {
         match self {
             Self::Heading => &motion.heading,
             Self::Way => &motion.way,
@@ -30,7 +31,7 @@ impl ShipSignal {
         }
     }
 
-    /// What a moment with it depends on.
+    /// Dependence of a moment with this signal.
     pub fn dependence(self) -> Dependence {
         match self {
             Self::Heading => Dependence::Heading,
@@ -40,7 +41,7 @@ impl ShipSignal {
         }
     }
 
-    /// On a page, and in a formula.
+    /// Symbols on a page and in a formula.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Heading => ["ψ", "psi"],
@@ -69,7 +70,7 @@ pub enum Power {
 }
 
 impl Power {
-    /// All of them.
+    /// All functions.
     pub const ALL: [Self; 6] =
         [Self::Linear, Self::Square, Self::Cube, Self::Magnitude, Self::Positive, Self::SignedSquare];
 
@@ -84,7 +85,7 @@ impl Power {
         }
     }
 
-    fn of(self, name: &str) -> String {
+    fn notation(self, name: &str) -> String {
         match self {
             Self::Linear => name.to_owned(),
             Self::Square => format!("{name}²"),
@@ -107,61 +108,61 @@ impl Power {
     }
 }
 
-/// A moment but for its coefficients. Times are in s from the beginning of the record, lags in s, numbers of cycles in
-/// the record.
+/// Shape of a moment, without its coefficients. Times are in s from the start of the record, lags in s, frequencies in
+/// cycles per record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// A power of one signal, or the product of two.
+    /// Power of one signal, or the product of two.
     Powers(Dependence, (ShipSignal, Power), Option<(ShipSignal, Power)>),
-    /// δ(t − τ) − δ.
+    /// Delay: δ(t − τ) − δ.
     Delay(f64),
-    /// δ after a lag.
+    /// δ after a first-order lag.
     RudderMemory(f64),
-    /// r after a lag.
+    /// r after a first-order lag.
     RateMemory(f64),
-    /// q δ and q r with r² after a lag.
+    /// q δ and q r, with q = r² after a first-order lag.
     RateSquareMemory(f64),
-    /// q δ and q r with |δ| after a lag.
+    /// q δ and q r, with q = |δ| after a first-order lag.
     RudderSizeMemory(f64),
-    /// δ with the sign of the last change of its size.
+    /// Hysteresis: δ with the sign of the last change of |δ|.
     Hysteresis,
-    /// t, and t².
+    /// t or t².
     Trend(Power),
     /// t ψ.
     HeadingTrend,
     /// t δ and t r.
     ResponseTrend,
-    /// One from an instant on.
+    /// Unit step at an instant.
     Step(f64),
-    /// δ and r from an instant on: another K and T.
+    /// δ and r from an instant on: change of K and T.
     ResponseChange(f64),
-    /// δ from an instant on: another K.
+    /// δ from an instant on: change of K.
     GainChange(f64),
-    /// r from an instant on: another T.
+    /// r from an instant on: change of T.
     TimeChange(f64),
-    /// δ' from an instant on: another delay.
+    /// δ' from an instant on: change of the delay.
     DelayChange(f64),
     /// t − t₀ from an instant on.
     Bend(f64),
-    /// One from an instant on for so long.
+    /// Box: instant, duration.
     Pulse(f64, f64),
-    /// cos² about the middle of such a span.
+    /// cos² pulse: instant, duration.
     Squall(f64, f64),
-    /// A rise from zero to one in such a span.
+    /// Rise from zero to one: instant, duration.
     Ramp(f64, f64),
-    /// A cosine and a sine.
+    /// Cosine and sine.
     Period(f64),
-    /// The same with two harmonics.
+    /// Cosine and sine with two harmonics.
     Harmonics(f64),
-    /// A cosine and a sine whose frequency runs from one to another.
+    /// Cosine and sine of linearly changing frequency: initial, final.
     Chirp(f64, f64),
 }
 
-/// Smallest rate, rad/s, at which the size of the rudder changes.
-const TURNING: f64 = 0.005;
+/// Smallest rudder rate that counts as a change of |δ|, rad/s.
+const MIN_RATE: f64 = 0.005;
 
 impl Shape {
-    /// What it depends on.
+    /// Dependence of the moment.
     pub fn dependence(&self) -> Dependence {
         match self {
             Self::Powers(dependence, ..) => *dependence,
@@ -172,12 +173,12 @@ impl Shape {
         }
     }
 
-    /// Whether it is a matter of time, and so of one record.
+    /// Whether it depends on time, and so belongs to one record.
     pub fn is_of_time(&self) -> bool {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
 
-    /// The class within which shapes are like one another, by its number.
+    /// Index of its class of similar shapes.
     pub fn class(&self) -> usize {
         match self {
             Self::HeadingTrend => 6,
@@ -192,23 +193,22 @@ impl Shape {
         }
     }
 
-    /// Its moments at the rows of a record, one for every coefficient.
-    pub fn moments(&self, motion: &ForeseenMotion) -> Vec<Vec<f64>> {
+    /// Moments at the rows of a record, one per coefficient.
+    pub fn moments(&self, motion: &PredictedMotion) -> Vec<Vec<f64>> {
         let time = &motion.record.time;
         let [start, duration] = motion.span();
         let rows = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..time.len()).map(value).collect() };
         let t = |row: usize| (time[row] - start) / duration;
-        // Half a row on either side of an instant the moment is on its way.
+        // An instant is smoothed over one row.
         let after = |row: usize, at: f64| ((time[row] - start - at) / motion.record.spacing + 0.5).clamp(0.0, 1.0);
         let (rudder, rate) = (&motion.rudder, &motion.rate);
-        let both =
-            |of: &dyn Fn(usize) -> f64| vec![rows(&|row| of(row) * rudder[row]), rows(&|row| of(row) * rate[row])];
+        let both = |q: &dyn Fn(usize) -> f64| vec![rows(&|row| q(row) * rudder[row]), rows(&|row| q(row) * rate[row])];
         let wave = |phase: &dyn Fn(f64) -> f64| [f64::cos, f64::sin].map(|wave| rows(&|row| wave(phase(t(row)))));
         match *self {
-            Self::Powers(_, (one, power), other) => {
-                let (one, other) = (one.of(motion), other.map(|(signal, power)| (signal.of(motion), power)));
-                let beside = |row: usize| other.map_or(1.0, |(signal, power)| power.at(signal[row]));
-                vec![rows(&|row| power.at(one[row]) * beside(row))]
+            Self::Powers(_, (signal, power), factor) => {
+                let factor = factor.map(|(signal, power)| (signal.values(motion), power));
+                let factor = |row: usize| factor.map_or(1.0, |(signal, power)| power.at(signal[row]));
+                vec![rows(&|row| power.at(signal.values(motion)[row]) * factor(row))]
             }
             Self::Delay(lag) => vec![rows(&|row| motion.record.rudder.at(time[row] - lag) - rudder[row])],
             Self::RudderMemory(lag) => vec![motion.lagged(|row| rudder[row], lag)],
@@ -245,7 +245,7 @@ impl Shape {
         }
     }
 
-    /// Its places, with the steps in which they are sought, for a record so long.
+    /// Continuous parameters with the steps of their refinement, for a record of `duration` (s).
     fn places(&mut self, duration: f64) -> Vec<(&mut f64, f64)> {
         match self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => vec![(at, 0.01 * duration)],
@@ -260,26 +260,26 @@ impl Shape {
         }
     }
 
-    /// Number of its places.
+    /// Number of continuous parameters.
     pub fn place_count(&self) -> usize {
         self.clone().places(1.0).len()
     }
 
-    /// The same with one place moved by a share of its step; `None` where there is no such moment in a record so long
-    /// with rows so far apart, s.
+    /// Shape with one continuous parameter moved by a share of its step; `None` where it leaves its range for a record
+    /// of this duration and row spacing, s.
     pub fn moved(&self, place: usize, share: f64, [duration, spacing]: [f64; 2]) -> Option<Self> {
         let mut moved = *self;
         let (value, step) = moved.places(duration).into_iter().nth(place)?;
         *value += share * step;
-        let least = match moved {
+        let min = match moved {
             Self::Period(_) | Self::Harmonics(_) | Self::Chirp(..) => 0.8,
             _ if place == 1 => 2.0 * spacing,
             _ => f64::NEG_INFINITY,
         };
-        (*moved.places(duration)[place].0 >= least).then_some(moved)
+        (*moved.places(duration)[place].0 >= min).then_some(moved)
     }
 
-    /// From when until when it acts, s from the beginning of the record; `None` for one that is no matter of instants.
+    /// Start and end of its action, s from the start of the record; `None` for a shape without instants.
     pub fn span(&self, duration: f64) -> Option<[f64; 2]> {
         match *self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => Some([at, duration]),
@@ -289,36 +289,36 @@ impl Shape {
         }
     }
 
-    /// Whether the response of the ship is another one from an instant on.
+    /// Whether the response of the ship changes at an instant.
     pub fn is_change(&self) -> bool {
         self.class() == Self::ResponseChange(0.0).class()
     }
 
-    /// The moment in words, for a record that begins at a time and lasts so long, s.
-    pub fn words(&self, [start, duration]: [f64; 2]) -> String {
+    /// Description for a record of this start and duration, s.
+    pub fn description(&self, [start, duration]: [f64; 2]) -> String {
         let at = |time: f64| format!("{:.0} s", start + time);
         let span = |from: f64, length: f64| format!("from {:.0} to {}", start + from, at(from + length));
         let period = |cycles: f64| format!("{:.0} s", duration / cycles);
         match *self {
-            Self::Powers(_, (one, power), None) => format!("moment with {}", power.of(one.names()[0])),
-            Self::Powers(_, (one, power), Some((other, second))) => {
-                format!("moment with {} {}", power.of(one.names()[0]), second.of(other.names()[0]))
+            Self::Powers(_, (signal, power), None) => format!("moment with {}", power.notation(signal.names()[0])),
+            Self::Powers(_, (signal, power), Some((other, second))) => {
+                format!("moment with {} {}", power.notation(signal.names()[0]), second.notation(other.names()[0]))
             }
-            Self::Delay(lag) => format!("rudder of {lag:.1} s before"),
+            Self::Delay(lag) => format!("rudder delayed by {lag:.1} s"),
             Self::RudderMemory(lag) => format!("rudder after a lag of {lag:.0} s"),
             Self::RateMemory(lag) => format!("yaw rate after a lag of {lag:.0} s"),
-            Self::RateSquareMemory(lag) => format!("K and T with r² after a lag of {lag:.0} s"),
-            Self::RudderSizeMemory(lag) => format!("K and T with |δ| after a lag of {lag:.0} s"),
-            Self::Hysteresis => String::from("another K while the rudder goes out than while it comes back"),
+            Self::RateSquareMemory(lag) => format!("K and T that vary with r² after a lag of {lag:.0} s"),
+            Self::RudderSizeMemory(lag) => format!("K and T that vary with |δ| after a lag of {lag:.0} s"),
+            Self::Hysteresis => String::from("K that differs between rudder going out and coming back"),
             Self::Trend(Power::Linear) => String::from("moment that grows with time"),
             Self::Trend(_) => String::from("moment that grows with the square of time"),
             Self::HeadingTrend => String::from("moment with ψ that grows with time"),
             Self::ResponseTrend => String::from("K and T that change with time"),
             Self::Step(from) => format!("moment from {} on", at(from)),
-            Self::ResponseChange(from) => format!("another K and T from {} on", at(from)),
-            Self::GainChange(from) => format!("another K from {} on", at(from)),
-            Self::TimeChange(from) => format!("another T from {} on", at(from)),
-            Self::DelayChange(from) => format!("another delay of the rudder from {} on", at(from)),
+            Self::ResponseChange(from) => format!("K and T that change at {}", at(from)),
+            Self::GainChange(from) => format!("K that changes at {}", at(from)),
+            Self::TimeChange(from) => format!("T that changes at {}", at(from)),
+            Self::DelayChange(from) => format!("rudder delay that changes at {}", at(from)),
             Self::Bend(from) => format!("moment that grows from {} on", at(from)),
             Self::Pulse(from, length) => format!("moment {}", span(from, length)),
             Self::Squall(from, length) => format!("squall {}", span(from, length)),
@@ -329,23 +329,23 @@ impl Shape {
         }
     }
 
-    /// The moment as a formula that a user can type, with its coefficient; `None` where no formula says it.
+    /// Formula with its coefficient c, as a user can type it; `None` where it has none.
     pub fn formula(&self) -> Option<String> {
-        let Self::Powers(_, (one, power), other) = *self else { return None };
-        let beside = other.map(|(signal, power)| format!(" * {}", power.formula(signal.names()[1])));
-        Some(format!("c * {}{}", power.formula(one.names()[1]), beside.unwrap_or_default()))
+        let Self::Powers(_, (signal, power), factor) = *self else { return None };
+        let factor = factor.map(|(signal, power)| format!(" * {}", power.formula(signal.names()[1])));
+        Some(format!("c * {}{}", power.formula(signal.names()[1]), factor.unwrap_or_default()))
     }
 }
 
-/// The rudder with the sign of the last change of its size.
-fn hysteresis(motion: &ForeseenMotion) -> Vec<f64> {
+/// δ with the sign of the last change of |δ|.
+fn hysteresis(motion: &PredictedMotion) -> Vec<f64> {
     let mut sign = 0.0;
-    let turned = motion.rudder.iter().zip(&motion.rudder_rate).map(|(rudder, rate)| {
+    let signed = motion.rudder.iter().zip(&motion.rudder_rate).map(|(rudder, rate)| {
         let growth = rate * rudder.signum();
-        if growth.abs() > TURNING {
+        if growth.abs() > MIN_RATE {
             sign = growth.signum();
         }
         sign * rudder
     });
-    turned.collect()
+    signed.collect()
 }

@@ -1,30 +1,30 @@
-//! Every moment that is tried.
+//! Library of all shapes that are tried.
 
 use document::trace::Dependence;
 
 use super::dictionary::{Power, Shape, ShipSignal};
 
-/// Lags, as multiples of the unit of time of a ship.
+/// Delays and lags, as multiples of the time unit of a ship.
 const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
 const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
-/// Instants in a record.
+/// Number of instants per record.
 const INSTANTS: usize = 48;
 
-/// Lengths of moments that pass, as shares of the record; a squall is longer than a pulse by a factor.
+/// Durations of transient moments, as shares of the record, and the factor of a squall over a pulse.
 const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 const SQUALL: f64 = 1.6;
 
-/// Lengths of ramps.
+/// Durations of ramps, as shares of the record.
 const RAMPS: [f64; 3] = [0.08, 0.15, 0.3];
 
-/// Fewest rows in the shortest period of a shape.
-const ROWS_PER_CYCLE: f64 = 6.0;
+/// Smallest number of rows in the shortest period of a shape.
+const MIN_ROWS_PER_CYCLE: f64 = 6.0;
 
-/// Every shape of a ship with the number of places at which its kind is tried, for records of which one lasts so long
-/// with rows so far apart; `unit` is the unit of the lags, all in s.
+/// All shapes with the number of places at which their kind is tried, for a record of this duration and row spacing;
+/// `unit` is the time unit of the lags, all in s.
 pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
-    let mut all: Vec<(Shape, usize)> = of_state(unit).into_iter().map(|shape| (shape, 1)).collect();
+    let mut all: Vec<(Shape, usize)> = state_shapes(unit).into_iter().map(|shape| (shape, 1)).collect();
     all.extend([Shape::Trend(Power::Linear), Shape::Trend(Power::Square)].map(|shape| (shape, 1)));
     all.extend([Shape::HeadingTrend, Shape::ResponseTrend].map(|shape| (shape, 1)));
     for k in 2..INSTANTS - 1 {
@@ -47,28 +47,28 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
         let ramp = |k| Shape::Ramp((0.1 + 0.05 * k as f64) * duration, share * duration);
         all.extend((0..=count).map(|k| (ramp(k), INSTANTS)));
     }
-    let most = duration / (ROWS_PER_CYCLE * spacing);
+    let max_cycles = duration / (MIN_ROWS_PER_CYCLE * spacing);
     let grid = |from: f64, to: f64, step: f64| -> Vec<f64> {
         let count = ((to - from) / step).max(0.0) as usize;
-        (0..=count).map(|k| from + step * k as f64).filter(|cycles| *cycles < most).collect()
+        (0..=count).map(|k| from + step * k as f64).filter(|cycles| *cycles < max_cycles).collect()
     };
     let periods = grid(1.5, 16.0, 0.33);
     all.extend(periods.iter().map(|&cycles| (Shape::Period(cycles), periods.len())));
-    let repeated = grid(2.0, (most / 3.0).min(10.0), 0.15);
+    let repeated = grid(2.0, (max_cycles / 3.0).min(10.0), 0.15);
     all.extend(repeated.iter().map(|&cycles| (Shape::Harmonics(cycles), repeated.len())));
     let ends = grid(1.5, 14.0, 1.0);
     for &from in &ends {
-        let others = ends.iter().filter(|to| **to != from);
-        all.extend(others.map(|&to| (Shape::Chirp(from, to), ends.len() * ends.len())));
+        let other_ends = ends.iter().filter(|to| **to != from);
+        all.extend(other_ends.map(|&to| (Shape::Chirp(from, to), ends.len() * ends.len())));
     }
     all
 }
 
-/// Every shape of the motion of a ship.
-fn of_state(unit: f64) -> Vec<Shape> {
+/// All shapes of the motion of a ship.
+fn state_shapes(unit: f64) -> Vec<Shape> {
     let mut all = Vec::new();
     for signal in [ShipSignal::Heading, ShipSignal::Way, ShipSignal::YawRate, ShipSignal::Rudder] {
-        // r and δ themselves are the base.
+        // Linear terms in r and δ are the base.
         let is_base = matches!(signal, ShipSignal::YawRate | ShipSignal::Rudder);
         let powers = Power::ALL.into_iter().filter(|power| !is_base || *power != Power::Linear);
         all.extend(powers.map(|power| Shape::Powers(signal.dependence(), (signal, power), None)));
@@ -91,7 +91,7 @@ fn of_state(unit: f64) -> Vec<Shape> {
     for lag in MEMORIES.map(|lag| lag * unit) {
         all.extend([Shape::RudderMemory(lag), Shape::RateSquareMemory(lag), Shape::RudderSizeMemory(lag)]);
     }
-    // A short memory of the yaw rate beside one of the rudder is the moment itself.
+    // Short lags of yaw rate and rudder together can represent any moment, so short lags of r are omitted.
     all.extend(MEMORIES[2..].iter().map(|lag| Shape::RateMemory(lag * unit)));
     all.push(Shape::Hysteresis);
     all

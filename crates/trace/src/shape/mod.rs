@@ -1,10 +1,11 @@
-//! Structure against chance: whether what a structure leaves of the records is a moment of some shape, a random moment,
-//! or the noise of the instruments.
+//! Shape analysis: whether the residual of a structure is a moment of some shape, a random moment, or instrument noise.
 //!
-//! A random moment can follow almost any heading, so a shape is held against every random law with the law found anew
-//! beside the shape: G = ½ (h₀ − h), in nats, of −2 log p under the best law without the shapes and with them.
+//! A random moment can follow almost any heading, so a shape competes with every random law, and the law is
+//! re-estimated beside the shape. The gain is G = ½ (h₀ − h) nats, with the criterion h₀ of the best law without shapes
+//! and h of the best law with them. Shapes are functions of predicted states, because smoothed states contain the
+//! random moment.
 
-mod conditioned;
+mod criterion;
 mod dictionary;
 mod laws;
 mod library;
@@ -20,199 +21,200 @@ use rayon::prelude::*;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::weights::{NoiseLaw, Weights};
-use conditioned::{Conditioned, LinearisedStructure};
+use criterion::{LinearisedStructure, WhitenedStructure};
 use laws::RandomLaw;
-use motion::ForeseenMotion;
+use motion::PredictedMotion;
 use point::StructurePoint;
 use search::ShapeSearch;
 
 pub use dictionary::Shape;
 pub use search::{Candidate, Explanation};
 
-/// Gain in nats from which shapes are believed.
-pub const BELIEVED: f64 = 4.0;
+/// Smallest significant gain of shapes, nats.
+pub const MIN_GAIN: f64 = 4.0;
 
-/// Within so many nats two explanations are alike.
-pub const ALIKE: f64 = 3.0;
+/// Largest difference of two equivalent explanations, nats.
+pub const EQUIVALENT_GAIN: f64 = 3.0;
 
-/// Gain in nats from which a smooth moment of unknown shape is believed.
-const SMOOTH: f64 = 1.5;
+/// Smallest significant gain of a smooth moment of unknown shape, nats.
+const MIN_SMOOTH_GAIN: f64 = 1.5;
 
-/// How often the response of the ship is found anew under the best law, and the change of 1/T, as a share, that ends
-/// it.
-const ROUNDS: usize = 3;
-const SETTLED: f64 = 0.02;
+/// Maximum number of updates of the response under the best law, and the relative change of 1/T that ends them.
+const MAX_ROUNDS: usize = 3;
+const TIME_TOLERANCE: f64 = 0.02;
 
-/// The unit of the lags as a share of T, and the longest T for it, s.
+/// Time unit of the lags over T, and the largest T for it, s.
 const UNIT: f64 = 1.0 / 16.0;
-const LONGEST_TIME: f64 = 1000.0;
+const MAX_TIME_S: f64 = 1000.0;
 
-/// A shape that is believed.
+/// Significant shape.
 #[derive(Debug, Clone)]
 pub struct NamedShape {
-    /// The shape.
+    /// Shape.
     pub candidate: Arc<Candidate>,
-    /// How much worse the records are explained without it, nats.
+    /// Loss without the shape, nats.
     pub loss: f64,
-    /// Rudder angle that its root mean square is worth, rad.
+    /// Root mean square of the moment as a rudder angle, rad.
     pub size: f64,
 }
 
-/// A shape whose absence costs less than this share of that of the clearest is no name.
-const SMALLEST_LOSS: f64 = 0.25;
+/// Smallest loss of a listed shape over that of the clearest one.
+const MIN_LOSS_RATIO: f64 = 0.25;
 
-/// A moment that sets in within this share of a record from the change of a ship belongs to the change.
-const BESIDE: f64 = 0.1;
+/// Distance, as a share of the record, within which a moment that begins near a change of the ship belongs to it.
+const MAX_DISTANCE_SHARE: f64 = 0.1;
 
-/// A random moment, as a rudder angle.
+/// Size of a random moment as a rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentSize {
-    /// Its root mean square over the longest record, of a white moment that of its mean over L/U, rad.
+    /// Root mean square over the longest record, rad; for a white moment that of its mean over L/U.
     pub rudder: f64,
-    /// Spectral density of a white one, rad² s.
+    /// Spectral density of a white moment, rad² s; `None` for other kinds.
     pub white: Option<f64>,
 }
 
-/// What is behind the error of a structure.
+/// Shape analysis of the residual of a structure.
 #[derive(Debug, Clone)]
 pub struct ShapeAnalysis {
-    /// Shapes that explain it best with their law; none where none does better than chance.
+    /// Best explanation; without shapes where none is significant.
     pub best: Explanation,
-    /// Other explanations that the records cannot tell from the best.
-    pub alike: Vec<Explanation>,
-    /// Coefficients of the best, rad of rudder at the root mean square of each moment.
+    /// Equivalent explanations, within [`EQUIVALENT_GAIN`] of the best.
+    pub equivalent: Vec<Explanation>,
+    /// Coefficients of the best, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
-    /// How much worse the records are explained without every shape of the best, nats.
+    /// Losses without each of the shapes of the best, nats.
     pub losses: Vec<f64>,
     /// Gain of the best, nats.
     pub gain: f64,
-    /// −2 log p under the best law without any shape.
-    pub alone: f64,
-    /// Power to which the likelihood is raised: below one where the noise holds the error of a model. Gain and losses
-    /// hold it, heights do not.
+    /// Criterion of the best random law without shapes.
+    pub random_criterion: f64,
+    /// Power of the likelihood: below one where the noise includes a model error. Gain and losses include it, criteria
+    /// do not.
     pub power: f64,
-    /// Whether a smooth moment explains it better than any random law, where no shape does.
+    /// Whether a smooth moment of unknown shape is significant, where no shape is.
     pub is_smooth: bool,
-    /// The random moment beside the best.
+    /// Random moment beside the shapes.
     pub moment: Option<MomentSize>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,
-    /// Mean square of the heading error that the shapes leave, rad²; `None` without any.
+    /// Mean square heading residual with the shapes, rad²; `None` without shapes.
     pub mean_square: Option<f64>,
-    /// What is new in every heading of the records under the best, over its standard deviation.
+    /// Normalised innovations of the records under the best explanation.
     pub innovations: Vec<Vec<f64>>,
 }
 
 impl ShapeAnalysis {
-    /// Whether shapes are believed.
+    /// Whether the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
-        self.gain >= BELIEVED
+        self.gain >= MIN_GAIN
     }
 
-    /// The shapes of the best that are clear, the clearest first, for records that last so long, s.
+    /// Shapes of the best with a clear loss, the clearest first; `duration` (s) is that of a record.
     pub fn named(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
-        let size = |own: &Vec<f64>| own.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = |coefficients: &Vec<f64>| coefficients.iter().map(|x| x * x).sum::<f64>().sqrt();
         let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
         let all =
-            shapes.map(|((shape, &loss), own)| NamedShape { candidate: Arc::clone(shape), loss, size: size(own) });
+            shapes.map(|((shape, &loss), rms)| NamedShape { candidate: Arc::clone(shape), loss, size: size(rms) });
         let mut all: Vec<NamedShape> = all.collect();
-        all.sort_by(|one, other| other.loss.total_cmp(&one.loss));
+        all.sort_by(|a, b| b.loss.total_cmp(&a.loss));
         let least =
-            all.first().map_or(0.0, |clearest| (SMALLEST_LOSS * clearest.loss).max(BELIEVED).min(clearest.loss));
-        all.retain(|own| own.loss >= least);
-        let from = |own: &NamedShape| own.candidate.shape.span(0.0).map(|[from, _]| from);
+            all.first().map_or(0.0, |clearest| (MIN_LOSS_RATIO * clearest.loss).max(MIN_GAIN).min(clearest.loss));
+        all.retain(|named| named.loss >= least);
+        let from = |named: &NamedShape| named.candidate.shape.span(0.0).map(|[from, _]| from);
         let changes: Vec<(Option<usize>, Option<f64>)> = all
             .iter()
-            .filter(|own| own.candidate.shape.is_change())
-            .map(|own| (own.candidate.only, from(own)))
+            .filter(|named| named.candidate.shape.is_change())
+            .map(|named| (named.candidate.only, from(named)))
             .collect();
-        all.retain(|own| {
-            let only = own.candidate.only;
-            let is_beside = |&(other, at): &(Option<usize>, Option<f64>)| {
-                let apart = at.zip(from(own)).map(|(at, from)| (at - from).abs());
-                other == only && apart.is_some_and(|apart| apart <= BESIDE * duration(only))
+        all.retain(|named| {
+            let only = named.candidate.only;
+            let is_near = |&(other, at): &(Option<usize>, Option<f64>)| {
+                let distance = at.zip(from(named)).map(|(at, from)| (at - from).abs());
+                other == only && distance.is_some_and(|distance| distance <= MAX_DISTANCE_SHARE * duration(only))
             };
-            own.candidate.shape.is_change() || !changes.iter().any(is_beside)
+            named.candidate.shape.is_change() || !changes.iter().any(is_near)
         });
         all
     }
 
-    /// What the records cannot tell from the best, in words: moments of other classes that explain the records as well.
+    /// Descriptions of equivalent explanations by shapes of other classes; `span` is start and duration (s) of a
+    /// record.
     pub fn alternatives(&self, span: impl Fn(Option<usize>) -> [f64; 2]) -> Vec<String> {
         let classes =
-            |own: &Explanation| own.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
+            |all: &Explanation| all.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
         let mut seen = vec![classes(&self.best)];
         let mut all = Vec::new();
-        for other in &self.alike {
-            let own = classes(other);
-            if seen.iter().all(|seen| !own.is_subset(seen) && !own.is_superset(seen)) {
-                let words = other.shapes.iter().map(|shape| shape.shape.words(span(shape.only)));
-                all.push(words.collect::<Vec<_>>().join(" and "));
-                seen.push(own);
+        for other in &self.equivalent {
+            let classes = classes(other);
+            if seen.iter().all(|seen| !classes.is_subset(seen) && !classes.is_superset(seen)) {
+                let shapes = other.shapes.iter().map(|shape| shape.shape.description(span(shape.only)));
+                all.push(shapes.collect::<Vec<_>>().join(" and "));
+                seen.push(classes);
             }
         }
         all
     }
 }
 
-/// Looks for shapes in what a fit leaves, beside a law whose waves are known; `None` where its unknowns cannot be told
-/// apart.
+/// Shape analysis of the residual of a fit, with the waves of its noise law; `None` where its columns are dependent.
 pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
-    let mut stand = Stand::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
-    for _ in 0..ROUNDS {
-        let (before, colour) = (stand.point.theta[0], stand.laws[stand.law].colour);
-        let point = stand.point.moved(&stand.structure[stand.law].as_ref()?.step());
+    let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
+    for _ in 0..MAX_ROUNDS {
+        let (before, colour) = (current.point.theta[0], current.laws[current.law].colour);
+        let point = current.point.moved(&current.structure[current.law].as_ref()?.step());
         let change = (point.theta[0] / before - 1.0).abs();
-        let Some(next) = Stand::new(point, problem, law, &colour) else { break };
-        let is_settled = change < SETTLED && next.laws[next.law].colour == colour;
-        stand = next;
+        let Some(next) = ShapeProblem::new(point, problem, law, &colour) else { break };
+        let is_settled = change < TIME_TOLERANCE && next.laws[next.law].colour == colour;
+        current = next;
         if is_settled {
             break;
         }
     }
-    stand.explained(problem, law)
+    current.explained(problem, law)
 }
 
-/// A point with its motions and laws.
-struct Stand<'a> {
+/// Structure at a point, with predicted motions, under all random laws.
+struct ShapeProblem<'a> {
     point: StructurePoint<'a>,
-    motions: Vec<ForeseenMotion<'a>>,
+    motions: Vec<PredictedMotion<'a>>,
     linearised: LinearisedStructure,
     laws: Vec<RandomLaw>,
     weights: Vec<Weights>,
-    structure: Vec<Option<Conditioned>>,
-    height: f64,
+    structure: Vec<Option<WhitenedStructure>>,
+    /// Criterion and index of the best law without shapes.
+    criterion: f64,
     law: usize,
 }
 
-impl<'a> Stand<'a> {
-    /// A point whose motions are foreseen under a colour; `None` where its unknowns cannot be told apart.
+impl<'a> ShapeProblem<'a> {
+    /// Problem at a point, with motions predicted under a colour; `None` where its columns are dependent.
     fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
         let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);
         let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
-        let under = |law: &RandomLaw| {
+        let whitened = |law: &RandomLaw| {
             let weights = point.weights(&law.colour);
-            (Conditioned::new(&linearised, &weights, law.freedom), weights)
+            (WhitenedStructure::new(&linearised, &weights, law.freedom), weights)
         };
-        let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(under).unzip();
-        let (height, law) = search::best(&structure)?;
-        Some(Self { point, motions, linearised, laws, weights, structure, height, law })
+        let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
+        let (criterion, law) = search::best(&structure)?;
+        Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 
-    /// −2 log p under another law.
-    fn under(&self, law: &RandomLaw) -> f64 {
+    /// Criterion under another law.
+    fn criterion_under(&self, law: &RandomLaw) -> f64 {
         let weights = self.point.weights(&law.colour);
-        Conditioned::new(&self.linearised, &weights, law.freedom).map_or(f64::INFINITY, |own| own.height())
+        let whitened = WhitenedStructure::new(&self.linearised, &weights, law.freedom);
+        whitened.map_or(f64::INFINITY, |structure| structure.criterion())
     }
 
-    /// Looks for the shapes.
+    /// Searches the shapes and summarises the best explanation.
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
         let longest = problem.longest();
         let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
-        let smooth =
-            smooth.unwrap_or_default().par_iter().map(|law| self.under(law)).reduce(|| f64::INFINITY, f64::min);
+        let smooth = smooth.unwrap_or_default();
+        let smooth = smooth.par_iter().map(|law| self.criterion_under(law)).reduce(|| f64::INFINITY, f64::min);
         let search = ShapeSearch {
             motions: &self.motions,
             laws: &self.laws,
@@ -220,40 +222,43 @@ impl<'a> Stand<'a> {
             structure: &self.structure,
             unknowns: self.linearised.linear.unknowns,
         };
-        let unit = UNIT / self.point.theta[0].max(LONGEST_TIME.recip());
+        let unit = UNIT / self.point.theta[0].max(MAX_TIME_S.recip());
         let ((mut best, mut without), mut tried) = search.explain(unit);
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
         let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
-        if 0.5 * power * (self.height - best.height) < BELIEVED {
-            (best, without) = (Explanation { shapes: Vec::new(), height: self.height, law: self.law }, Vec::new());
+        if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN {
+            best = Explanation { shapes: Vec::new(), criterion: self.criterion, law: self.law };
+            without.clear();
         }
         tried.retain(|other| {
-            other.shapes.len() <= best.shapes.len() && power * (other.height - best.height) < 2.0 * ALIKE
+            other.shapes.len() <= best.shapes.len()
+                && power * (other.criterion - best.criterion) < 2.0 * EQUIVALENT_GAIN
         });
         let whole = search.whole(&best)?;
         let step = whole.step();
         Some(ShapeAnalysis {
-            losses: without.iter().map(|height| 0.5 * power * (height - best.height)).collect(),
+            losses: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),
             coefficients: search::coefficients(&best.shapes, &step),
             mean_square: (!best.shapes.is_empty()).then(|| {
-                search::square_left(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64
+                search::residual_square(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64
             }),
             heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
             moment: self.moment(&best, whole.sd(), [longest, problem.time]),
-            alike: tried,
-            gain: 0.5 * power * (self.height - best.height),
+            equivalent: tried,
+            gain: 0.5 * power * (self.criterion - best.criterion),
             power,
-            alone: self.height,
-            is_smooth: best.shapes.is_empty() && 0.5 * power * (self.height - smooth) >= SMOOTH,
+            random_criterion: self.criterion,
+            is_smooth: best.shapes.is_empty() && 0.5 * power * (self.criterion - smooth) >= MIN_SMOOTH_GAIN,
             innovations: whole.innovations(),
             best,
         })
     }
 
-    /// The random moment of an explanation whose white noise has a standard deviation in units of that of the records.
+    /// Random moment of an explanation; `sd` is the standard deviation of its white noise in units of that of the
+    /// records.
     fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
         let law = &self.laws[best.law];
-        let (kind, _) = law.colour.wander.filter(|_| law.is_moment())?;
+        let (kind, _) = law.colour.correlated.filter(|_| law.is_moment())?;
         let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
         Some(match kind {
             CorrelatedNoise::White => MomentSize { rudder: size / time.sqrt(), white: Some(size * size) },

@@ -1,7 +1,7 @@
-//! The motion of a ship as it was foreseen one row ahead, and the answer of her heading to a moment.
+//! One-step-ahead predicted motion of a ship, and the heading response to a moment.
 //!
-//! Heading and yaw rate are those of the replay and, under a random moment, what the filter of the law predicts from
-//! the rows before. A shape of these states is known before the row that it explains; one of smoothed states would hold
+//! Heading and yaw rate are those of the replay plus, under a random moment, the Kalman prediction from the rows
+//! before. A shape of predicted states is exogenous to the row that it explains; one of smoothed states would contain
 //! the random moment itself and always explain it.
 
 use estimation::kalman::MOST;
@@ -13,37 +13,37 @@ use ship::replay::replay_states;
 use crate::model::{Structure, step};
 use crate::record::PreparedRecord;
 
-/// Solver steps for each shortest time constant.
+/// Solver steps per shortest time constant.
 const STEPS: f64 = 2.0;
 
-/// Rows among which the median of the rudder is taken: a reading that stands alone is no motion of the rudder.
-const MEDIAN: usize = 5;
+/// Window of the running median of the rudder, rows: a single deviating reading is no motion.
+const MEDIAN_ROWS: usize = 5;
 
-/// One record: its motion, and the first-order response that a moment goes through.
+/// Predicted motion of one record, with the first-order response to a moment.
 #[derive(Debug, Clone)]
-pub struct ForeseenMotion<'a> {
-    /// The record.
+pub struct PredictedMotion<'a> {
+    /// Record.
     pub record: &'a PreparedRecord,
-    /// Its number.
+    /// Index of the record.
     pub number: usize,
     /// 1/T, 1/s, and K/T, 1/s².
     pub base: [f64; 2],
-    /// Foreseen heading less the first one at every row, rad.
+    /// Predicted heading minus the first one at every row, rad.
     pub heading: Vec<f64>,
-    /// Foreseen yaw rate at every row, rad/s.
+    /// Predicted yaw rate at every row, rad/s.
     pub rate: Vec<f64>,
     /// Rudder angle at every row, rad.
     pub rudder: Vec<f64>,
-    /// Its rate, rad/s.
+    /// Rudder rate at every row, rad/s.
     pub rudder_rate: Vec<f64>,
-    /// Way to starboard of the first course at every row for a speed of 1 m/s: ∫ sin(ψ − ψ₀) dt, s.
+    /// Way to starboard of the initial course at every row, per m/s of speed: ∫ sin(ψ − ψ₀) dt, s.
     pub way: Vec<f64>,
     transitions: Vec<Transition>,
 }
 
-impl<'a> ForeseenMotion<'a> {
-    /// The motion of a record under a structure; `predicted` are the states of a random moment at the observed rows, as
-    /// far as those before tell: heading (rad) and yaw rate (rad/s) come first.
+impl<'a> PredictedMotion<'a> {
+    /// Motion of a record under a structure; `predicted` are the one-step predictions of the states of a random moment
+    /// at the observed rows: heading (rad) and yaw rate (rad/s) come first.
     pub fn new(
         record: &'a PreparedRecord,
         number: usize,
@@ -64,8 +64,8 @@ impl<'a> ForeseenMotion<'a> {
         });
         if let Some(predicted) = predicted {
             for row in 0..record.time.len() {
-                heading[row] += between(record, row, |k| predicted[k][0]);
-                rate[row] += between(record, row, |k| predicted[k][1]);
+                heading[row] += interpolated(record, row, |k| predicted[k][0]);
+                rate[row] += interpolated(record, row, |k| predicted[k][1]);
             }
         }
         let first = heading[0];
@@ -89,9 +89,8 @@ impl<'a> ForeseenMotion<'a> {
         }
     }
 
-    /// Change of the heading at the observed rows for a moment at the rows that runs straight between them, rad for rad
-    /// of rudder.
-    pub fn answer(&self, moment: &[f64]) -> Vec<f64> {
+    /// Heading response at the observed rows to a moment that is linear between rows, rad per rad of rudder.
+    pub fn heading_response(&self, moment: &[f64]) -> Vec<f64> {
         let gain = self.base[1];
         let (mut state, mut row) = (State::default(), 0);
         let at = |&observed: &usize| {
@@ -105,7 +104,7 @@ impl<'a> ForeseenMotion<'a> {
         self.record.observed.iter().map(at).collect()
     }
 
-    /// A signal of the rows after a first-order lag, s.
+    /// Signal at the rows after a first-order lag (s).
     pub fn lagged(&self, signal: impl Fn(usize) -> f64, lag: f64) -> Vec<f64> {
         let mut all = vec![signal(0)];
         for (row, transition) in self.transitions.iter().enumerate() {
@@ -115,19 +114,19 @@ impl<'a> ForeseenMotion<'a> {
         all
     }
 
-    /// Heading a time (s) after a yaw rate of one, s.
-    pub fn turned(&self, time: f64) -> f64 {
+    /// Heading response to an initial unit yaw rate after a time (s), s.
+    pub fn rate_response(&self, time: f64) -> f64 {
         Transition::new(self.base[0], time).phi1
     }
 
-    /// First instant, s, and length, s.
+    /// Start and duration, s.
     pub fn span(&self) -> [f64; 2] {
         [self.record.time[0], self.record.duration()]
     }
 }
 
-/// A value of the observed rows at any row, straight between two of them.
-fn between(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
+/// Linear interpolation of values at the observed rows.
+fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
     let after = record.observed.partition_point(|&observed| observed < row);
     let last = record.observed.len() - 1;
     if after > last {
@@ -143,9 +142,9 @@ fn between(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) ->
 
 /// Running medians.
 fn medians(values: &[f64]) -> Vec<f64> {
-    let half = MEDIAN / 2;
+    let half = MEDIAN_ROWS / 2;
     let at = |row: usize| {
-        let mut near: [f64; MEDIAN] =
+        let mut near: [f64; MEDIAN_ROWS] =
             std::array::from_fn(|k| values[(row + k).saturating_sub(half).min(values.len() - 1)]);
         near.sort_by(f64::total_cmp);
         near[half]
@@ -153,7 +152,7 @@ fn medians(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Slopes of a signal from the row before to the row behind.
+/// Central differences of a signal.
 fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let at = |row: usize| {
@@ -175,7 +174,7 @@ mod tests {
         let read = |(row, psi): (usize, &f64)| if is_lost(row) { f64::NAN } else { *psi };
         let heading = clean.heading().iter().enumerate().map(read).collect();
         let record = PreparedRecord::whole(&of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec()));
-        let at = |row: usize| between(&record, row, |observed| record.observed[observed] as f64);
+        let at = |row: usize| interpolated(&record, row, |observed| record.observed[observed] as f64);
         assert_eq!([0, 19, 25].map(at), [0.0, 19.0, 25.0]);
         (20..25).for_each(|row| assert!((at(row) - row as f64).abs() < 1e-9, "{row}: {}", at(row)));
     }

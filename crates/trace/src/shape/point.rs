@@ -1,4 +1,4 @@
-//! Where a structure stands when shapes are looked for beside it, and its linearisation there.
+//! Point of a structure in the shape analysis, and its linearisation there.
 
 use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
 use crate::law;
@@ -6,15 +6,15 @@ use crate::linear::HeadingSensitivities;
 use crate::noise::{NoiseColour, RecordNoise};
 use crate::weights::{NoiseLaw, Weights};
 
-use super::conditioned::LinearisedStructure;
-use super::motion::ForeseenMotion;
+use super::criterion::LinearisedStructure;
+use super::motion::PredictedMotion;
 
-/// A gap of more than so many usual steps between headings, and the gaps of a record that are bridged: heading and yaw
-/// rate begin anew behind them.
-const GAP: f64 = 3.5;
-const MOST_GAPS: usize = 4;
+/// Smallest gap, in usual steps between headings, behind which heading and yaw rate restart, and the largest number of
+/// such gaps per record.
+const MIN_GAP_STEPS: f64 = 3.5;
+const MAX_GAPS: usize = 4;
 
-/// A structure with its unknowns, and the noise of a ship of its T.
+/// Structure at a point, with the noise transitions of a ship of its T.
 #[derive(Clone)]
 pub struct StructurePoint<'a> {
     problem: &'a FittedRecords,
@@ -28,33 +28,33 @@ pub struct StructurePoint<'a> {
 }
 
 impl<'a> StructurePoint<'a> {
-    /// That of a fit under a law.
+    /// Point of a fit, with the variances of a noise law.
     pub fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &NoiseLaw) -> Self {
         let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
         let sd = law.variance.iter().map(|variance| variance.sqrt()).collect();
         Self { problem, fit, sd, noise: problem.noise_of(theta[0]), theta, initial }
     }
 
-    /// What makes columns white under a colour.
+    /// Whitening weights under a colour.
     pub fn weights(&self, colour: &NoiseColour) -> Weights {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(colour)).collect();
         Weights { whiteners, scale: self.sd.iter().map(|sd| sd.recip()).collect() }
     }
 
-    /// The motions of the records as they are foreseen under a colour.
-    pub fn motions(&self, colour: &NoiseColour) -> Vec<ForeseenMotion<'a>> {
+    /// One-step-ahead predicted motions of the records under a colour.
+    pub fn motions(&self, colour: &NoiseColour) -> Vec<PredictedMotion<'a>> {
         let structure = &self.fit.structure;
         let residual = self.problem.residual(structure, &self.theta, &self.initial);
-        let is_of_moment = colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading());
-        let of = |number: usize| {
+        let is_of_moment = colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading());
+        let motion = |number: usize| {
             let (record, initial) = (&self.problem.records[number], self.initial[number]);
             let predicted = is_of_moment.then(|| self.noise[number].whitener(colour).predicted(&residual[number]));
-            ForeseenMotion::new(record, number, structure, &self.theta, initial, predicted.as_deref())
+            PredictedMotion::new(record, number, structure, &self.theta, initial, predicted.as_deref())
         };
-        (0..self.problem.records.len()).map(of).collect()
+        (0..self.problem.records.len()).map(motion).collect()
     }
 
-    /// Number of unknowns of the base, and of the terms.
+    /// Number of fitted parameters of the base, and of the terms.
     fn counts(&self) -> [usize; 2] {
         let base = self.fit.structure.base_count();
         let fitted = self.fit.structure.fitted();
@@ -62,13 +62,13 @@ impl<'a> StructurePoint<'a> {
         [of_base, fitted.len() - of_base]
     }
 
-    /// Residual and columns: base, initial states and gaps first, which are integrated out, then the parameters of the
-    /// terms, which pay.
-    pub fn linearised(&self, motions: &[ForeseenMotion]) -> LinearisedStructure {
+    /// Linearisation with base, initial states and restarts behind gaps first (integrated), then the parameters of the
+    /// terms (penalised).
+    pub fn linearised(&self, motions: &[PredictedMotion]) -> LinearisedStructure {
         let structure = &self.fit.structure;
         let mut linear = self.problem.linear(structure, &self.theta, &self.initial);
         let [of_base, of_terms] = self.counts();
-        let gaps: Vec<Vec<[Vec<f64>; 2]>> = motions.iter().map(behind_gaps).collect();
+        let gaps: Vec<Vec<[Vec<f64>; 2]>> = motions.iter().map(restarts).collect();
         let states = linear.unknowns - of_terms;
         let integrated = states + 2 * gaps.iter().map(Vec::len).sum::<usize>();
         let mut next = states;
@@ -85,7 +85,7 @@ impl<'a> StructurePoint<'a> {
                 next += 2;
             }
             if structure.terms.is_empty() {
-                with_foreseen_rate(block, motion);
+                use_predicted_rate(block, motion);
             }
         }
         linear.unknowns = integrated + of_terms;
@@ -107,18 +107,18 @@ impl<'a> StructurePoint<'a> {
             integrated,
             prior,
             sizes: fitted[of_base..].iter().map(size).collect(),
-            least: self.least(),
+            min_variance: self.min_variance(),
         }
     }
 
-    /// Least variance of the white noise of a row over that of the records, in the record where it is largest.
-    fn least(&self) -> f64 {
-        // That of any ship of this length and speed: the same for every structure.
+    /// Lower bound of the white-noise variance of a row over that of the records, in the record where it is largest.
+    fn min_variance(&self) -> f64 {
+        // With the gain of any ship of this length and speed, so that it is the same for every structure.
         let floors = law::floors(self.problem, self.problem.time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 
-    /// The point after a step of all unknowns of [`linearised`](Self::linearised), within their ranges.
+    /// Point after a step of all unknowns of [`linearised`](Self::linearised), within their bounds.
     #[must_use]
     pub fn moved(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
@@ -139,27 +139,28 @@ impl<'a> StructurePoint<'a> {
     }
 }
 
-/// Puts the answer to the moment that another 1/T is in the place of that of a replay: exact under any noise.
-fn with_foreseen_rate(block: &mut HeadingSensitivities, motion: &ForeseenMotion) {
+/// Replaces the sensitivity to 1/T by the response to the moment of the predicted yaw rate, which is exact under any
+/// noise.
+fn use_predicted_rate(block: &mut HeadingSensitivities, motion: &PredictedMotion) {
     let moment: Vec<f64> = motion.rate.iter().map(|rate| -rate / motion.base[1]).collect();
     let by_inverse_time = block.columns.iter_mut().find(|(unknown, _)| *unknown == 0);
-    by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.answer(&moment));
+    by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.heading_response(&moment));
 }
 
-/// Heading and yaw rate that begin anew behind the largest gaps.
-fn behind_gaps(motion: &ForeseenMotion) -> Vec<[Vec<f64>; 2]> {
+/// Columns of a restart of heading and yaw rate behind each of the largest gaps.
+fn restarts(motion: &PredictedMotion) -> Vec<[Vec<f64>; 2]> {
     let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
     let lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = lengths.clone();
     sorted.sort_by(f64::total_cmp);
     let Some(usual) = sorted.get(sorted.len() / 2) else { return Vec::new() };
-    let mut gaps: Vec<usize> = (0..lengths.len()).filter(|&row| lengths[row] > GAP * usual).collect();
-    gaps.sort_by(|&one, &other| lengths[other].total_cmp(&lengths[one]));
+    let mut gaps: Vec<usize> = (0..lengths.len()).filter(|&row| lengths[row] > MIN_GAP_STEPS * usual).collect();
+    gaps.sort_by(|&a, &b| lengths[b].total_cmp(&lengths[a]));
     let columns = |&row: &usize| {
         let after = |value: &dyn Fn(f64) -> f64| -> Vec<f64> {
             time.iter().map(|&t| if t < time[row + 1] { 0.0 } else { value(t - time[row + 1]) }).collect()
         };
-        [after(&|_| 1.0), after(&|t| motion.turned(t))]
+        [after(&|_| 1.0), after(&|t| motion.rate_response(t))]
     };
-    gaps.iter().take(MOST_GAPS).map(columns).collect()
+    gaps.iter().take(MAX_GAPS).map(columns).collect()
 }

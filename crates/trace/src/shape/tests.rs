@@ -10,7 +10,7 @@ use ship::angle::{from_deg, to_deg};
 use ship::effects::{Effect, Formula};
 use trial::Trial;
 
-use super::conditioned::{Conditioned, LinearisedStructure};
+use super::criterion::{LinearisedStructure, WhitenedStructure};
 use super::dictionary::{Power, ShipSignal};
 use super::library::shapes;
 use super::*;
@@ -42,9 +42,9 @@ fn with_formula(formula: &str, c: f64) -> Trial {
     record(&ship(vec![(effect, vec![c])]), plan(5))
 }
 
-/// What the base leaves of records.
+/// Shape analysis of the residual of the base.
 fn analysed(trials: &[Trial]) -> ShapeAnalysis {
-    let base = Base::of(trials).expect("a base");
+    let base = Base::fit(trials).expect("a base");
     let response = base.estimate.response;
     let time = ship_time(trials, response.K_over_T);
     let records = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
@@ -59,7 +59,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
 /// The clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
     let named = analysis.named(|_| 300.0);
-    named.first().map(|own| (own.candidate.shape, own.candidate.only)).expect("a shape")
+    named.first().map(|named| (named.candidate.shape, named.candidate.only)).expect("a shape")
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn moments_that_depend_on_time_are_located() {
         6.0 * (squall(90.0) - squall(210.0))
     })]);
     let spans: Vec<[f64; 2]> =
-        squalls.named(|_| 300.0).iter().filter_map(|own| own.candidate.shape.span(300.0)).collect();
+        squalls.named(|_| 300.0).iter().filter_map(|named| named.candidate.shape.span(300.0)).collect();
     let is_held = |middle: f64| spans.iter().any(|[from, until]| (from..=until).contains(&&middle));
     assert!(is_held(90.0) && is_held(210.0), "{spans:?}");
 }
@@ -117,15 +117,15 @@ fn chance_is_no_shape() {
 /// A moment of one record is none of another; K and T that change are found where they do.
 #[test]
 fn shapes_of_time_belong_to_their_record() {
-    let others = [in_moment(7, |_| 0.0), in_moment(8, |t| if t > 120.0 { 1.5 } else { 0.0 })];
-    let analysis = analysed(&others);
+    let trials = [in_moment(7, |_| 0.0), in_moment(8, |t| if t > 120.0 { 1.5 } else { 0.0 })];
+    let analysis = analysed(&trials);
     let (shape, only) = clearest(&analysis);
     assert_eq!((only, shape.is_of_time()), (Some(1), true), "{shape:?}");
 }
 
-/// −2 log p by dense matrices: (n − p) log s² + log det(XᵀX) + price, and with one column more.
+/// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) + penalties, and with one column more.
 #[test]
-fn heights_are_those_of_dense_matrices() {
+fn criteria_are_those_of_dense_matrices() {
     let rows = 40;
     let column = |k: usize| (0..rows).map(|row| (0.3 * (k * row + row) as f64).sin() + 0.1 * k as f64).collect();
     let columns: Vec<Vec<f64>> = (1..5).map(column).collect();
@@ -137,7 +137,7 @@ fn heights_are_those_of_dense_matrices() {
         integrated: 2,
         prior: vec![(0.0, 0.0); 2],
         sizes: vec![0.7],
-        least: 0.0,
+        min_variance: 0.0,
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
@@ -152,26 +152,26 @@ fn heights_are_those_of_dense_matrices() {
         let variance = (&e - &x * &step).norm_squared() / freedom;
         let integrated = matrix.view((0, 0), (2, 2)).determinant();
         // The t value of a coefficient behind those before it, from where it is neutral.
-        let price = |k: usize, away: f64| {
+        let penalty = |k: usize, away: f64| {
             let before = x.columns(0, k).into_owned();
-            let own = x.column(k).into_owned();
+            let column = x.column(k).into_owned();
             let inverse = (before.transpose() * &before).try_inverse().expect("independent");
-            let alone = &own - &before * (inverse * (before.transpose() * &own));
-            let later: f64 = (k + 1..count).map(|j| step[j] * alone.dot(&x.column(j))).sum();
-            let c = (step[k] + away) * alone.norm() + later / alone.norm();
+            let independent = &column - &before * (inverse * (before.transpose() * &column));
+            let later: f64 = (k + 1..count).map(|j| step[j] * independent.dot(&x.column(j))).sum();
+            let c = (step[k] + away) * independent.norm() + later / independent.norm();
             log_n.max((c * c / variance).ln_1p()) + 1.0
         };
         let sizes: f64 = (0..2).map(|k| x.column(k).norm_squared().ln()).sum();
-        let paid = price(2, 0.7) + if count > 3 { price(3, 0.0) } else { 0.0 };
-        freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() - sizes + log_n + paid
+        let penalties = penalty(2, 0.7) + if count > 3 { penalty(3, 0.0) } else { 0.0 };
+        freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() - sizes + log_n + penalties
     };
-    let own = Conditioned::new(&structure, &weights, 1).expect("independent");
-    assert!((own.height() - dense(3)).abs() < 1e-8, "{} {}", own.height(), dense(3));
+    let whitened = WhitenedStructure::new(&structure, &weights, 1).expect("independent");
+    assert!((whitened.criterion() - dense(3)).abs() < 1e-8, "{} {}", whitened.criterion(), dense(3));
     let mut white = vec![vec![(0, columns[3].clone())]];
     white[0][0].1.iter_mut().for_each(|x| *x *= 10.0);
-    let with = own.extended(&white).expect("independent");
-    assert!((own.height_of(&white) - dense(4)).abs() < 1e-8 && (with.height() - dense(4)).abs() < 1e-8);
-    assert!((with.step()[3] - 0.01).abs() < 0.01 && own.height_of(&[vec![(0, vec![0.0; rows])]]).is_infinite());
+    let with = whitened.extended(&white).expect("independent");
+    assert!((whitened.criterion_of(&white) - dense(4)).abs() < 1e-8 && (with.criterion() - dense(4)).abs() < 1e-8);
+    assert!((with.step()[3] - 0.01).abs() < 0.01 && whitened.criterion_of(&[vec![(0, vec![0.0; rows])]]).is_infinite());
     let left = with.innovations();
     assert!((dot(&left[0], &left[0]) - freedom).abs() < 1e-8);
 }
@@ -183,7 +183,7 @@ fn laws_have_the_sizes_they_say() {
     let all = laws::all(gain, longest, 1.0, None);
     assert_eq!(all.len(), 1 + 7 + 17 + 3 * 6 + 4 * 6 + 4 * 4);
     for law in all.iter().filter(|law| law.is_moment()) {
-        let (kind, level) = law.colour.wander.expect("a moment");
+        let (kind, level) = law.colour.correlated.expect("a moment");
         let size = kind.size(level, longest) / gain;
         assert!((size / law.size - 1.0).abs() < 1e-9, "{kind:?} {size} {}", law.size);
     }
@@ -192,7 +192,7 @@ fn laws_have_the_sizes_they_say() {
     assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
     assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
     let walk = all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.freedom == 1).expect("a law");
-    let tried = laws::tried(&all, walk);
+    let tried = laws::screening(&all, walk);
     assert!(tried.contains(&0) && tried.contains(&walk) && tried.len() < 16, "{tried:?}");
 }
 
@@ -205,23 +205,24 @@ fn shapes_can_be_moved_and_typed() {
             assert!(Formula::read(&format!("located = {formula}")).is_ok(), "{formula}");
         }
         for place in 0..shape.place_count() {
-            let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|own| own.moved(place, -1.0, [300.0, 1.0]));
-            assert!(back.is_some_and(|back| back.words([0.0, 300.0]) == shape.words([0.0, 300.0])), "{shape:?}");
+            let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|moved| moved.moved(place, -1.0, [300.0, 1.0]));
+            let text = |shape: &Shape| shape.description([0.0, 300.0]);
+            assert!(back.is_some_and(|back| text(&back) == text(shape)), "{shape:?}");
         }
     }
     let tug = Shape::Powers(Dependence::Heading, (ShipSignal::Heading, Power::Positive), None);
     assert_eq!(tug.formula().as_deref(), Some("c * max(psi, 0)"));
-    assert_eq!(Shape::Pulse(91.0, 24.0).words([0.0, 300.0]), "moment from 91 to 115 s");
+    assert_eq!(Shape::Pulse(91.0, 24.0).description([0.0, 300.0]), "moment from 91 to 115 s");
     assert_eq!(Shape::Pulse(91.0, 2.0).moved(1, -1.0, [300.0, 1.0]), None);
 }
 
 #[test]
 fn tried_beside_the_best_law_are_weaker_ones_walks_and_an_error_of_the_compass() {
     let laws = laws::all(0.01, 600.0, 1.0, None);
-    let kind = |law: &RandomLaw| law.colour.wander.map(|(kind, _)| kind);
+    let kind = |law: &RandomLaw| law.colour.correlated.map(|(kind, _)| kind);
     let sea = |law: &RandomLaw| law.colour.waves.map(|sea| sea.frequency);
     let tried = |best: &dyn Fn(&RandomLaw) -> bool| {
-        let places = laws::tried(&laws, laws.iter().position(best).expect("a law"));
+        let places = laws::screening(&laws, laws.iter().position(best).expect("a law"));
         places.into_iter().map(|place| laws[place]).collect::<Vec<_>>()
     };
     let sizes = |among: &[RandomLaw], is: &dyn Fn(&RandomLaw) -> bool| -> Vec<f64> {

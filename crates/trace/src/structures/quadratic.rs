@@ -1,4 +1,5 @@
-//! A quadratic approximation of the posterior of the full model, from which any terms may be taken.
+//! Quadratic (Laplace) approximation of the posterior of the full model, and the log weights of all subsets of its
+//! terms.
 
 use estimation::levenberg_marquardt::Normal;
 use estimation::subsets::{MOST_TERMS, Removable, condition, conditional, subsets};
@@ -8,40 +9,40 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::fit::{deviation, log_normaliser};
 use crate::model::{Structure, Term};
 
-/// Structures that are refitted a round, and the log of the odds against the best beyond which none is.
-const REFITS: usize = 4;
-pub(super) const HOPELESS: f64 = 5.0;
+/// Number of structures refitted per round, and the largest log odds against the best for a refit.
+const MAX_REFITS: usize = 4;
+pub(super) const MAX_LOG_ODDS: f64 = 5.0;
 
-/// Structures with one term more that are refitted a round.
-const ADDITIONS: usize = 2;
+/// Number of structures with one more term that are refitted per round.
+const MAX_ADDITIONS: usize = 2;
 
-/// What speaks for a candidate.
+/// Evidence for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
-    /// Log evidence of the best structure with it less that of the best without it.
+    /// Log evidence of the best structure with the candidate minus that of the best without it.
     pub gain: f64,
-    /// Probability of sizes as far from neutral by chance, beside all other candidates.
+    /// p value (χ²) of its coefficients beside all other candidates.
     pub p_value: f64,
 }
 
-/// A quadratic approximation of the posterior of the full model, and what may be taken from it.
-pub(super) struct Quadratic {
+/// Quadratic approximation of the posterior of the full model, with its removable terms.
+pub(super) struct QuadraticPosterior {
     pub covariance: DMatrix<f64>,
     pub mean: DVector<f64>,
     pub removable: Vec<Removable>,
-    /// Whether a term has its sizes at the end of their range and would leave it: it is out.
+    /// `true` for a term whose coefficients would leave their bounds at the neutral value; it is removed.
     pinned: Vec<bool>,
-    /// Whether an unknown is free, and not that of a size that is out.
+    /// `false` for an unknown of a removed term.
     pub free: Vec<bool>,
 }
 
-impl Quadratic {
-    /// Round a point of the full structure.
+impl QuadraticPosterior {
+    /// Approximation about a point of the full structure; `None` where the precision is singular.
     pub fn new(normal: &Normal, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
-        let unknown = structure.unknowns();
+        let unknowns = structure.unknowns();
         let count = normal.gradient.len();
         let mut at = DVector::zeros(count);
-        unknown.iter().zip(theta).for_each(|(place, value)| {
+        unknowns.iter().zip(theta).for_each(|(place, value)| {
             if let Some(place) = place {
                 at[*place] = *value;
             }
@@ -52,21 +53,21 @@ impl Quadratic {
         let ranges = structure.ranges();
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
-            let places = ranges[number].clone().map(|place| (place, unknown[place]));
+            let places = ranges[number].clone().map(|place| (place, unknowns[place]));
             Removable { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
-        // A size that would leave its range at its neutral end is no size.
+        // A coefficient that would leave its bounds at the neutral value is zero.
         for _ in 0..ranges.len() {
             let leaves = |number: &usize| {
                 let term = &structure.terms[*number];
-                let own = ranges[*number].clone().zip(&term.priors).zip(term.neutral());
+                let coefficients = ranges[*number].clone().zip(&term.priors).zip(term.neutral());
                 !pinned[*number]
-                    && own.into_iter().any(|((place, prior), neutral)| {
-                        let value = unknown[place].map_or(neutral, |unknown| mean[unknown]);
+                    && coefficients.into_iter().any(|((place, prior), neutral)| {
+                        let value = unknowns[place].map_or(neutral, |unknown| mean[unknown]);
                         !prior.is_shape && (prior.lowest == neutral && value < neutral)
                     })
             };
-            let Some(worst) = (0..ranges.len()).filter(leaves).min_by(|&one, &other| {
+            let Some(worst) = (0..ranges.len()).filter(leaves).min_by(|&a, &b| {
                 let depth = |number: usize| {
                     removable(&mean, number)
                         .sizes
@@ -74,7 +75,7 @@ impl Quadratic {
                         .map(|&(k, distance)| distance / covariance[(k, k)].sqrt())
                         .fold(0.0, f64::min)
                 };
-                depth(one).total_cmp(&depth(other))
+                depth(a).total_cmp(&depth(b))
             }) else {
                 break;
             };
@@ -85,47 +86,47 @@ impl Quadratic {
         }
         let removable: Vec<Removable> = (0..ranges.len()).map(|number| removable(&mean, number)).collect();
         let mut free = vec![true; count];
-        for (own, _) in removable.iter().zip(&pinned).filter(|(_, pinned)| **pinned) {
-            let own: &Removable = own;
-            own.sizes.iter().for_each(|(unknown, _)| free[*unknown] = false);
+        for (term, _) in removable.iter().zip(&pinned).filter(|(_, pinned)| **pinned) {
+            let term: &Removable = term;
+            term.sizes.iter().for_each(|(unknown, _)| free[*unknown] = false);
         }
         Some(Self { covariance, mean, removable, pinned, free })
     }
 
-    /// What speaks for every term, from the log weights of all subsets: the gain is that of its effect in any form;
-    /// `effects` says which terms are forms of one.
+    /// Support of every term from the log weights of all subsets. The gain is that of its effect in any form; `effects`
+    /// identifies the terms that are forms of one effect.
     pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<Support> {
         let (kept, weights) = self.weighed();
-        let of = |number: usize| {
+        let support = |number: usize| {
             if !kept.contains(&number) {
                 return Support { gain: 0.0, p_value: 1.0 };
             }
-            let own = &self.removable[number];
-            let p_value = by_chance(&own.sizes, &self.covariance).unwrap_or(1.0);
-            let alike: usize = kept
+            let term = &self.removable[number];
+            let p_value = chi_square_p_value(&term.sizes, &self.covariance).unwrap_or(1.0);
+            let forms: usize = kept
                 .iter()
                 .enumerate()
                 .filter(|(_, other)| effects[**other] == effects[number])
                 .map(|(bit, _)| 1 << bit)
                 .sum();
             let highest = |with: bool| {
-                let all = weights.iter().enumerate().filter(|(subset, _)| (subset & alike != 0) == with);
+                let all = weights.iter().enumerate().filter(|(subset, _)| (subset & forms != 0) == with);
                 all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
             };
-            Support { gain: highest(true) - highest(false) - own.log_odds, p_value }
+            Support { gain: highest(true) - highest(false) - term.log_odds, p_value }
         };
-        (0..self.removable.len()).map(of).collect()
+        (0..self.removable.len()).map(support).collect()
     }
 
-    /// The terms that are weighed, at most [`MOST_TERMS`], and the log weights of all their subsets.
+    /// Weighed terms, at most [`MOST_TERMS`], and the log weights of all their subsets.
     fn weighed(&self) -> (Vec<usize>, Vec<f64>) {
         let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
-        let (kept, covariance, removable) = self.fewer(free);
+        let (kept, covariance, removable) = self.most_relevant(free);
         (kept, subsets(&covariance, &removable))
     }
 
-    /// The best subsets of terms. Beside the best of all subsets the best are looked at that have one term more than
-    /// `about`: a step so far from here is badly foretold, and only a fit tells.
+    /// Best subsets of terms: the best overall, and the best with one term more than `about`, for which the quadratic
+    /// approximation is most accurate.
     pub fn best(&self, about: &[bool]) -> Vec<Vec<bool>> {
         let (kept, weights) = self.weighed();
         let chosen = |subset: usize| {
@@ -133,27 +134,27 @@ impl Quadratic {
             kept.iter().enumerate().for_each(|(bit, &k)| chosen[k] = subset >> bit & 1 == 1);
             chosen
         };
-        let by_weight = |one: &usize, other: &usize| weights[*other].total_cmp(&weights[*one]);
+        let by_weight = |a: &usize, b: &usize| weights[*b].total_cmp(&weights[*a]);
         let mut order: Vec<usize> = (0..weights.len()).collect();
-        if order.len() > REFITS {
-            order.select_nth_unstable_by(REFITS - 1, by_weight);
-            order.truncate(REFITS);
+        if order.len() > MAX_REFITS {
+            order.select_nth_unstable_by(MAX_REFITS - 1, by_weight);
+            order.truncate(MAX_REFITS);
         }
         order.sort_by(by_weight);
-        let least = weights[order[0]] - HOPELESS;
+        let least = weights[order[0]] - MAX_LOG_ODDS;
         order.retain(|subset| weights[*subset] > least);
-        let own: usize = kept.iter().enumerate().filter(|(_, k)| about[**k]).map(|(bit, _)| 1 << bit).sum();
+        let current: usize = kept.iter().enumerate().filter(|(_, k)| about[**k]).map(|(bit, _)| 1 << bit).sum();
         let mut more: Vec<usize> = (0..kept.len())
-            .map(|bit| own | 1 << bit)
-            .filter(|subset| *subset != own && !order.contains(subset))
+            .map(|bit| current | 1 << bit)
+            .filter(|subset| *subset != current && !order.contains(subset))
             .collect();
         more.sort_by(by_weight);
-        order.extend(more.into_iter().take(ADDITIONS));
+        order.extend(more.into_iter().take(MAX_ADDITIONS));
         order.into_iter().map(chosen).collect()
     }
 
-    /// The terms that matter most, with what is left of the posterior when the others are taken away.
-    fn fewer(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<Removable>) {
+    /// The [`MOST_TERMS`] most relevant terms, with the covariance after the others are removed.
+    fn most_relevant(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<Removable>) {
         let mut covariance = self.covariance.clone();
         let mut mean = self.mean.clone();
         let mut removable = self.removable.clone();
@@ -172,37 +173,37 @@ impl Quadratic {
             }
             mean = moved;
         }
-        let own = kept.iter().map(|&k| removable[k].clone()).collect();
-        (kept, covariance, own)
+        let terms = kept.iter().map(|&k| removable[k].clone()).collect();
+        (kept, covariance, terms)
     }
 }
 
-/// Probability of sizes, each with its place in a covariance, as far from neutral by chance (χ²); `None` of
-/// none, and where the covariance is singular.
-pub fn by_chance(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> Option<f64> {
+/// p value (χ², Wald 1943) of coefficients, each given as its index in a covariance and its distance from neutral;
+/// `None` without coefficients, and where the covariance is singular.
+pub fn chi_square_p_value(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> Option<f64> {
     let distance = DVector::from_iterator(sizes.len(), sizes.iter().map(|(_, distance)| *distance));
     let matrix = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
     let square = distance.dot(&matrix.cholesky()?.solve(&distance));
     Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
 }
 
-/// A term as it may be taken away, at a point θ of the full model with the unknowns that its places are.
+/// Removable term at a point θ of the full model; `places` are its indices in θ with their unknowns.
 fn removable(
     term: &Term,
     theta: &[f64],
     mean: &DVector<f64>,
     places: impl Iterator<Item = (usize, Option<usize>)>,
 ) -> Removable {
-    let mut own = Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
+    let mut removable = Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
     for (((place, unknown), prior), neutral) in places.zip(&term.priors).zip(term.neutral()) {
         let Some(unknown) = unknown else { continue };
         let at = if prior.is_shape { theta[place] } else { neutral };
-        own.log_prior += log_normaliser(*prior);
-        own.log_prior -= 0.5 * deviation(*prior, at).powi(2);
+        removable.log_prior += log_normaliser(*prior);
+        removable.log_prior -= 0.5 * deviation(*prior, at).powi(2);
         match prior.is_shape {
-            true => own.shapes.push(unknown),
-            false => own.sizes.push((unknown, mean[unknown] - neutral)),
+            true => removable.shapes.push(unknown),
+            false => removable.sizes.push((unknown, mean[unknown] - neutral)),
         }
     }
-    own
+    removable
 }

@@ -1,39 +1,40 @@
-//! A linearised structure under one law of the noise, and what shapes behind its unknowns explain.
+//! Criterion of a linearised structure under one noise law, with the columns of shapes appended.
 //!
-//! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) + Σ price, with s² = RSS/(n − p), or the
-//! least that noise can be, and the p unknowns X that are integrated out: base, initial states and what is beside them.
-//! The coefficient of an effect or a shape pays max(log n, log(1 + t²)) + 1 with its t value behind those before it, a
-//! shape the logarithm of the places and forms that were tried, a law log n for each of its parameters.
+//! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) + Σ penalties, with s² = RSS/(n − p) or its
+//! lower bound, and the p integrated unknowns X: base, initial states and restarts behind gaps. The penalty of the
+//! coefficient of an effect or a shape is max(log n, log(1 + t²)) + 1 with its sequential t value, that of a shape the
+//! logarithm of the number of places and forms that were tried, that of a law log n for each of its parameters.
+//!
+//! Sources: Schwarz (1978); Harvey (1989) for the marginal likelihood with the regression integrated out.
 
 use estimation::column::dot;
 
 use crate::linear::{HeadingSensitivities, Linear};
 use crate::weights::Weights;
 
-/// A share of its own square below which a column is one of the others.
-const DEPENDENT: f64 = 1e-7;
+/// Smallest share of its square that is linearly independent of the columns before, for a usable column.
+const MIN_INDEPENDENT_SHARE: f64 = 1e-7;
 
-/// The change of the headings for one coefficient, rad for rad, by record.
+/// Heading response to one coefficient by record, rad per rad of rudder.
 pub type HeadingColumn = Vec<(usize, Vec<f64>)>;
 
-/// Residual and sensitivities of a structure, its unknowns in the order in which they are taken.
+/// Residual and sensitivities of a structure; integrated unknowns come first.
 #[derive(Debug, Clone)]
 pub struct LinearisedStructure {
-    /// Residual and columns.
+    /// Residual and sensitivities.
     pub linear: Linear,
-    /// Unknowns that are integrated out; those behind them pay.
+    /// Number of integrated unknowns; the coefficients behind them are penalised.
     pub integrated: usize,
-    /// Precision of what is expected of the unknowns, and where they stand beside it.
+    /// Prior precision of the integrated unknowns and their offset from the prior mean.
     pub prior: Vec<(f64, f64)>,
-    /// How far the unknowns that pay are from neutral.
+    /// Distance of the penalised coefficients from neutral.
     pub sizes: Vec<f64>,
-    /// Least variance of the white noise of a row, in units of that of the weights: what no compass reads and no
-    /// recorded rudder tells.
-    pub least: f64,
+    /// Lower bound of the white-noise variance of a row, in units of that of the weights.
+    pub min_variance: f64,
 }
 
 impl LinearisedStructure {
-    /// Squares of the unknowns that are integrated out, under white noise, with what is expected of them.
+    /// Squares of the columns of the integrated unknowns under white noise, plus their prior precision.
     fn squares(&self, scale: &[f64]) -> Vec<f64> {
         let mut squares: Vec<f64> = self.prior.iter().map(|(precision, _)| *precision).collect();
         for (block, scale) in self.linear.blocks.iter().zip(scale) {
@@ -50,51 +51,51 @@ impl LinearisedStructure {
     }
 }
 
-/// The same under a law.
+/// Linearised structure, whitened and factorised under one noise law.
 #[derive(Debug, Clone)]
-pub struct Conditioned {
+pub struct WhitenedStructure {
     blocks: Vec<HeadingSensitivities>,
-    /// Rows of the lower factor of the products of all columns, and its solution for the residual.
+    /// Rows of the lower Cholesky factor L of the products of all columns, and L⁻¹ times the gradient.
     factor: Vec<Vec<f64>>,
     solution: Vec<f64>,
-    /// What every coefficient that pays stands at, in its standard deviations times s.
-    paid: Vec<f64>,
-    /// RSS of the whitened residual.
+    /// Sequential t values of the penalised coefficients, times s.
+    t_values: Vec<f64>,
+    /// Residual sum of squares.
     square: f64,
-    /// What does not depend on the shapes: Σ log S, log det, and the price of the law.
+    /// Part independent of the shapes: Σ log S, log det, and the penalty of the law.
     fixed: f64,
     /// n − p and log n.
     freedom: f64,
     log_n: f64,
-    /// Least s².
-    least: f64,
+    /// Lower bound of s².
+    min_variance: f64,
 }
 
-/// Products of columns behind the unknowns of a structure: with these, with each other, and with the residual.
+/// Products of appended columns with the columns of a structure, with each other, and with its residual.
 #[derive(Debug, Clone)]
 pub struct ColumnProducts {
-    /// With the unknowns, column by column.
+    /// With the columns of the structure, by appended column.
     pub cross: Vec<Vec<f64>>,
     gram: Vec<Vec<f64>>,
     gradient: Vec<f64>,
 }
 
-/// Product of two columns.
-pub fn product(one: &HeadingColumn, other: &HeadingColumn) -> f64 {
-    let pairs = one.iter().flat_map(|(record, values)| {
-        other.iter().filter(move |(own, _)| own == record).map(move |(_, own)| dot(own, values))
+/// Scalar product of two columns.
+pub fn product(a: &HeadingColumn, b: &HeadingColumn) -> f64 {
+    let pairs = a.iter().flat_map(|(record, values)| {
+        b.iter().filter(move |(other, _)| other == record).map(move |(_, column)| dot(column, values))
     });
     pairs.sum()
 }
 
-/// What shapes add to a [`Conditioned`].
+/// Rows of factor and solution for appended columns.
 struct Extension {
     factor: Vec<Vec<f64>>,
     solution: Vec<f64>,
 }
 
-impl Conditioned {
-    /// A structure under a law of so many parameters; `None` where its unknowns cannot be told apart.
+impl WhitenedStructure {
+    /// Structure under a law with `law_freedom` parameters; `None` where its columns are dependent.
     pub fn new(structure: &LinearisedStructure, weights: &Weights, law_freedom: usize) -> Option<Self> {
         let blocks = structure.linear.blocks.iter().enumerate();
         let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, weights)).collect();
@@ -109,10 +110,10 @@ impl Conditioned {
             }
             square += dot(&block.residual, &block.residual);
         }
-        for (k, &(precision, beside)) in structure.prior.iter().enumerate() {
+        for (k, &(precision, offset)) in structure.prior.iter().enumerate() {
             matrix[k][k] += precision;
-            gradient[k] -= precision * beside;
-            square += precision * beside * beside;
+            gradient[k] -= precision * offset;
+            square += precision * offset * offset;
         }
         let factor = factor(&matrix, &[])?;
         let solution = solved(&factor, &gradient, &[]);
@@ -120,15 +121,15 @@ impl Conditioned {
         let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
         let weights_rows = weights.whiteners.iter().zip(&weights.scale).zip(&blocks);
         let log_variance: f64 = weights_rows
-            .map(|((own, scale), block)| own.log_variance - 2.0 * block.residual.len() as f64 * scale.ln())
+            .map(|((whitener, scale), block)| whitener.log_variance - 2.0 * block.residual.len() as f64 * scale.ln())
             .sum();
         let squares = structure.squares(&weights.scale);
         let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln() - squares[k].ln()).sum();
         let fixed = log_variance + volume + law_freedom as f64 * log_n;
-        let (paid, least) = (Vec::new(), structure.least);
+        let (t_values, min_variance) = (Vec::new(), structure.min_variance);
         square -= dot(&solution, &solution);
-        let mut all = Self { blocks, factor, solution, paid, square, fixed, freedom, log_n, least };
-        all.paid = (structure.integrated..count)
+        let mut all = Self { blocks, factor, solution, t_values, square, fixed, freedom, log_n, min_variance };
+        all.t_values = (structure.integrated..count)
             .map(|k| {
                 let sizes = structure.sizes.iter().enumerate().skip(k - structure.integrated);
                 let away: f64 = sizes.map(|(j, size)| all.factor[structure.integrated + j][k] * size).sum();
@@ -138,30 +139,31 @@ impl Conditioned {
         Some(all)
     }
 
-    /// −2 log p.
-    pub fn height(&self) -> f64 {
-        self.height_with(&[], self.square)
+    /// Criterion −2 log p + penalties.
+    pub fn criterion(&self) -> f64 {
+        self.criterion_with(&[], self.square)
     }
 
-    /// The same with coefficients behind it that leave a square.
-    fn height_with(&self, behind: &[f64], square: f64) -> f64 {
-        let variance = (square / self.freedom).max(self.least);
-        let price = |c: &f64| self.log_n.max((c * c / variance).ln_1p()) + 1.0;
+    /// Criterion with appended t values and the residual sum of squares after them.
+    fn criterion_with(&self, appended: &[f64], square: f64) -> f64 {
+        let variance = (square / self.freedom).max(self.min_variance);
+        let penalty = |c: &f64| self.log_n.max((c * c / variance).ln_1p()) + 1.0;
         let misfit = square / variance - self.freedom;
-        let prices: f64 = self.paid.iter().chain(behind).map(price).sum();
-        self.freedom * variance.ln() + misfit + self.fixed + prices
+        let penalties: f64 = self.t_values.iter().chain(appended).map(penalty).sum();
+        self.freedom * variance.ln() + misfit + self.fixed + penalties
     }
 
-    /// −2 log p with white columns behind it; infinite where they are some of those before.
-    pub fn height_of(&self, columns: &[HeadingColumn]) -> f64 {
-        self.height_of_products(&self.products(columns))
+    /// Criterion with whitened columns appended; infinite where they are linearly dependent.
+    pub fn criterion_of(&self, columns: &[HeadingColumn]) -> f64 {
+        self.criterion_of_products(&self.products(columns))
     }
 
+    /// Residual sum of squares after appended columns.
     fn square_with(&self, solution: &[f64]) -> f64 {
         (self.square - dot(solution, solution)).max(1e-9 * self.square)
     }
 
-    /// The structure with white columns behind it.
+    /// Structure with whitened columns appended; `None` where they are linearly dependent.
     pub fn extended(&self, columns: &[HeadingColumn]) -> Option<Self> {
         let extension = self.extension(&self.products(columns))?;
         let mut next = self.clone();
@@ -172,36 +174,36 @@ impl Conditioned {
         }
         next.square = self.square_with(&extension.solution);
         next.factor.extend(extension.factor);
-        next.paid.extend_from_slice(&extension.solution);
+        next.t_values.extend_from_slice(&extension.solution);
         next.solution.extend(extension.solution);
         Some(next)
     }
 
-    /// Products of white columns with the unknowns, with each other, and with the residual.
+    /// Products of whitened columns with the structure, with each other, and with the residual.
     pub fn products(&self, columns: &[HeadingColumn]) -> ColumnProducts {
         let count = self.factor.len();
         let mut all = ColumnProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
-            let (mut cross, mut with) = (vec![0.0; count], 0.0);
+            let (mut cross, mut gradient) = (vec![0.0; count], 0.0);
             for (record, values) in column {
                 let block = &self.blocks[*record];
-                block.columns.iter().for_each(|(unknown, own)| cross[*unknown] += dot(own, values));
-                with += dot(&block.residual, values);
+                block.columns.iter().for_each(|(unknown, column)| cross[*unknown] += dot(column, values));
+                gradient += dot(&block.residual, values);
             }
             all.cross.push(cross);
-            all.gradient.push(with);
+            all.gradient.push(gradient);
             all.gram.push(columns[..=k].iter().map(|other| product(column, other)).collect());
         }
         all
     }
 
-    /// −2 log p with columns of these products behind it; infinite where they are some of those before.
-    pub fn height_of_products(&self, products: &ColumnProducts) -> f64 {
-        let extension = self.extension(products);
-        extension.map_or(f64::INFINITY, |own| self.height_with(&own.solution, self.square_with(&own.solution)))
+    /// Criterion with columns of these products appended; infinite where they are linearly dependent.
+    pub fn criterion_of_products(&self, products: &ColumnProducts) -> f64 {
+        let Some(Extension { solution, .. }) = self.extension(products) else { return f64::INFINITY };
+        self.criterion_with(&solution, self.square_with(&solution))
     }
 
-    /// Rows of the factor, and of its solution, for columns behind all others.
+    /// Rows of factor and solution for appended columns; `None` where they are linearly dependent.
     fn extension(&self, products: &ColumnProducts) -> Option<Extension> {
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
         let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
@@ -209,7 +211,7 @@ impl Conditioned {
         Some(Extension { factor, solution })
     }
 
-    /// The step of all unknowns from where they stand.
+    /// Gauss–Newton step of all unknowns.
     pub fn step(&self) -> Vec<f64> {
         let count = self.factor.len();
         let mut step = self.solution.clone();
@@ -226,47 +228,47 @@ impl Conditioned {
         (self.square / self.freedom).sqrt()
     }
 
-    /// What is new in every heading of the records, over its standard deviation.
+    /// Normalised innovations of the records after the step.
     pub fn innovations(&self) -> Vec<Vec<f64>> {
         let (step, sd) = (self.step(), self.sd());
-        let of = |block: &HeadingSensitivities| {
-            let mut left = block.residual.clone();
+        let normalised = |block: &HeadingSensitivities| {
+            let mut residual = block.residual.clone();
             for (unknown, column) in &block.columns {
-                left.iter_mut().zip(column).for_each(|(e, x)| *e -= step[*unknown] * x);
+                residual.iter_mut().zip(column).for_each(|(e, x)| *e -= step[*unknown] * x);
             }
-            left.iter_mut().for_each(|e| *e /= sd);
-            left
+            residual.iter_mut().for_each(|e| *e /= sd);
+            residual
         };
-        self.blocks.iter().map(of).collect()
+        self.blocks.iter().map(normalised).collect()
     }
 }
 
-/// Rows of the lower factor of a symmetric matrix behind those of a `known` part; `None` where it is singular.
-fn factor(matrix: &[Vec<f64>], known: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+/// Rows of the lower Cholesky factor of a symmetric matrix after the rows `leading`; `None` where it is singular.
+fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
     for (k, source) in matrix.iter().enumerate() {
-        let here = known.len() + k;
+        let here = leading.len() + k;
         let mut row = vec![0.0; here + 1];
         for j in 0..here {
-            let other = if j < known.len() { &known[j] } else { &rows[j - known.len()] };
+            let other = if j < leading.len() { &leading[j] } else { &rows[j - leading.len()] };
             row[j] = (source[j] - dot(&row[..j], &other[..j])) / other[j];
         }
-        let left = source[here] - dot(&row[..here], &row[..here]);
-        if !(left > DEPENDENT * source[here] && left > 0.0) {
+        let square = source[here] - dot(&row[..here], &row[..here]);
+        if !(square > MIN_INDEPENDENT_SHARE * source[here] && square > 0.0) {
             return None;
         }
-        row[here] = left.sqrt();
+        row[here] = square.sqrt();
         rows.push(row);
     }
     Some(rows)
 }
 
-/// L⁻¹ of a right side in the rows of a lower factor behind those of a `known` solution.
-fn solved(factor: &[Vec<f64>], right: &[f64], known: &[f64]) -> Vec<f64> {
-    let count = known.len();
+/// L⁻¹ times a right side in the rows of a lower factor after those of the solution `leading`.
+fn solved(factor: &[Vec<f64>], right: &[f64], leading: &[f64]) -> Vec<f64> {
+    let count = leading.len();
     let mut solution: Vec<f64> = Vec::with_capacity(right.len());
     for (k, row) in factor.iter().enumerate() {
-        let before = dot(&row[..count], known) + dot(&row[count..count + k], &solution);
+        let before = dot(&row[..count], leading) + dot(&row[count..count + k], &solution);
         solution.push((right[k] - before) / row[count + k]);
     }
     solution
