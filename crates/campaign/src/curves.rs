@@ -1,4 +1,4 @@
-//! Trials and answers as data of figures, in degrees.
+//! Trials and replays as plot data, in degrees.
 
 use document::method::MethodEntry;
 use identify::Estimate;
@@ -12,7 +12,7 @@ use trial::{Quantity, Trial, ZigZag};
 use crate::scenario::MethodName;
 use crate::stored_figures::ReplayCurves;
 
-/// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.
+/// Plot origin of a method: the method itself where its label is its id, otherwise a numbered variant.
 pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     match names.iter().find(|name| name.label == label) {
         Some(method) if method.id != label => {
@@ -24,17 +24,17 @@ pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     }
 }
 
-/// Angles as degrees.
+/// Angles in rad converted to degrees.
 pub fn degrees(values: &[f64]) -> Vec<f64> {
     values.iter().copied().map(to_deg).collect()
 }
 
-/// Radians over seconds as degrees over seconds.
+/// Plot curve in degrees over seconds, from radians over seconds.
 pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
 
-/// The trial with its characteristic points marked.
+/// Plot data of a zig-zag with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     let mark = |time: Quantity, heading: Quantity| ZigZagMark { t_s: time.value, heading_deg: to_deg(heading.value) };
     let execute = |execute: &Execute| mark(execute.time, execute.heading);
@@ -48,7 +48,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         Some(TimeSpan { from_s: begin, to_s: begin + length.value })
     };
     let check_yaw = |peak: &Overshoot| from(zigzag.executes.get(peak.execute), Some(peak.time_to_check_yaw));
-    // The cycle that begins with the second execute of a trial holds the transient of the start: drawn only if alone.
+    // The cycle from the second execute on contains the starting transient: drawn only if there is no later one.
     let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
     let cycle_start = match zigzag.executes.len() > settled + 2 {
         true => zigzag.executes.get(settled),
@@ -56,7 +56,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     };
     ZigzagTrial {
         heading: curve(trial.time(), trial.heading()),
-        // What is left of a thinned record are its extremes: as points they would be taken for the record.
+        // A thinned record keeps only its extremes, which drawn as points would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MOST_PAIRS
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
@@ -69,7 +69,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     }
 }
 
-/// Replays of all answers, for a figure; methods that failed are left out.
+/// Replays of all answers on a trial; failed methods are left out.
 pub fn replay_curves(
     trial: &Trial,
     answers: &[(MethodEntry, Option<Estimate>)],

@@ -1,4 +1,4 @@
-//! What a study stores of the first trial of a cell, besides the trial itself, and the figures of it.
+//! Stored plot data of the first trial of a cell, and its figures.
 
 use report::figures::{
     Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
@@ -119,9 +119,9 @@ pub struct Replays {
     pub replays: Vec<ReplayCurves>,
 }
 
-/// A replay may leave the range of the record by this share of it before it is cut.
+/// Largest excursion of a replay beyond the range of the record, as a share of that range; beyond it is cut.
 const HEADING_ROOM: f64 = 0.25;
-/// A residual is cut at this many times the middle one of all sizes.
+/// Limit of a residual in multiples of the median of all sizes; beyond it is cut.
 const RESIDUAL_ROOM: f64 = 10.0;
 
 impl Replays {
@@ -172,7 +172,7 @@ pub struct PointEstimate {
     pub interval: Option<[f64; 2]>,
 }
 
-/// What one method found; `None` where it found nothing.
+/// Estimates of one method; `None` where it has none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEstimate {
     /// The method; decides how its row looks.
@@ -203,7 +203,7 @@ pub struct Intervals {
     pub published: Option<Reference>,
 }
 
-/// The axis reaches this many times the usual distance from the truth; what lies beyond is an outlier.
+/// Half-width of the axis in multiples of the usual distance from the truth; values beyond are outliers.
 const SPREADS: f64 = 7.0;
 
 impl Intervals {
