@@ -1,4 +1,4 @@
-//! Keywords of Python as options of the command line, so that what may be asked for is declared and checked there.
+//! Keyword arguments of Python, parsed as options of the command line, which declares and checks them.
 
 use campaign::failure::Failure;
 use clap::{Args, Parser};
@@ -6,14 +6,14 @@ use study::cli::misused;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
-struct OptionWords<R: Args> {
+struct KeywordOptions<R: Args> {
     #[command(flatten)]
     request: R,
 }
 
-/// The request that options make, each written as `--name=value`.
+/// Request parsed from options, each written as `--name=value`.
 ///
-/// Fails as the command line does.
-pub fn request<R: Args>(words: Vec<String>) -> Result<R, Failure> {
-    OptionWords::try_parse_from(words).map(|words| words.request).map_err(|usage| misused(&usage))
+/// Fails with the usage error of the command line.
+pub fn request<R: Args>(options: Vec<String>) -> Result<R, Failure> {
+    KeywordOptions::try_parse_from(options).map(|parsed| parsed.request).map_err(|usage| misused(&usage))
 }
