@@ -42,11 +42,10 @@ fn main() {
 
 /// "name version" for every version of a crate in the lock file.
 fn versions(locked: &str, name: &str) -> Vec<String> {
-    let name_line = format!("name = \"{name}\"");
+    let head = format!("name = \"{name}\"");
     let lines: Vec<&str> = locked.lines().collect();
-    let entries = lines.windows(2).filter(|pair| pair[0] == name_line);
-    let versions = entries.filter_map(|pair| pair[1].strip_prefix("version = "));
-    versions.map(|version| format!("{name} {}", version.trim_matches('"'))).collect()
+    let hits = lines.windows(2).filter(|pair| pair[0] == head).filter_map(|pair| pair[1].strip_prefix("version = "));
+    hits.map(|version| format!("{name} {}", version.trim_matches('"'))).collect()
 }
 
 /// Output of git in a checkout; `None` for empty output, an error, and without git.

@@ -147,8 +147,8 @@ fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64
     let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
-        let whose = method.map_or_else(String::new, |method| format!("{method}: "));
-        let problem = format!("{whose}{left} of {trials} trials have no answer and count as failed");
+        let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
+        let problem = format!("{prefix}{left} of {trials} trials have no answer and count as failed");
         observer.warn(&format!("{}: {problem}", path.display()));
     }
 }
@@ -195,8 +195,8 @@ impl<'a> Records<'a> {
             _ => stem(name).1.parse().ok().map(|number| (stem(name).0, number))?,
         };
         let task = Task { cell: *self.cells.get(cell)? as usize, replicate };
-        let is_that = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
-        is_that.then_some((task.cell as u64, replicate))
+        let is_match = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
+        is_match.then_some((task.cell as u64, replicate))
     }
 }
 

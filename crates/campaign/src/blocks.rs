@@ -81,7 +81,7 @@ impl<'a> BlockStore<'a> {
 
     fn foreign(&self, label: &BlockLabel) -> String {
         let advice = "remove the file, give another folder with --out, or --restart to discard all rows";
-        let what = if label.design != self.design_sha256 {
+        let problem = if label.design != self.design_sha256 {
             "it is a block of another study".to_owned()
         } else if label.seed != self.seed {
             format!("it is a block of the study with seed {}, expected seed {}", label.seed, self.seed)
@@ -90,7 +90,7 @@ impl<'a> BlockStore<'a> {
         } else {
             format!("it is block {}", label.block())
         };
-        format!("{what}; {advice}")
+        format!("{problem}; {advice}")
     }
 
     /// Number of stored trials of each requested block. Warns of a damaged block and counts it as missing; `becomes`

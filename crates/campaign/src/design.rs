@@ -73,11 +73,11 @@ pub struct JudgedRecord {
 }
 
 fn judged_records(set: &RecordSet) -> Vec<JudgedRecord> {
-    let of = |split: &RecordSplit| JudgedRecord {
+    let records = |split: &RecordSplit| JudgedRecord {
         fitted: split.fitted.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
         judge: split.judge.map(|place| set.name(place).to_owned()),
     };
-    set.splits.iter().map(of).collect()
+    set.splits.iter().map(records).collect()
 }
 
 impl Design {

@@ -125,13 +125,13 @@ impl<'a> TrialRunner<'a> {
         let key = key(self.scenario, task);
         let start = Instant::now();
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
-        let made = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|specimen| {
+        let trial = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|specimen| {
             blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
             let simulated = self.simulate(task.cell, &specimen, &key);
             Ok((simulated.map_err(|error| format!("{} {error}", NO_TRIAL[1]))?, specimen))
         });
         let simulation = start.elapsed();
-        let (rows, methods) = match made {
+        let (rows, methods) = match trial {
             Ok((simulated, specimen)) => self.answers(task.cell, &key, blank, simulated, &specimen),
             Err(reason) => {
                 let blank = StudyRow { failure: Some(reason.into()), ..blank };

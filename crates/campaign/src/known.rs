@@ -45,7 +45,7 @@ impl<'a> RecordFacts<'a> {
     /// Facts of the records of one ship, without speed and drift.
     pub fn of(trials: &'a [Trial]) -> Self {
         let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::of(trial).ok()).collect();
-        let particular = |of: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(of));
+        let particular = |value: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(value));
         Self {
             trials,
             gear: gear(trials, &zigzags),
@@ -109,7 +109,7 @@ impl<'a> RecordFacts<'a> {
     }
 
     /// Stored form of a fitted hull; its weight is one over the number `of` hulls.
-    fn stored(&self, hull: &HullEstimate, of: usize) -> StoredHull {
+    fn stored(&self, hull: &HullEstimate, count: usize) -> StoredHull {
         let expected = &hull.expected;
         let coefficient = |(prior, value): (&HullCoefficient, &f64)| StoredCoefficient {
             key: prior.key.to_owned(),

@@ -48,11 +48,11 @@ pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
 pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     let of_cell = Block::of_cell(scenario.replicates);
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
-        let of = |place| {
+        let trials = |place| {
             let block = Block::at(place, scenario);
             block.range(scenario.trials_of(block.cell)).count() as u64
         };
-        return blocks.clone().map(of).sum();
+        return blocks.clone().map(trials).sum();
     }
     let before = |place: u64| {
         place / of_cell * scenario.replicates + (place % of_cell * Block::REPLICATES).min(scenario.replicates)

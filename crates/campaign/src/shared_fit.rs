@@ -36,12 +36,12 @@ pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
     };
     let share = |task: &Task, next: &Task| fit(task).is_some() && fit(task) == fit(next);
     let mut start = 0;
-    let of = |unit: &[Task]| {
+    let range = |unit: &[Task]| {
         let place = start..start + unit.len();
         start = place.end;
         place
     };
-    tasks.chunk_by(share).map(of).collect()
+    tasks.chunk_by(share).map(range).collect()
 }
 
 /// Runs the tasks of one unit.

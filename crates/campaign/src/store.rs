@@ -131,8 +131,8 @@ pub fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
 }
 
 /// JSON text of a file.
-fn described(name: &str, what: &impl Serialize, folder: &ResultFolder) -> Result<Vec<u8>, Failure> {
-    let text = serde_json::to_string(what).on("describe", &folder.path().join(name))?;
+fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Result<Vec<u8>, Failure> {
+    let text = serde_json::to_string(content).on("describe", &folder.path().join(name))?;
     Ok((text + "\n").into_bytes())
 }
 

@@ -79,10 +79,10 @@ impl DerivativeCurves {
     /// Heading, yaw rate and yaw acceleration above each other: what differentiation makes of a small error in the
     /// heading.
     pub fn panels(&self) -> Panels {
-        let row = |y: Ruler, of: fn(&MotionCurves) -> &PlotCurve| {
+        let row = |y: Ruler, series: fn(&MotionCurves) -> &PlotCurve| {
             let layer = |motion: &MotionCurves| {
                 let name = motion.name.as_deref().unwrap_or_else(|| motion.origin.label());
-                Layer::line(name, of(motion).clone(), Pen::of(&motion.origin))
+                Layer::line(name, series(motion).clone(), Pen::of(&motion.origin))
             };
             (PanelRow::new(y, 0.2), self.curves.iter().map(layer).collect())
         };
@@ -210,12 +210,12 @@ impl Intervals {
     /// K and T side by side, one row per method.
     pub fn rows(&self) -> NamedRows {
         type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
-        let column = |title: String, of: Estimated, reference: fn(&Reference) -> f64| {
+        let column = |title: String, quantity: Estimated, reference: fn(&Reference) -> f64| {
             let row = |estimate: &MethodEstimate| {
                 let mark = |point: PointEstimate| {
                     RowItem::new("", RowKind::Mark(estimate.origin.look(), point.value, point.interval))
                 };
-                of(estimate).map(mark).into_iter().collect()
+                quantity(estimate).map(mark).into_iter().collect()
             };
             let line = |origin: CurveOrigin, pair: &Option<Reference>| {
                 pair.as_ref().map(|pair| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(pair)))

@@ -108,9 +108,9 @@ impl Scores {
     }
 
     /// Two statistics of all cases, with intervals of the cluster bootstrap.
-    fn figures(&self, of: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
+    fn figures(&self, statistic: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
         let whole: Vec<usize> = (0..self.ranks.len()).collect();
-        let (values, drawn) = (of(&whole), resampled(&self.clusters, &of));
+        let (values, drawn) = (statistic(&whole), resampled(&self.clusters, &statistic));
         [0, 1]
             .map(|k| ScoreFigure::new(values[k], self.clusters.len(), drawn.iter().map(|figures| figures[k]).collect()))
     }
@@ -152,8 +152,8 @@ fn board(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String],
 fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.holds).collect();
-    let of = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
-    Some([of(0)?, of(1)?])
+    let coverage = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
+    Some([coverage(0)?, coverage(1)?])
 }
 
 /// The scores of one set.
@@ -174,12 +174,12 @@ pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
     let scored = cases.iter().filter(|case| case.task.score().is_some());
     let line = |((task, set), group): ((BenchTask, &str), Vec<&BenchCase>)| {
         let scores = Scores::of(&group, methods);
-        let of = |method: &String| {
+        let figures = |method: &String| {
             let (_, values) = scores.methods.iter().find(|(name, _)| name == method)?;
             let failed = values.iter().filter(|score| score.is_infinite()).count();
             Some((median_and_p90(values.clone())[0], failed))
         };
-        SetLine { task, set: set.to_owned(), cases: group.len(), methods: methods.iter().map(of).collect() }
+        SetLine { task, set: set.to_owned(), cases: group.len(), methods: methods.iter().map(figures).collect() }
     };
     grouped(scored, |case| (case.task, case.set.as_str())).into_iter().map(line).collect()
 }

@@ -52,6 +52,6 @@ pub fn total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<Nam
         failed: sum.failed + line.failed,
         ..sum
     })?;
-    let of = joined.counts.iter().sum::<usize>() + joined.failed;
-    Some(NamingLine { named: WilsonShare::new(joined.counts[0] + joined.counts[1], of)?, ..joined })
+    let trials = joined.counts.iter().sum::<usize>() + joined.failed;
+    Some(NamingLine { named: WilsonShare::new(joined.counts[0] + joined.counts[1], trials)?, ..joined })
 }

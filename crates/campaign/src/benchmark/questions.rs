@@ -182,7 +182,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
 /// Records that are absent.
 fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
     let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
-    let of = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
+    let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
         let skipped = |(record, reason): &(String, String)| Skipped {
             set: set.clone(),
             record: record.clone(),
@@ -190,7 +190,7 @@ fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
         };
         records.absent.iter().map(skipped).collect()
     };
-    distinct(sets.flat_map(of))
+    distinct(sets.flat_map(of_set))
 }
 
 /// The sets of a study with their records.

@@ -179,9 +179,9 @@ fn joined<T>(all: &[T], write: impl Fn(&T) -> String) -> Cow<'static, str> {
 }
 
 /// List from a text; fails where an entry is invalid, and names it as `what`.
-fn list<T>(text: &str, what: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
+fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
     let parts = text.split('+').filter(|part| !part.is_empty());
-    parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {what}"))
+    parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))
 }
 
 /// Effects named.

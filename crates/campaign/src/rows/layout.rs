@@ -133,7 +133,7 @@ impl RowLayout {
                 }
             },
             ColumnSource::Axis(_, points) => points.of_cells(rows),
-            ColumnSource::Record(of, records) => names_of_records(of, records, rows),
+            ColumnSource::Record(of, records) => record_names(of, records, rows),
             ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
             }
@@ -166,7 +166,7 @@ impl RowLayout {
                 }
                 // Axes and records follow from cell and replicate; others belong to another design.
                 (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
-                (ColumnSource::Record(of, records), values) if names_of_records(of, records, &rows) == values => {}
+                (ColumnSource::Record(of, records), values) if record_names(of, records, &rows) == values => {}
                 (ColumnSource::Record(..), _) => return Err("a row names other records than its trial has".to_owned()),
                 (ColumnSource::Axis(name, _), _) => {
                     return Err(format!("a row has a point of the axis {name:?} that is not that of its cell"));
@@ -184,8 +184,8 @@ impl RowLayout {
 }
 
 /// Names of the records of trials.
-fn names_of_records(of: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
-    let name = |row: &StudyRow| of(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
+fn record_names(get: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
+    let name = |row: &StudyRow| get(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
     Values::Texts(rows.iter().map(name).collect())
 }
 

@@ -261,7 +261,7 @@ impl Scenario {
 
     /// Assumptions that can influence the result, most harmful first, each as a sentence without full stop.
     pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
-        let made = |assumption: Assumption| {
+        let described = |assumption: Assumption| {
             let cells = self.cells.iter().filter(|cell| cell.assumes(assumption)).count();
             let sentence = assumption.sentence();
             match cells {
@@ -270,7 +270,7 @@ impl Scenario {
                 some => Some((assumption, format!("in {some} of {} cells {sentence}", self.cells.len()))),
             }
         };
-        Assumption::ALL.into_iter().filter_map(made).collect()
+        Assumption::ALL.into_iter().filter_map(described).collect()
     }
 
     /// Labels and ids of the methods, in the order of the scenario.

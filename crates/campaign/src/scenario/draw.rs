@@ -13,7 +13,7 @@ use crate::scenario::limits;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath};
 
-/// Entry of `[[draw]]` as written.
+/// A draw as written in the file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DrawWire {

@@ -75,16 +75,16 @@ pub fn differences(there: &Table, here: &Table) -> Vec<String> {
 
 fn differences_below(path: &str, there: &Table, here: &Table) -> Vec<String> {
     let only = here.keys().filter(|name| !there.contains_key(*name));
-    let of = |name: &String| differences_at(&format!("{path}{name}"), there.get(name), here.get(name));
-    there.keys().chain(only).flat_map(of).collect()
+    let differences_of = |name: &String| differences_at(&format!("{path}{name}"), there.get(name), here.get(name));
+    there.keys().chain(only).flat_map(differences_of).collect()
 }
 
 fn differences_at(key: &str, there: Option<&Value>, here: Option<&Value>) -> Vec<String> {
     match (there, here) {
         (Some(Value::Table(there)), Some(Value::Table(here))) => differences_below(&format!("{key}."), there, here),
         (Some(Value::Array(there)), Some(Value::Array(here))) => {
-            let of = |index: usize| differences_at(&format!("{key}.{index}"), there.get(index), here.get(index));
-            (0..there.len().max(here.len())).flat_map(of).collect()
+            let entry = |index: usize| differences_at(&format!("{key}.{index}"), there.get(index), here.get(index));
+            (0..there.len().max(here.len())).flat_map(entry).collect()
         }
         (Some(there), Some(here)) if is_same(there, here) => Vec::new(),
         _ => vec![format!("`{key}`: {} there, {} here", shortened(there), shortened(here))],

@@ -13,14 +13,14 @@ pub struct ScenarioKey {
     /// Unit of a number, or type of another value.
     pub unit: String,
     /// Value when the key is left out.
-    pub default: LeftOut,
+    pub default: KeyDefault,
     /// Meaning, from the documentation of the field.
     pub meaning: String,
 }
 
 /// Value of a key that is left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum LeftOut {
+pub enum KeyDefault {
     /// Not allowed: the key is required wherever its table is given.
     Required,
     /// As the meaning of the key says.
@@ -29,7 +29,7 @@ pub enum LeftOut {
     Value(String),
 }
 
-impl std::fmt::Display for LeftOut {
+impl std::fmt::Display for KeyDefault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Required => "required",
@@ -91,10 +91,10 @@ impl<'a> SchemaWalk<'a> {
         let meaning =
             [variant, written, value].into_iter().find_map(|schema| schema["description"].as_str()).unwrap_or_default();
         let default = match &written["default"] {
-            _ if is_required => LeftOut::Required,
-            Value::Null | Value::Array(_) | Value::Object(_) => LeftOut::Nothing,
-            Value::Number(number) => LeftOut::Value(number.as_f64().map_or_else(String::new, |x| x.to_string())),
-            value => LeftOut::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
+            _ if is_required => KeyDefault::Required,
+            Value::Null | Value::Array(_) | Value::Object(_) => KeyDefault::Nothing,
+            Value::Number(number) => KeyDefault::Value(number.as_f64().map_or_else(String::new, |x| x.to_string())),
+            value => KeyDefault::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
         };
         let meaning = meaning.split_whitespace().collect::<Vec<_>>().join(" ");
         keys.push(ScenarioKey { key: key.to_owned(), unit, default, meaning });
@@ -156,9 +156,9 @@ mod tests {
         let keys = keys();
         let of = |wanted: &str| keys.iter().find(|key| key.key == wanted).unwrap_or_else(|| panic!("no {wanted}"));
         assert_eq!(of("steering-gear.rate-deg-s").unit, "deg/s");
-        assert_eq!(of("steering-gear.lag-s").default, LeftOut::Value("0".into()));
-        assert_eq!(of("steering-gear.rate-deg-s").default, LeftOut::Nothing);
-        assert_eq!(of("manoeuvre.zig-zag.rudder-deg").default, LeftOut::Required);
+        assert_eq!(of("steering-gear.lag-s").default, KeyDefault::Value("0".into()));
+        assert_eq!(of("steering-gear.rate-deg-s").default, KeyDefault::Nothing);
+        assert_eq!(of("manoeuvre.zig-zag.rudder-deg").default, KeyDefault::Required);
         assert_eq!(of("manoeuvre.zig-zag.first").unit, "starboard or port");
         assert_eq!(of("sweep[].points[].label").unit, "text");
         assert_eq!(of("identifier[].method.output-error.iterations").unit, "whole number");

@@ -61,21 +61,21 @@ impl PhysicsWire {
         }
         let is_timed = !changes_s.is_empty() || period_s.is_some();
         let is_backwards = period_s.is_some_and(|[from, to]| !(from > 0.0 && from <= to));
-        let when = if changes_s.is_empty() { "period-s" } else { "changes-s" };
+        let time = if changes_s.is_empty() { "period-s" } else { "changes-s" };
         let faults = [
             (
                 is_timed && depends_on != Some(Dependence::Time),
                 (
-                    when,
+                    time,
                     "times of a moment that does not depend on time",
                     "expected `depends-on = \"time\"` beside them",
                 ),
             ),
             (
                 !changes_s.is_empty() && period_s.is_some(),
-                (when, "a moment with changes and with a period", "expected `changes-s` or `period-s`"),
+                (time, "a moment with changes and with a period", "expected `changes-s` or `period-s`"),
             ),
-            (is_backwards, (when, "an invalid range of periods", "expected two periods above 0 s, the shorter first")),
+            (is_backwards, (time, "an invalid range of periods", "expected two periods above 0 s, the shorter first")),
             (
                 effects.is_empty() != depends_on.is_some(),
                 (

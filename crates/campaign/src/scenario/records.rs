@@ -291,8 +291,8 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
     let splits: Vec<RecordSplit> = match judge {
         JudgeWire::Rule(JudgeRule::None) => all.map(|record| split(vec![record], None)).collect(),
         JudgeWire::Rule(JudgeRule::Others) => {
-            let of = |fitted: usize| without(fitted).into_iter().map(move |judge| split(vec![fitted], Some(judge)));
-            all.clone().flat_map(of).collect()
+            let pairs = |fitted: usize| without(fitted).into_iter().map(move |judge| split(vec![fitted], Some(judge)));
+            all.clone().flat_map(pairs).collect()
         }
         JudgeWire::Rule(JudgeRule::LeftOut) if names.len() > 1 => {
             all.clone().map(|judge| split(without(judge), Some(judge))).collect()

@@ -30,9 +30,9 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     simulation.validate()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
     let also = wire.also.iter().enumerate().map(|(index, entry)| {
-        let what = format!("in the further record {}", index + 1);
+        let context = format!("in the further record {}", index + 1);
         let record = Simulation { recording: entry.recording.unwrap_or(wire.recording), ..simulation.clone() };
-        further(entry, record, KeyPath::dotted("also").child(index), &what, folder)
+        further(entry, record, KeyPath::dotted("also").child(index), &context, folder)
     });
     let also = also.collect::<Result<_, _>>()?;
     // A validation is in a calm and perfectly recorded, so that the error of a replay is that of the response.
@@ -116,7 +116,7 @@ fn further(
     wire: &FurtherWire,
     record: Simulation,
     place: KeyPath,
-    what: &str,
+    context: &str,
     folder: &Path,
 ) -> Result<Simulation, KeyFault> {
     let checked = manoeuvre(&wire.manoeuvre, folder).and_then(|manoeuvre| {

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::scenario::keys::{LeftOut, ScenarioKey, keys};
+use crate::scenario::keys::{KeyDefault, ScenarioKey, keys};
 use crate::scenario::method::Method;
 use crate::scenario::problem::KeyFault;
 use crate::scenario::resolve::of_validation;
@@ -90,7 +90,7 @@ impl ResolvedText {
         for ScenarioKey { key, unit, default, meaning } in &self.keys {
             let name = key.strip_prefix(&path).and_then(|tail| tail.strip_prefix('.'));
             let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };
-            if *default == LeftOut::Nothing && unit != "table" {
+            if *default == KeyDefault::Nothing && unit != "table" {
                 self.text += &format!("# {name} is left out: {meaning}\n");
             }
         }

@@ -35,12 +35,12 @@ pub const FEWEST: u64 = 6;
 pub const MIN_SUMMARISED: usize = 5;
 
 /// Share of `count` in `of` with its interval (Wilson 1927); `None` without cases.
-pub fn share(count: u64, of: u64) -> Option<Statistic> {
-    if of == 0 {
+pub fn share(count: u64, cases: u64) -> Option<Statistic> {
+    if cases == 0 {
         return None;
     }
-    let value = count as f64 / of as f64;
-    Some(Statistic { value, ci95: Some(wilson(value, of as f64, Z95)) })
+    let value = count as f64 / cases as f64;
+    Some(Statistic { value, ci95: Some(wilson(value, cases as f64, Z95)) })
 }
 
 #[cfg(test)]

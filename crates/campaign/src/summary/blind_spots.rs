@@ -5,7 +5,7 @@ use crate::design::Design;
 use crate::statistics::{SizeTrials, Statistic, grouped, size_of_share};
 
 /// Share of the trials in which the effect has to be named.
-pub const NAMED: f64 = 0.9;
+pub const MIN_NAMED_SHARE: f64 = 0.9;
 
 /// Size from which a trace names an effect, under one set of conditions.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
     let groups = grouped(sized, |(kind, _)| kind.clone());
     let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, SizeTrials)>)| {
         let tried: Vec<SizeTrials> = levels.into_iter().map(|(_, level)| level).collect();
-        let size = size_of_share(&tried, NAMED)?;
+        let size = size_of_share(&tried, MIN_NAMED_SHARE)?;
         Some(BlindSpot { effect, unit, place, method, tried, size })
     };
     groups.into_iter().filter_map(spot).collect()

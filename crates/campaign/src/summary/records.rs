@@ -42,11 +42,11 @@ pub fn record_summaries(rows: &[StudyRow], design: &Design) -> Vec<RecordSummary
 }
 
 fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> RecordSummary {
-    let of = |method: usize| {
+    let rows_of = |method: usize| {
         let is_own = move |row: &&StudyRow| row.cell == cell as u64 && row.method == method;
         rows.iter().filter(is_own).collect::<Vec<&StudyRow>>()
     };
-    let (method_rows, first) = (of(method), of(0));
+    let (method_rows, first) = (rows_of(method), rows_of(0));
     let records = &design.cells[cell].records;
     let fit = |row: &StudyRow| records[row.replicate as usize].fitted.as_str();
     let mut fits: Vec<&StudyRow> = Vec::new();
@@ -89,7 +89,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
 /// Median of all values, with an interval from six groups on.
 fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
     let values = groups.concat();
-    let of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());
+    let median_of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());
     let mut end = 0;
     let clusters: Vec<Vec<usize>> = groups
         .iter()
@@ -98,8 +98,8 @@ fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
             (end - group.len()..end).collect()
         })
         .collect();
-    let value = of(&clusters.concat())?;
-    let drawn = resampled(&clusters, of).into_iter().flatten().collect();
+    let value = median_of(&clusters.concat())?;
+    let drawn = resampled(&clusters, median_of).into_iter().flatten().collect();
     Some(Statistic { value, ci95: interval(groups.len(), drawn) })
 }
 

@@ -44,8 +44,8 @@ struct ClosedCell {
 impl<'a> Tally<'a> {
     /// Tally of the rows of a design.
     pub fn new(design: &'a Design) -> Self {
-        let of = |is_it: fn(&MethodName) -> bool| design.methods.iter().position(is_it);
-        let reference = of(|method| method.label == REFERENCE).or_else(|| of(|method| method.id == REFERENCE));
+        let find = |is_reference: fn(&MethodName) -> bool| design.methods.iter().position(is_reference);
+        let reference = find(|method| method.label == REFERENCE).or_else(|| find(|method| method.id == REFERENCE));
         let running = vec![MethodTally::default(); design.methods.len()];
         Self {
             design,
