@@ -1,18 +1,18 @@
-//! What a manifest says of the program, known when it is built: the last revision in which its source changed, whether
-//! that had been changed since, and the versions of the crates that decide the numbers.
+//! Build facts for manifests: the last revision of the source, whether it has uncommitted changes, and the versions of
+//! the numerical crates.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// Crates whose version is part of a result's identity.
+/// Numerical crates, whose versions are part of a result's identity.
 const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
 
-/// What the program is made from.
+/// Paths of the source of the program.
 const SOURCE: [&str; 3] = ["crates", "Cargo.toml", "Cargo.lock"];
 
 fn main() {
-    // As it is when this runs: a compiled script may have come here with its folder.
+    // Read at run time: a compiled script may have been moved with its folder.
     let package = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
     println!("cargo::rerun-if-changed=build.rs");
     let lock = package.ancestors().map(|folder| folder.join("Cargo.lock")).find(|lock| lock.is_file());
@@ -26,12 +26,12 @@ fn main() {
     if !root.join(".git").exists() {
         return;
     }
-    // What this program is made from, and what git has noted of it.
+    // The source, and the git log of this checkout.
     println!("cargo::rerun-if-changed={}", root.join("crates").display());
     if let Some(log) = git(&root, &["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo::rerun-if-changed={}", root.join(log).display());
     }
-    // Revisions that change pages, scenarios or results alone are of the same program.
+    // Revisions that change only pages, scenarios or results are the same program.
     if let Some(revision) = git(&root, &[&["log", "-1", "--format=%H", "--"][..], &SOURCE].concat()) {
         println!("cargo::rustc-env=KEMPF_GIT_REVISION={revision}");
     }
@@ -40,15 +40,15 @@ fn main() {
     }
 }
 
-/// "name version" of a crate, once for every version in the lock file.
+/// "name version" for every version of a crate in the lock file.
 fn versions(locked: &str, name: &str) -> Vec<String> {
-    let wanted = format!("name = \"{name}\"");
+    let head = format!("name = \"{name}\"");
     let lines: Vec<&str> = locked.lines().collect();
-    let of = lines.windows(2).filter(|pair| pair[0] == wanted).filter_map(|pair| pair[1].strip_prefix("version = "));
-    of.map(|version| format!("{name} {}", version.trim_matches('"'))).collect()
+    let hits = lines.windows(2).filter(|pair| pair[0] == head).filter_map(|pair| pair[1].strip_prefix("version = "));
+    hits.map(|version| format!("{name} {}", version.trim_matches('"'))).collect()
 }
 
-/// What git says of a checkout; `None` where it says nothing, and without git.
+/// Output of git in a checkout; `None` for empty output, an error, and without git.
 fn git(root: &Path, arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").arg("-C").arg(root).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();

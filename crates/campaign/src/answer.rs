@@ -1,11 +1,13 @@
-//! The entry of a document for the answer of a method.
+//! Document entries for the answers of methods, as `fit.json` holds them.
 
 use document::method::{IndexEstimates, MethodEntry, Status};
 use identify::replay::pooled;
 use identify::{Estimate, IdentifyError};
 use ship::angle::to_deg;
 
-/// The entry of a method that gave an answer.
+/// Entry of a successful fit.
+///
+/// `heading_rmse_deg` is the rms heading error of the replay, deg. Diagnostics that are not finite are left out.
 pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> MethodEntry {
     let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());
     MethodEntry {
@@ -25,13 +27,13 @@ pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>
     }
 }
 
-/// The entry of a method that gave none.
+/// Entry of a failed fit: its reason as a sentence and as a kind.
 pub fn failed(method: &str, error: &IdentifyError) -> MethodEntry {
     let (reason, failure) = (Some(error.to_string()), Some(error.kind().to_owned()));
     MethodEntry { method: method.to_owned(), reason, failure, ..MethodEntry::default() }
 }
 
-/// The entry of an answer, and the estimate itself where there is one.
+/// Entry of a result, and the estimate itself unless the fit failed.
 pub fn entry(
     label: &str,
     answer: Result<Estimate, IdentifyError>,

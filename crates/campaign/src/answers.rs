@@ -1,4 +1,4 @@
-//! Trials that leave the house and the answers that come back: which record is which trial, and a table of answers.
+//! Answers of outside estimators: names of exported records, and the table of answers that comes back.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -19,10 +19,10 @@ use crate::scenario::name::{shown, slug};
 use crate::scenario::{Scenario, hex};
 use crate::task::Task;
 
-/// File beside simulated records from which their scenario can be read, with its seed.
+/// File beside exported records that holds their scenario and seed.
 pub const TRIALS: &str = "trials.toml";
 
-/// What `trials.toml` says. A scenario can be read from it as from a manifest.
+/// Contents of `trials.toml`. A scenario can be read from it as from a manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Trials {
@@ -37,14 +37,14 @@ pub struct Trials {
 }
 
 impl Trials {
-    /// Those of a scenario.
+    /// Description of the trials of a scenario.
     pub fn of(scenario: &Scenario) -> Self {
         let Scenario { name, seed, design_sha256, text, .. } = scenario;
         Self { name: name.clone(), seed: *seed, design_sha256: design_sha256.clone(), scenario: text.clone() }
     }
 }
 
-/// What the first record of a trial is called in a folder: scenario, cell and number, as far as there are several.
+/// Name of the first record of a trial: scenario, cell and replicate; an index that cannot vary is omitted.
 pub fn record_name(scenario: &Scenario, task: Task) -> String {
     let mut name = scenario.name.clone();
     if scenario.cells.len() > 1 {
@@ -60,31 +60,31 @@ pub fn record_name(scenario: &Scenario, task: Task) -> String {
     name
 }
 
-/// What a record of a trial is called; those behind the first carry their number.
+/// Name of record `number` of a trial, from 0; further records carry their number.
 pub fn part_name(record: &str, number: usize) -> String {
     if number == 0 { record.to_owned() } else { format!("{record}-also-{number}") }
 }
 
-/// A table of answers; the longest that makes sense has a line for every trial of a large study.
+/// Limits of a table of answers: one line per trial of a large study.
 const TABLE: Kind = Kind { name: "a table of answers", largest: 1 << 30 };
 
-/// Columns of a table of answers that are read, and those of the list of trials, which it may have kept.
+/// Known columns: those that are read, and those that a table may have kept from the list of trials.
 const COLUMNS: &str =
     "method record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
-/// Columns that a message names.
-const MOST_COLUMNS: usize = 20;
+/// Largest number of columns that a message names.
+const MAX_NAMED_COLUMNS: usize = 20;
 
-/// Lines at fault that a message names.
-const MOST_FAULTS: usize = 10;
+/// Largest number of faulty lines that a message names.
+const MAX_NAMED_LINES: usize = 10;
 
-/// Reads a table of answers to the trials of a scenario: `record` (of measured ones those that were fitted together),
-/// or `cell` and `replicate`; `K_per_s` and `T_s`; and what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`,
-/// `delta_r_sd_deg`, and `failed`, the reason why there is no answer. Where `method` says whose a line is, there are
-/// answers of several methods, in the order of their first lines. Tells trials without an answer and columns that are
-/// not read.
+/// Answers from a table, by method in the order of first lines; `None` is the method of a table without that column.
 ///
-/// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
+/// A trial is identified by `record` (for measured records: those fitted together) or by `cell` and `replicate`. The
+/// estimates are `K_per_s` and `T_s`; optional are `delta_r_deg`, the standard deviations `K_sd_per_s`, `T_sd_s` and
+/// `delta_r_sd_deg`, and `failed`, the reason for a missing answer. Warns of unanswered trials and unused columns.
+///
+/// Fails when a column is missing; one message lists the lines that match no trial or hold no numbers.
 pub fn read(
     path: &Path,
     scenario: &Scenario,
@@ -94,7 +94,7 @@ pub fn read(
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
     let head = text.lines().next().unwrap_or_default();
-    let separator = [b';', b'\t'].into_iter().find(|own| head.as_bytes().contains(own)).unwrap_or(b',');
+    let separator = [b';', b'\t'].into_iter().find(|candidate| head.as_bytes().contains(candidate)).unwrap_or(b',');
     let mut table =
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
     let columns = AnswerColumns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
@@ -111,25 +111,25 @@ pub fn read(
         let read = columns.places(&row, &records).and_then(|places| Ok((places, columns.answer(&row)?)));
         let method = columns.text(&row, "method").map(str::to_owned);
         let mut keep = |(places, answer): (Vec<TrialNumber>, Result<Answer, String>)| {
-            let own = answers.entry(method.clone()).or_default();
+            let by_trial = answers.entry(method.clone()).or_default();
             places.into_iter().fold(None, |before, place| {
-                own.insert(place, answer.clone());
+                by_trial.insert(place, answer.clone());
                 before.or(lines.insert((method.clone(), place), line))
             })
         };
         match read.map(&mut keep) {
             Ok(None) => {}
-            Ok(Some(first)) => faults.push(format!("line {line}: the trial of line {first} is answered again")),
+            Ok(Some(first)) => faults.push(format!("line {line}: its trial is already answered in line {first}")),
             Err(fault) => faults.push(format!("line {line}: {fault}")),
         }
     }
     if !faults.is_empty() {
-        let more = faults.len().saturating_sub(MOST_FAULTS);
-        faults.truncate(MOST_FAULTS);
+        let more = faults.len().saturating_sub(MAX_NAMED_LINES);
+        faults.truncate(MAX_NAMED_LINES);
         let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
         return Err(refuse(format!(
-            "these lines are no answers to trials of {}:\n  {}{more}\nexpected a line for every trial at most, named as in \
-             trials.csv, which `study simulate` writes beside the records",
+            "these lines do not answer trials of {}:\n  {}{more}\nexpected at most one line per trial, named as in the \
+             trials.csv that `study simulate` writes beside the records",
             scenario.name,
             faults.join("\n  ")
         )));
@@ -137,28 +137,28 @@ pub fn read(
     if answers.is_empty() {
         answers.insert(None, HashMap::new());
     }
-    answers.iter().for_each(|(method, own)| missing(path, scenario, method.as_deref(), own.len() as u64, observer));
+    answers.iter().for_each(|(method, given)| missing(path, scenario, method.as_deref(), given.len() as u64, observer));
     let sha256 = hex(&Sha256::digest(text.as_bytes()));
-    Ok(answers.into_iter().map(|(method, own)| (method, Answers::new(own, sha256.clone()))).collect())
+    Ok(answers.into_iter().map(|(method, by_trial)| (method, Answers::new(by_trial, sha256.clone()))).collect())
 }
 
-/// Tells how many trials a method has not answered; with a stopping rule nobody knows how many there are.
+/// Warns of trials that a method has not answered; with a stopping rule their number is not known in advance.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
     let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
-        let whose = method.map_or_else(String::new, |method| format!("{method}: "));
-        let problem = format!("{whose}{left} of {trials} trials have no answer, which counts as failed");
+        let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
+        let problem = format!("{prefix}{left} of {trials} trials have no answer and count as failed");
         observer.warn(&format!("{}: {problem}", path.display()));
     }
 }
 
-/// Which trial a record is of.
+/// Look-up from record names to trials.
 struct Records<'a> {
     scenario: &'a Scenario,
-    /// By the names of cells: in most studies there are far fewer cells than trials.
+    /// Cell index by record name; most studies have far fewer cells than trials.
     cells: HashMap<String, u64>,
-    /// In a study of measured records the trials whose fit has these records.
+    /// In a study of measured records: trials by the names of the records fitted together.
     fits: HashMap<String, Vec<TrialNumber>>,
 }
 
@@ -177,8 +177,8 @@ impl<'a> Records<'a> {
         Self { scenario, cells, fits }
     }
 
-    /// The trials that an answer to a record is of: one of a simulated record, by the name of its file, and all that
-    /// fit these measured ones, by their names as `records.csv` has them.
+    /// Trials answered by one line: the trial of a simulated record, by its file name, or all trials that share the fit
+    /// of measured records, by their names as in `records.csv`.
     fn find(&self, record: &str) -> Option<Vec<TrialNumber>> {
         match self.fits.is_empty() {
             true => self.simulated(record).map(|trial| vec![trial]),
@@ -186,7 +186,7 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// The trial of a simulated record.
+    /// Trial of a simulated record, from its file name.
     fn simulated(&self, record: &str) -> Option<TrialNumber> {
         let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
         let name = file.strip_suffix(".csv").unwrap_or(file);
@@ -195,17 +195,17 @@ impl<'a> Records<'a> {
             _ => stem(name).1.parse().ok().map(|number| (stem(name).0, number))?,
         };
         let task = Task { cell: *self.cells.get(cell)? as usize, replicate };
-        let is_that = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
-        is_that.then_some((task.cell as u64, replicate))
+        let is_match = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
+        is_match.then_some((task.cell as u64, replicate))
     }
 }
 
-/// A name in front of its last hyphen, and behind it.
+/// Parts of a name before and after its last hyphen.
 fn stem(name: &str) -> (&str, &str) {
     name.rsplit_once('-').unwrap_or((name, ""))
 }
 
-/// Where the columns of a table are.
+/// Column indices of a table of answers.
 struct AnswerColumns {
     places: HashMap<String, usize>,
     ignored: Vec<String>,
@@ -220,18 +220,18 @@ impl AnswerColumns {
         }
         let has = |names: &[&str]| names.iter().all(|name| places.contains_key(*name));
         if !has(&["K_per_s", "T_s"]) || !has(&["record"]) && !has(&["cell", "replicate"]) {
-            let found: Vec<String> = head.iter().take(MOST_COLUMNS).map(shown).collect();
+            let names: Vec<String> = head.iter().take(MAX_NAMED_COLUMNS).map(shown).collect();
             return Err(format!(
                 "the columns are {}; expected `record`, or `cell` and `replicate`, beside `K_per_s` and `T_s`",
-                found.join(", ")
+                names.join(", ")
             ));
         }
-        let is_known = |own: &&str| COLUMNS.split(' ').any(|known| known == *own);
-        let ignored = head.iter().filter(|own| !is_known(own)).take(MOST_COLUMNS).map(shown).collect();
+        let is_known = |column: &&str| COLUMNS.split(' ').any(|name| name == *column);
+        let ignored = head.iter().filter(|column| !is_known(column)).take(MAX_NAMED_COLUMNS).map(shown).collect();
         Ok(Self { places, ignored })
     }
 
-    /// What a row has in a column; `None` where it has nothing.
+    /// Text of a row in a column; `None` where it is empty.
     fn text<'a>(&self, row: &'a StringRecord, name: &str) -> Option<&'a str> {
         row.get(*self.places.get(name)?).filter(|text| !text.is_empty())
     }
@@ -244,7 +244,7 @@ impl AnswerColumns {
 
     fn places(&self, row: &StringRecord, records: &Records) -> Result<Vec<TrialNumber>, String> {
         if let Some(record) = self.text(row, "record") {
-            return records.find(record).ok_or_else(|| format!("{} is no record of this scenario", shown(record)));
+            return records.find(record).ok_or_else(|| format!("{} is not a record of this scenario", shown(record)));
         }
         let whole = |name: &str| {
             let text = self.text(row, name).unwrap_or_default();
@@ -267,9 +267,9 @@ impl AnswerColumns {
         let (k, t, bias) = (number("K_per_s")?, number("T_s")?, number("delta_r_deg")?);
         let sd = [number("K_sd_per_s")?, number("T_sd_s")?, number("delta_r_sd_deg")?.map(from_deg)];
         let errors = if sd == [None; 3] { Errors::Unknown } else { Errors::Deviations(sd) };
-        let missing = |name: &str| format!("{name} is missing or is no finite number");
+        let missing = |name: &str| format!("{name} is missing or not a finite number");
         Ok(match (self.text(row, "failed"), k, t) {
-            (Some(words), _, _) => Err(words.to_owned()),
+            (Some(reason), _, _) => Err(reason.to_owned()),
             (None, Some(k), Some(t)) => Ok(Answer { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors }),
             (None, None, _) => Err(missing("K_per_s")),
             (None, Some(_), None) => Err(missing("T_s")),
@@ -301,10 +301,10 @@ mod tests {
         let desk = tempfile::tempdir().expect("a folder");
         let path = desk.path().join("answers.csv");
         std::fs::write(&path, text).expect("written");
-        let told = KeptWarnings::default();
-        let read = read(&path, scenario, &told).map_err(|failure| failure.message);
+        let warnings = KeptWarnings::default();
+        let read = read(&path, scenario, &warnings).map_err(|failure| failure.message);
         let read = read.map(|mut answers| answers.shift_remove(&None).expect("answers of nobody in particular"));
-        (read, told.0.into_inner().expect("nobody panics"))
+        (read, warnings.0.into_inner().expect("nobody panics"))
     }
 
     #[test]
@@ -330,20 +330,23 @@ mod tests {
         let scenario = zig_zag(3, TWO_CELLS);
         let by_record = "\u{feff}label;record ;K_per_s;T_s;delta_r_deg;K_sd_per_s;T_sd_s;failed;seconds\n\
                          0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
-        let (read, told) = read_from(by_record, &scenario);
+        let (read, warnings) = read_from(by_record, &scenario);
         let answers = read.expect("a table of answers");
         let good = answers.to((0, 2)).expect("an answer");
         assert!(
             (good.response.rudder_bias - from_deg(1.5)).abs() < 1e-15
                 && (good.K().sd.expect("given") - 0.01).abs() < 1e-12
         );
-        let said = |place| answers.to(place).expect_err("none").to_string();
-        assert_eq!(said((1, 0)), "outside: K_per_s is missing or is no finite number");
-        assert_eq!((said((1, 1)), said((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
-        assert!(told.contains("\"seconds\"") && !told.contains("label") && told.contains("3 of 6 trials"), "{told}");
-        let (read, told) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
+        let failure = |place| answers.to(place).expect_err("none").to_string();
+        assert_eq!(failure((1, 0)), "outside: K_per_s is missing or not a finite number");
+        assert_eq!((failure((1, 1)), failure((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
+        assert!(
+            warnings.contains("\"seconds\"") && !warnings.contains("label") && warnings.contains("3 of 6 trials"),
+            "{warnings}"
+        );
+        let (read, warnings) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
         assert_eq!(read.expect("a table").to((1, 2)).expect("an answer").K().value, 0.1);
-        assert!(told.contains("5 of 6 trials"));
+        assert!(warnings.contains("5 of 6 trials"));
         let named = scenario.with_answers("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
         let last = MethodName { label: "mine".into(), id: "external".into() };
         assert_eq!(named.method_names().pop(), Some(last));
@@ -364,12 +367,12 @@ mod tests {
             &[
                 "line 3: there is no trial 3 of cell 0",
                 "line 4: there is no trial 0 of cell 2",
-                "line 5: the trial of line 2 is answered again",
+                "line 5: its trial is already answered in line 2",
                 "line 6: cell is \"-1\"",
                 "line 7: K_per_s is \"a lot\"; expected a number",
             ],
         );
-        refused("record,K_per_s,T_s\nother.csv,1,1\n", &["line 2: \"other.csv\" is no record of this scenario"]);
+        refused("record,K_per_s,T_s\nother.csv,1,1\n", &["line 2: \"other.csv\" is not a record of this scenario"]);
         let many: String = (0..100).map(|line| format!("x{line},1,1\n")).collect();
         refused(&format!("record,K_per_s,T_s\n{many}"), &["line 11: ", "and 90 more"]);
     }

@@ -1,4 +1,4 @@
-//! Blocks: the parts in which the trials of a study are computed, stored and shared out.
+//! Blocks: the units in which the trials of a study are computed, stored and divided into shards.
 
 use std::fmt;
 use std::ops::Range;
@@ -16,26 +16,26 @@ pub struct Block {
 }
 
 impl Block {
-    /// Replicates of a block; the last of a cell may have fewer.
+    /// Replicates per block; the last block of a cell may have fewer.
     pub const REPLICATES: u64 = 256;
 
-    /// Blocks of a cell with so many replicates.
+    /// Number of blocks of a cell with `replicates` replicates.
     pub fn of_cell(replicates: u64) -> u64 {
         replicates.div_ceil(Self::REPLICATES)
     }
 
-    /// Blocks of all cells of a scenario.
+    /// Number of blocks of a scenario.
     pub fn count(scenario: &Scenario) -> u64 {
         scenario.cells.len() as u64 * Self::of_cell(scenario.replicates)
     }
 
-    /// The block of a scenario by its place among all of them, cell by cell.
+    /// Block number `place` of a scenario, counted cell by cell from 0.
     pub fn at(place: u64, scenario: &Scenario) -> Self {
         let of_cell = Self::of_cell(scenario.replicates);
         Self { cell: (place / of_cell) as usize, number: place % of_cell }
     }
 
-    /// Its place among all blocks of a scenario.
+    /// Its index among all blocks of a scenario, the inverse of [`Block::at`].
     pub fn place(self, scenario: &Scenario) -> u64 {
         self.cell as u64 * Self::of_cell(scenario.replicates) + self.number
     }
@@ -52,7 +52,7 @@ impl Block {
     }
 }
 
-/// The stem of its file.
+/// Stem of the file name, `CELL-NUMBER`.
 impl fmt::Display for Block {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:04}-{:04}", self.cell, self.number)

@@ -1,7 +1,7 @@
-//! The blocks of a result folder: which are there and whole, and how they get there.
+//! The blocks of a result folder: which are present and complete, and how they are written.
 //!
-//! A block is a file of rows and one of timings, each written beside its place and renamed when it is whole, the rows
-//! last. Whoever computes a block writes the same rows, so programs that work in one folder do no harm to each other,
+//! A block is a file of rows and a file of timings. Each is written under a temporary name and renamed when it is
+//! complete, the rows last. Every program computes the same rows for a block, so several programs may share a folder,
 //! and files of several folders may be copied into one.
 
 use std::collections::HashMap;
@@ -34,7 +34,7 @@ pub struct BlockStore<'a> {
 }
 
 impl<'a> BlockStore<'a> {
-    /// The blocks of a study that were computed by the program of its manifest.
+    /// Store of the blocks that the program named in a manifest computes.
     pub fn new(folder: &Path, manifest: &Manifest, design: &'a Design) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -56,10 +56,10 @@ impl<'a> BlockStore<'a> {
         self.folder.join(ROWS).join(rows_name(block))
     }
 
-    /// The rows of a block, of whole trials from its first on; none where there is no file. The inner failure is a file
-    /// that was changed since it was written.
+    /// Rows of a block, of complete trials from its first on; empty without a file. The inner error describes a damaged
+    /// file.
     ///
-    /// Fails when a file cannot be read, and when it is a block of something else.
+    /// Fails when the file cannot be read, and when it is a block of another study, seed or program.
     pub fn read(&self, block: Block) -> Result<Result<Vec<StudyRow>, String>, Failure> {
         let path = self.path(block);
         let Some(bytes) = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)? else { return Ok(Ok(Vec::new())) };
@@ -70,17 +70,18 @@ impl<'a> BlockStore<'a> {
         }
     }
 
-    /// Rows of a block that was whole a moment ago.
+    /// Rows of a block that has been read before in this run.
     ///
-    /// Fails as [`BlockStore::read`] does, and when it has changed since.
+    /// Fails as [`BlockStore::read`] does, and when the file has been damaged since.
     pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
-        self.read(block)?
-            .map_err(|problem| Failure::work(format!("{problem}; it changed meanwhile, run the study again")))
+        self.read(block)?.map_err(|problem| {
+            Failure::work(format!("{problem}; the file changed during this run; run the study again"))
+        })
     }
 
     fn foreign(&self, label: &BlockLabel) -> String {
         let advice = "remove the file, give another folder with --out, or --restart to discard all rows";
-        let what = if label.design != self.design_sha256 {
+        let problem = if label.design != self.design_sha256 {
             "it is a block of another study".to_owned()
         } else if label.seed != self.seed {
             format!("it is a block of the study with seed {}, expected seed {}", label.seed, self.seed)
@@ -89,13 +90,13 @@ impl<'a> BlockStore<'a> {
         } else {
             format!("it is block {}", label.block())
         };
-        format!("{what}; {advice}")
+        format!("{problem}; {advice}")
     }
 
-    /// Trials that are stored, by their block, of those blocks that are asked for. A damaged block is told of with what
-    /// becomes of it, and counts as none.
+    /// Number of stored trials of each requested block. Warns of a damaged block and counts it as missing; `becomes`
+    /// says what happens to its trials.
     ///
-    /// Fails when a file cannot be read, and when one is a block of something else.
+    /// Fails when a file cannot be read, and when one is a block of another study, seed or program.
     pub fn survey(
         &self,
         is_asked: impl Fn(Block) -> bool + Sync,
@@ -110,11 +111,11 @@ impl<'a> BlockStore<'a> {
                 Ok(None)
             }
         };
-        let known = |block: &Block| block.cell < self.design.cells.len() && is_asked(*block);
-        blocks_in(&self.folder)?.into_par_iter().filter(known).filter_map(|block| look(block).transpose()).collect()
+        let is_due = |block: &Block| block.cell < self.design.cells.len() && is_asked(*block);
+        blocks_in(&self.folder)?.into_par_iter().filter(is_due).filter_map(|block| look(block).transpose()).collect()
     }
 
-    /// Stores the trials of a block from its first on, and what they took.
+    /// Stores rows and timings of the trials of a block, from its first trial on.
     pub fn write(&self, block: Block, rows: &[StudyRow], timings: &Timings) -> Result<(), Failure> {
         let results = ResultFolder::make(&self.folder)?;
         let bytes = encode(rows, &self.label(block), &self.layout);
@@ -123,14 +124,14 @@ impl<'a> BlockStore<'a> {
         results.inside(ROWS)?.write(&rows_name(block), bytes)
     }
 
-    /// What the trials of a block took, as far as it is known. Fails when the file cannot be read.
+    /// Timings of a block; empty where they are missing or damaged. Fails when the file cannot be read.
     pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
         let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
         let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
         Ok(Timings::of_text(&text, self.design).unwrap_or_default())
     }
 
-    /// The blocks of the trials of the design, in their order, with their trials.
+    /// Blocks of the design in order, each with its number of trials.
     pub fn of_design(&self) -> impl Iterator<Item = (Block, u64)> {
         self.design.cells.iter().enumerate().flat_map(|(cell, facts)| {
             let count = facts.trials.end;
@@ -139,21 +140,19 @@ impl<'a> BlockStore<'a> {
         })
     }
 
-    /// Hands every row of the design to `take`, in order. Fails when a block is missing, short or damaged.
+    /// Passes every row of the design to `take`, in order. Fails when a block is missing, incomplete or damaged.
     pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         let blocks: Vec<(Block, u64)> = self.of_design().collect();
         let whole = |&(block, trials): &(Block, u64)| {
-            let found = self.read(block)?;
+            let content = self.read(block)?;
             let expected = trials as usize * self.layout.methods();
-            let rows = found.and_then(|rows| match rows.len() == expected {
+            let rows = content.and_then(|rows| match rows.len() == expected {
                 true => Ok(rows),
-                false => Err(format!("{}: it is missing, or not whole", self.path(block).display())),
+                false => Err(format!("{}: the block is missing or incomplete", self.path(block).display())),
             });
-            rows.map_err(|problem| {
-                Failure::input(format!("{problem}; run the study again: what is whole is not computed again"))
-            })
+            rows.map_err(|problem| Failure::input(format!("{problem}; run the study again; complete blocks are kept")))
         };
-        // So many are decoded side by side.
+        // A chunk of blocks is decoded in parallel.
         for some in blocks.chunks(2 * rayon::current_num_threads()) {
             let read: Vec<Result<Vec<StudyRow>, Failure>> = some.par_iter().map(whole).collect();
             for rows in read {
@@ -164,7 +163,7 @@ impl<'a> BlockStore<'a> {
     }
 }
 
-/// Blocks of a result folder, by the names of their files.
+/// Blocks of a result folder, from the file names.
 fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
     let rows = folder.join(ROWS);
     if !disk::is_there(&rows).on("look for", &rows)? {
@@ -174,12 +173,12 @@ fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
     Ok(names.iter().filter_map(|name| stem_of(name, "parquet")).collect())
 }
 
-/// Whether a folder holds blocks.
+/// `true` if a folder holds blocks.
 pub fn is_in(folder: &Path) -> Result<bool, Failure> {
     Ok(!blocks_in(folder)?.is_empty())
 }
 
-/// Throws the blocks of a folder away, whatever study they are of.
+/// Removes all blocks of a folder, whatever study they belong to.
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS, "parquet"), (BLOCK_TIMINGS, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
@@ -197,7 +196,7 @@ fn timings_name(block: Block) -> String {
     format!("{block}.csv")
 }
 
-/// The block whose file has this name.
+/// Block of a file name; `None` for any other file.
 fn stem_of(name: &str, extension: &str) -> Option<Block> {
     let (cell, number) = name.strip_suffix(extension)?.strip_suffix('.')?.split_once('-')?;
     let block = Block { cell: cell.parse().ok()?, number: number.parse().ok()? };

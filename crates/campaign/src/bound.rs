@@ -1,4 +1,4 @@
-//! How well a trial could be identified at best, from what chance really does to it.
+//! Cramér–Rao bound of a simulated trial under its true noise (Cramér 1946, Rao 1945).
 
 mod coloured;
 
@@ -13,15 +13,15 @@ use trial::noise_model::{Moment, NoiseModel};
 
 use coloured::CompassError;
 
-/// Cramér–Rao bound of all records of one trial together: as standard deviations of K (1/s), T (s) and K/T (1/s²), and
-/// as covariance of relative errors of K and T, %².
+/// Cramér–Rao bound of all records of one trial together: standard deviations of K (1/s), T (s) and K/T (1/s²), and the
+/// covariance of the relative errors of K and T, %².
 ///
-/// Random are the compass, the recorded rudder, the gyro, and one moment: a random walk or gusts. What the rest of the
-/// sea does is no noise but a fault of the model, which no bound knows. It leaves out spikes, too,
-/// which only take information away. `None` without heading noise, under two random moments at once, for a compass with
-/// a white and a coloured error where something else is random too, and for a record that does not determine the ship.
+/// The noise law covers compass, recorded rudder, gyro, and one random moment: a random walk or gusts. Wind, waves and
+/// drift are model errors and do not enter; spikes, which only remove information, are ignored. `None` without heading
+/// noise, for two random moments at once, for a compass with white and coloured error combined with another noise, and
+/// for a record that does not determine the ship.
 ///
-/// What several records tell of the ship adds up, each with an initial state of its own.
+/// The information of the records adds; each has its own initial state.
 pub fn of<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[Simulated],
@@ -46,7 +46,7 @@ pub fn of<'a>(
     bound.iter().all(|sd| sd.is_finite()).then_some((bound, percent2))
 }
 
-/// The bound of (1/T, K/T, K δ_r/T) from one record, its initial state unknown as well.
+/// Covariance bound of (1/T, K/T, K δ_r/T) for one record with unknown initial state.
 fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<Matrix3<f64>> {
     let white = simulation.sensors.declared_noise().heading;
     let wander = simulation.sensors.heading_wander.filter(|wander| wander.sd > 0.0);
@@ -68,8 +68,8 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
     })
 }
 
-/// What is random in trials of a simulation, beside the errors of its `compass`, as the likelihood of a first-order
-/// ship has it.
+/// Noise law of a simulation in the terms of the first-order likelihood: the errors of its `compass`, and all other
+/// noise.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
     let is_right =

@@ -1,5 +1,5 @@
-//! Runs the trials of a study or a shard of it: what is stored is kept, the rest is computed in parallel and stored as
-//! it comes, and when all rows are there everything is where [`crate::store`] expects it.
+//! Runs the trials of a study or a shard of it. Stored trials are kept; missing ones are computed in parallel and
+//! stored as they finish. When all rows are stored, the folder is completed as [`crate::store`] expects it.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -16,29 +16,29 @@ use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::failure::Failure;
 use crate::files;
 use crate::folder::ResultFolder;
-use crate::judged;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
 use crate::plan::{TrialPlan, blocks_of, trials_of};
 use crate::rows::StudyRow;
 use crate::scenario::records::DATA;
 use crate::scenario::{DesignCell, Scenario};
+use crate::shared_fit;
 use crate::showcase;
 use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
 use crate::timings::Timings;
 use crate::writer::BlockWriter;
 
-/// Time a batch of trials should take: long beside the wait for its last trial, short beside a second.
+/// Target duration of a batch: long against the wait for its last trial, short against a second.
 const BATCH_TIME: Duration = Duration::from_millis(250);
 
-/// Most trials of a batch: they are in memory.
+/// Largest number of trials in a batch, all of which are held in memory.
 const MAX_BATCH: usize = 2048;
 
-/// Runs a scenario into a folder, or what is missing of it; returns what is stored.
+/// Runs a scenario into a folder, except for trials that are stored there; returns the stored study.
 ///
-/// Fails when the folder holds another study, when rows of another program are to be joined by new ones, and when it is
-/// interrupted; what was stored stays.
+/// Fails when the folder holds another study, when stored rows come from another version of the program and some are
+/// missing, and on interruption; stored rows are kept.
 pub fn collect(
     scenario: &Scenario,
     folder: &ResultFolder,
@@ -47,16 +47,16 @@ pub fn collect(
 ) -> Result<StoredStudy, Failure> {
     let run = run(scenario, Shard::WHOLE, folder, restart, observer)?;
     if run.computed == 0 && run.manifest.is_finished() {
-        let told = Manifest::new(scenario).of_program_and_machine(&run.manifest);
+        let current = Manifest::new(scenario).of_program_and_machine(&run.manifest);
         if let Ok(stored) = StoredStudy::of(folder.path(), run.manifest.clone()) {
-            let design = stored.design.told_by(scenario);
-            return stored.told_again(told, design, folder);
+            let design = stored.design.with_descriptions_of(scenario);
+            return stored.with_descriptions(current, design, folder);
         }
     }
     finish(scenario, run, folder)
 }
 
-/// Runs a shard of a scenario into a folder, which may hold other shards of it; returns the manifest.
+/// Runs a shard of a scenario into a folder, which may hold other shards; returns the manifest.
 ///
 /// Fails as [`collect`] does.
 pub fn collect_shard(
@@ -69,16 +69,16 @@ pub fn collect_shard(
     Ok(run(scenario, shard, folder, restart, observer)?.manifest)
 }
 
-/// Finishes a study whose blocks are all in a folder, wherever they were computed; one that is finished is read.
+/// Completes a study whose blocks are all in a folder, wherever they were computed; a finished study is read.
 ///
-/// Fails where blocks are missing, and says which is the first of them.
+/// Fails where blocks are missing; the message names the first.
 pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
     let manifest = store::expected_in(folder.path())?;
     if manifest.is_finished() {
         return StoredStudy::read(folder.path());
     }
     let scenario = Scenario::read(&folder.path().join(files::MANIFEST), None)?;
-    is_same(&manifest, &Manifest::new(&scenario), folder.path())?;
+    check_same_study(&manifest, &Manifest::new(&scenario), folder.path())?;
     let design = Design::of(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let stored = store.survey(|_| true, "its trials count as missing", observer)?;
@@ -96,16 +96,16 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     finish(&scenario, StudyRun { manifest, trials, computed: 0 }, folder)
 }
 
-/// What a run leaves.
+/// Result of a run.
 struct StudyRun {
     manifest: Manifest,
-    /// Trials of every cell.
+    /// Number of trials of every cell.
     trials: Vec<u64>,
-    /// Trials that were computed now.
+    /// Number of trials computed in this run.
     computed: u64,
 }
 
-/// Computes and stores what is missing of a shard.
+/// Computes and stores the missing trials of a shard.
 fn run(
     scenario: &Scenario,
     shard: Shard,
@@ -128,15 +128,15 @@ fn run(
     if plan.peek()?.is_none() {
         return Ok(StudyRun { manifest, trials: plan.trials, computed: 0 });
     }
-    is_own_program(&manifest, &Manifest::new(scenario), folder.path())?;
+    check_same_program(&manifest, &Manifest::new(scenario), folder.path())?;
     if before > 0 {
-        observer.note(&format!("going on after {before} of {most} trials in {}", folder.path().display()));
+        observer.note(&format!("resuming after {before} of {most} trials in {}", folder.path().display()));
     }
-    told_of_records(scenario, observer);
+    warn_of_records(scenario, observer);
     let start = Instant::now();
     let progress = Progress { most, before, folder: folder.path() };
     let computed = run_all(scenario, &mut plan, &store, &progress, observer);
-    // Of other shards of the study that have ended meanwhile, too.
+    // Other shards of the study may have added their wall time meanwhile.
     let before = Manifest::read(&folder.path().join(files::MANIFEST))?.unwrap_or_else(|| manifest.clone());
     let wall_time_s = before.machine.wall_time_s + start.elapsed().as_secs_f64();
     let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
@@ -144,7 +144,7 @@ fn run(
     Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
 }
 
-/// There is nothing to run: no record is there.
+/// Failure of a study of measured records without any usable record.
 fn no_records(scenario: &Scenario) -> Failure {
     let absent = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.absent);
     let lines: Vec<String> = absent.map(|(file, reason)| format!("  {file}: {reason}")).collect();
@@ -152,26 +152,26 @@ fn no_records(scenario: &Scenario) -> Failure {
     Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
 }
 
-/// Tells what reading measured records had to decide, of every record once, and which are not there.
-fn told_of_records(scenario: &Scenario, observer: &dyn Observer) {
-    let mut known = HashSet::new();
+/// Warns of absent records and of decisions made in reading, once per record.
+fn warn_of_records(scenario: &Scenario, observer: &dyn Observer) {
+    let mut seen = HashSet::new();
     for set in scenario.cells.iter().filter_map(DesignCell::record_set) {
         let absent = set.absent.iter().map(|(file, reason)| format!("{file} is left out: {reason}"));
         let warnings = absent.chain(set.warnings.iter().cloned());
-        warnings.filter(|warning| known.insert(warning.clone())).for_each(|warning| observer.warn(&warning));
+        warnings.filter(|warning| seen.insert(warning.clone())).for_each(|warning| observer.warn(&warning));
     }
 }
 
-/// The manifest of a folder in which a study is about to run; written where there is none of its rows.
+/// Manifest of a folder in which a study is about to run; written unless rows of the study are stored there.
 fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Manifest, Failure> {
-    let own = Manifest::new(scenario);
+    let current = Manifest::new(scenario);
     if !restart && let Some(stored) = store::manifest_of_rows(folder.path())? {
-        is_same(&stored, &own, folder.path())?;
+        check_same_study(&stored, &current, folder.path())?;
         return Ok(stored);
     }
     if restart {
-        // The manifest first: rows without one are nobody's.
-        folder.remove_all(|name| [files::MANIFEST, files::ROWS_OF_OLD].contains(&name))?;
+        // The manifest first: rows without one belong to no study.
+        folder.remove_all(|name| [files::MANIFEST, files::LEGACY_ROWS].contains(&name))?;
         blocks::discard(folder)?;
     } else if blocks::is_in(folder.path())? {
         return Err(Failure::input(format!(
@@ -181,27 +181,27 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
             files::MANIFEST
         )));
     }
-    own.write(folder)?;
-    Ok(own)
+    current.write(folder)?;
+    Ok(current)
 }
 
-/// Refuses a folder whose rows belong to another study, and says what differs and what helps.
-fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
-    let differences = stored.differences(own);
+/// Refuses a folder whose rows belong to another study; the message lists the differences.
+fn check_same_study(stored: &Manifest, current: &Manifest, folder: &Path) -> Result<(), Failure> {
+    let differences = stored.differences(current);
     if differences.is_empty() {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\n\
-         give another folder with --out, or --restart to discard what is there",
+        "{} holds rows of another study (there: stored, here: requested):\n  {}\n\
+         give another folder with --out, or --restart to discard the stored rows",
         folder.display(),
         differences.join("\n  ")
     )))
 }
 
-/// Refuses to join rows of another program with new ones.
-fn is_own_program(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
-    let [there, here] = [stored, own].map(Manifest::program_label);
+/// Refuses to combine stored rows of another version of the program with new ones.
+fn check_same_program(stored: &Manifest, current: &Manifest, folder: &Path) -> Result<(), Failure> {
+    let [there, here] = [stored, current].map(Manifest::program_label);
     if there == here {
         return Ok(());
     }
@@ -212,10 +212,10 @@ fn is_own_program(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<()
     )))
 }
 
-/// How far a run is.
+/// Progress of a run, for messages.
 struct Progress<'a> {
     most: u64,
-    /// Trials that were stored before.
+    /// Number of trials stored before the run.
     before: u64,
     folder: &'a Path,
 }
@@ -223,15 +223,15 @@ struct Progress<'a> {
 /// How a run of trials ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum RunEnd {
-    /// All were run, or nobody takes more.
+    /// All trials were run, or the receiver wants no more.
     Done,
-    /// It was asked to stop, and no trial is under way.
+    /// Stopped on request; no trial is running.
     Interrupted,
-    /// It was asked to stop, and a trial under way does not end.
+    /// Stopped on request, but a running trial does not end.
     Stuck,
 }
 
-/// Runs what is left of a plan; rows go to a writer of their own while the next trials run. Returns how many were run.
+/// Runs the remaining trials of a plan while another thread writes their rows; returns the number of trials run.
 fn run_all(
     scenario: &Scenario,
     plan: &mut TrialPlan,
@@ -241,7 +241,7 @@ fn run_all(
 ) -> Result<u64, Failure> {
     observer.begin(progress.most, progress.before);
     std::thread::scope(|scope| {
-        // One batch may wait while one is written and one runs: memory stays what it is.
+        // One batch waits while another is written and a third runs, which bounds memory.
         let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
         let mut writer = BlockWriter::new(store, scenario);
         let writer = scope.spawn(move || writer.store(receive));
@@ -256,8 +256,8 @@ fn run_all(
         observer.end();
         let stopped = || {
             Failure::interrupted(format!(
-                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there, \
-                 without --restart",
+                "stopped after {} of {} trials; their rows are kept in {}; to resume, repeat the command without \
+                 --restart",
                 progress.before + computed,
                 progress.most,
                 progress.folder.join(files::ROWS).display()
@@ -275,13 +275,13 @@ fn run_all(
     })
 }
 
-/// Time after which a trial that is under way when the study is asked to stop is not waited for any more.
+/// Longest wait for running trials after a request to stop.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Time between two looks whether the study is asked to stop.
+/// Interval at which a request to stop is polled.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Runs batch after batch by `run` until the plan is done, a batch is not whole, or `take` wants no more.
+/// Runs batches until the plan is done, a batch is incomplete, or `take` wants no more.
 fn run_batches(
     plan: &mut TrialPlan,
     mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
@@ -296,7 +296,7 @@ fn run_batches(
         }
         let start = Instant::now();
         let (outcomes, end) = run(tasks);
-        outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.saw(row));
+        outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.add(row));
         if !take(outcomes) || end != RunEnd::Done {
             return Ok(end);
         }
@@ -305,13 +305,13 @@ fn run_batches(
     }
 }
 
-/// What runs tasks, which come in order.
+/// Runner for a batch of tasks, which are in order.
 fn runner<'a>(scenario: &'a Scenario, tasks: &[Task]) -> TrialRunner<'a> {
     TrialRunner::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
 }
 
-/// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns
-/// the outcomes up to the first that is missing.
+/// Runs a batch on a separate thread, so that an interruption need not wait for a trial that does not end. Returns the
+/// outcomes up to the first missing one.
 fn watched<'scope>(
     scope: &'scope Scope<'scope, '_>,
     scenario: &'scope Scenario,
@@ -323,10 +323,10 @@ fn watched<'scope>(
     scope.spawn(move || {
         let runner = runner(scenario, &tasks);
         let run = || {
-            judged::units(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
+            shared_fit::units(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
                 if !observer.is_asked_to_stop() {
-                    for (index, outcome) in unit.clone().zip(judged::run_unit(&runner, scenario, &tasks[unit])) {
-                        // Nobody receives any more when the wait for a trial was given up.
+                    for (index, outcome) in unit.clone().zip(shared_fit::run_unit(&runner, scenario, &tasks[unit])) {
+                        // The receiver is gone after the wait for a trial was given up.
                         let _ = send.send((index, outcome));
                     }
                 }
@@ -362,13 +362,13 @@ fn watched<'scope>(
     (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
 }
 
-/// All rows of a small study, in their order, without a folder; and its design.
+/// Design and rows, in order, of a small study that is run without a folder.
 pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<Task>| {
         let runner = runner(scenario, &tasks);
-        let units = judged::units(scenario, &tasks).into_par_iter();
-        (units.flat_map_iter(|unit| judged::run_unit(&runner, scenario, &tasks[unit])).collect(), RunEnd::Done)
+        let units = shared_fit::units(scenario, &tasks).into_par_iter();
+        (units.flat_map_iter(|unit| shared_fit::run_unit(&runner, scenario, &tasks[unit])).collect(), RunEnd::Done)
     };
     let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
@@ -380,7 +380,7 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     (designed(scenario, &plan.trials), rows)
 }
 
-/// The design of a study of which so many trials a cell are there, with the bounds of its cells.
+/// Design with the number of trials of every cell, and with the Cramér–Rao bounds of the cells.
 fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
     let mut design = Design::of(scenario);
     design.cells.iter_mut().zip(trials).for_each(|(cell, trials)| cell.trials = 0..*trials);
@@ -394,7 +394,7 @@ fn add_bounds(scenario: &Scenario, design: &mut Design) {
     cells.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));
 }
 
-/// Makes the result folder whole: facts of the cells, showcases, times, and the manifest last.
+/// Completes the result folder: facts of the cells, showcases, timings, and the manifest last.
 fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<StoredStudy, Failure> {
     let design = designed(scenario, &run.trials);
     let shown = if scenario.words.output.showcase { scenario.cells.len() } else { 0 };

@@ -1,4 +1,4 @@
-//! Trials and answers as data of figures, in degrees.
+//! Trials and replays as plot data, in degrees.
 
 use document::method::MethodEntry;
 use identify::Estimate;
@@ -12,43 +12,43 @@ use trial::{Quantity, Trial, ZigZag};
 use crate::scenario::MethodName;
 use crate::stored_figures::ReplayCurves;
 
-/// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.
+/// Plot origin of a method: the method itself where its label is its id, otherwise a numbered variant.
 pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
     match names.iter().find(|name| name.label == label) {
-        Some(own) if own.id != label => {
-            let mut variants = names.iter().filter(|name| name.id == own.id && name.label != name.id);
+        Some(method) if method.id != label => {
+            let mut variants = names.iter().filter(|name| name.id == method.id && name.label != name.id);
             let number = variants.position(|name| name.label == label).unwrap_or(0);
-            CurveOrigin::Variant { label: label.to_owned(), method: own.id.clone(), number }
+            CurveOrigin::Variant { label: label.to_owned(), method: method.id.clone(), number }
         }
         _ => CurveOrigin::Method(label.to_owned()),
     }
 }
 
-/// Angles as degrees.
+/// Angles in rad converted to degrees.
 pub fn degrees(values: &[f64]) -> Vec<f64> {
     values.iter().copied().map(to_deg).collect()
 }
 
-/// Radians over seconds as degrees over seconds.
+/// Plot curve in degrees over seconds, from radians over seconds.
 pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
 
-/// The trial with its characteristic points marked.
+/// Plot data of a zig-zag with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     let mark = |time: Quantity, heading: Quantity| ZigZagMark { t_s: time.value, heading_deg: to_deg(heading.value) };
-    let execute = |own: &Execute| mark(own.time, own.heading);
-    let overshoot = |own: &Overshoot| OvershootMark {
-        execute: execute(&zigzag.executes[own.execute]),
-        extremum: mark(own.peak_time, own.peak_heading),
-        angle_deg: to_deg(own.angle.value),
+    let execute = |execute: &Execute| mark(execute.time, execute.heading);
+    let overshoot = |overshoot: &Overshoot| OvershootMark {
+        execute: execute(&zigzag.executes[overshoot.execute]),
+        extremum: mark(overshoot.peak_time, overshoot.peak_heading),
+        angle_deg: to_deg(overshoot.angle.value),
     };
     let from = |execute: Option<&Execute>, length: Option<Quantity>| {
-        let (begin, length) = execute.map(|own| own.time.value).zip(length)?;
+        let (begin, length) = execute.map(|execute| execute.time.value).zip(length)?;
         Some(TimeSpan { from_s: begin, to_s: begin + length.value })
     };
-    let check_yaw = |own: &Overshoot| from(zigzag.executes.get(own.execute), Some(own.time_to_check_yaw));
-    // The cycle that begins with the second execute of a trial holds the transient of the start: drawn only if alone.
+    let check_yaw = |peak: &Overshoot| from(zigzag.executes.get(peak.execute), Some(peak.time_to_check_yaw));
+    // The cycle from the second execute on contains the starting transient: drawn only if there is no later one.
     let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
     let cycle_start = match zigzag.executes.len() > settled + 2 {
         true => zigzag.executes.get(settled),
@@ -56,7 +56,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     };
     ZigzagTrial {
         heading: curve(trial.time(), trial.heading()),
-        // What is left of a thinned record are its extremes: as points they would be taken for the record.
+        // A thinned record keeps only its extremes, which drawn as points would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
@@ -69,7 +69,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     }
 }
 
-/// Replays of all answers, for a figure; methods that failed are left out.
+/// Replays of all answers on a trial; failed methods are left out.
 pub fn replay_curves(
     trial: &Trial,
     answers: &[(MethodEntry, Option<Estimate>)],

@@ -1,14 +1,14 @@
-//! The design of a study as it is stored: axes, methods and cells, without how a trial is made.
+//! The design of a study as stored in `cells.json`: axes, methods and cells, without the specification of trials.
 
 use std::collections::HashSet;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scenario::records::{RecordQuestion, RecordSet};
+use crate::scenario::records::{RecordSet, RecordSplit};
 use crate::scenario::{DesignCell, MethodName, MissingPhysics, Scenario, Words, name};
 
-/// What tables and figures need of a scenario.
+/// Design of a study: the part of a scenario that tables and figures need.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
@@ -23,12 +23,12 @@ pub struct Design {
     pub predicts: bool,
     /// The cells, in their order.
     pub cells: Vec<CellFacts>,
-    /// What is said about the study. It may change when the rows do not, so it is kept in the manifest alone.
+    /// Prose and presentation. They may change while the rows do not, so only the manifest stores them.
     #[serde(skip)]
     pub words: Words,
 }
 
-/// What is known of a cell without its rows.
+/// Facts about a cell that do not depend on its rows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellFacts {
@@ -40,21 +40,20 @@ pub struct CellFacts {
     pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
     pub missing: Vec<String>,
-    /// What a trace is right to say of them, in a study in which a ship states it.
+    /// The physics that the first-order base lacks, in a study whose ships state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub physics: Option<MissingPhysics>,
     /// Whether the ship has a K and T of its own beside those of the first-order response nearest to it: a response
     /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub has_own_indices: bool,
-    /// Whether K and T are held against those of the first-order response nearest to the ship, which is not first order
-    /// itself.
+    /// Whether K and T are compared with those of the first-order response nearest to a ship that is not first order.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_nearest: bool,
-    /// Length over approach speed, s, which limits of IMO follow, where manoeuvres are predicted and it is not drawn.
+    /// L/V, s, on which IMO limits depend; where manoeuvres are predicted and neither length nor speed is drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_over_speed_s: Option<f64>,
-    /// Which records are fitted and which judges, a trial each, in a study of measured records.
+    /// Fitted records and validation record of each trial, in a study of measured records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<JudgedRecord>,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
@@ -62,27 +61,27 @@ pub struct CellFacts {
     pub bound_percent2: Option<[[f64; 2]; 2]>,
 }
 
-/// What a trial of a study of measured records is.
+/// Records of one trial in a study of measured records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedRecord {
     /// Names of the records that were fitted together, joined by commas.
     pub fitted: String,
-    /// Name of the record that judges; none where nothing does.
+    /// Name of the validation record; none where there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judge: Option<String>,
 }
 
 fn judged_records(set: &RecordSet) -> Vec<JudgedRecord> {
-    let of = |question: &RecordQuestion| JudgedRecord {
-        fitted: question.fitted.iter().map(|one| set.name(*one)).collect::<Vec<_>>().join(", "),
-        judge: question.judge.map(|one| set.name(one).to_owned()),
+    let records = |split: &RecordSplit| JudgedRecord {
+        fitted: split.fitted.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
+        judge: split.judge.map(|place| set.name(place).to_owned()),
     };
-    set.questions.iter().map(of).collect()
+    set.splits.iter().map(records).collect()
 }
 
 impl Design {
-    /// The design of a scenario of which no trial is stored, and no bound is known.
+    /// Design of a scenario, without stored trials and without bounds.
     pub fn of(scenario: &Scenario) -> Self {
         let predicts = scenario.predictions.is_some();
         let has_limits = predicts && !scenario.draws.iter().any(|key| key.contains("length") || key.contains("speed"));
@@ -95,7 +94,7 @@ impl Design {
             has_own_indices: cell.has_own_indices(),
             is_nearest: cell.is_nearest(),
             records: cell.record_set().map_or_else(Vec::new, judged_records),
-            length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|own| own.length / own.speed),
+            length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|ship| ship.length / ship.speed),
             ..CellFacts::default()
         };
         Self {
@@ -108,18 +107,18 @@ impl Design {
         }
     }
 
-    /// The same with what a scenario says of every cell, as this version tells it; its trials and bounds stay.
-    pub(crate) fn told_by(&self, scenario: &Scenario) -> Self {
-        let mut own = Self::of(scenario);
-        for (cell, stored) in own.cells.iter_mut().zip(&self.cells) {
+    /// The design with cell facts renewed from a scenario; trials and bounds stay.
+    pub(crate) fn with_descriptions_of(&self, scenario: &Scenario) -> Self {
+        let mut design = Self::of(scenario);
+        for (cell, stored) in design.cells.iter_mut().zip(&self.cells) {
             (cell.trials, cell.bound_percent2) = (stored.trials.clone(), stored.bound_percent2);
         }
-        own
+        design
     }
 
-    /// The design in the text of a `cells.json`.
+    /// Design from the text of a `cells.json`.
     ///
-    /// Fails when it is not one, or contradicts itself, and says where.
+    /// Fails when the text is no design or is inconsistent; the message says where.
     pub fn of_text(text: &[u8]) -> Result<Self, String> {
         let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         design.check().map(|()| design)
@@ -156,7 +155,7 @@ impl Design {
         self.cells.iter().any(|cell| !cell.records.is_empty())
     }
 
-    /// Indices of the cells whose errors are shown one by one.
+    /// Indices of the cells shown in detail.
     pub fn detail(&self) -> Vec<usize> {
         if self.cells.len() == 1 {
             // A study of one cell is about that cell.

@@ -1,5 +1,5 @@
-//! The file operations of result folders, in one place, so that a test can make any one of them fail. Everything else
-//! in this crate that writes, goes through [`crate::folder`].
+//! File operations of result folders, in one place, so that a test can make any of them fail. All other code of this
+//! crate writes through [`crate::folder`].
 
 use std::fs;
 use std::io::{self, Read, Write};
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 pub mod faults;
 
-/// An operation on a path, which a test may let fail.
+/// Runs an operation on a path, unless a test makes it fail.
 fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
     faults::strike(path)?;
     operation()
@@ -26,17 +26,17 @@ impl File {
         Ok(Self { file: at(path, open)?, path: path.to_owned() })
     }
 
-    /// Waits until all that was written is on the disk, where the file system can tell.
+    /// Waits until the content is on the disk, where the file system supports it.
     pub fn sync(&self) {
         let _ = self.file.sync_all();
     }
 
-    /// Opens a file to read. Fails where something else has its name: a pipe would be waited for without an end.
+    /// Opens a regular file to read. Fails for anything else: opening a pipe would block for ever.
     pub fn open(path: &Path) -> io::Result<Self> {
         Self::of(path, || regular(path).and_then(|_| fs::File::open(path)))
     }
 
-    /// Makes a file that is not there yet; a link is not followed.
+    /// Creates a new file; links are not followed. Fails where the name is taken.
     pub fn create_new(path: &Path) -> io::Result<Self> {
         Self::of(path, || fs::File::create_new(path))
     }
@@ -52,7 +52,7 @@ impl Read for File {
 impl Write for File {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         if let Err(error) = faults::strike(&self.path) {
-            // A disk that is full takes the beginning.
+            // A full disk accepts the first part.
             let _ = self.file.write(&buffer[..buffer.len() / 2]);
             return Err(error);
         }
@@ -64,7 +64,7 @@ impl Write for File {
     }
 }
 
-/// Fails where something else than a file is there, before it is opened.
+/// Fails unless the path is a regular file, before it is opened.
 fn regular(path: &Path) -> io::Result<()> {
     match fs::metadata(path)?.is_file() {
         true => Ok(()),
@@ -72,20 +72,21 @@ fn regular(path: &Path) -> io::Result<()> {
     }
 }
 
-/// The value of an operation on what is there; `None` where nothing is.
-fn found<T>(result: io::Result<T>) -> io::Result<Option<T>> {
+/// Result of an operation, with `None` in place of "not found".
+fn if_present<T>(result: io::Result<T>) -> io::Result<Option<T>> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         other => other.map(Some),
     }
 }
 
-/// Whether something is there, a link to nowhere included. Unlike `Path::exists`, fails where that cannot be told.
+/// `true` if anything has this path, a dangling link included. Unlike `Path::exists`, fails where that cannot be
+/// determined.
 pub fn is_there(path: &Path) -> io::Result<bool> {
-    at(path, || Ok(found(fs::symlink_metadata(path))?.is_some()))
+    at(path, || Ok(if_present(fs::symlink_metadata(path))?.is_some()))
 }
 
-/// Whether a link is there.
+/// `true` if the path is a link.
 pub fn is_link(path: &Path) -> io::Result<bool> {
     Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
@@ -93,7 +94,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
 /// Reads a file of at most `largest` bytes; `None` when there is none.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
-    let Some(mut file) = found(File::open(path))? else { return Ok(None) };
+    let Some(mut file) = if_present(File::open(path))? else { return Ok(None) };
     if file.file.metadata()?.len() > largest {
         return Err(too_large());
     }
@@ -102,12 +103,12 @@ pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     if bytes.len() as u64 > largest { Err(too_large()) } else { Ok(Some(bytes)) }
 }
 
-/// Makes a folder and those above it.
+/// Creates a folder and its parents.
 pub fn create_folder(path: &Path) -> io::Result<()> {
     at(path, || fs::create_dir_all(path))
 }
 
-/// Gives a file another name in its folder, in the place of whatever had it.
+/// Renames a file, replacing any file of the new name.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     at(to, || fs::rename(from, to))
 }
@@ -119,7 +120,7 @@ pub fn remove(path: &Path) -> io::Result<()> {
 
 /// Removes a file or a link if it is there.
 pub fn remove_if_there(path: &Path) -> io::Result<()> {
-    found(remove(path)).map(drop)
+    if_present(remove(path)).map(drop)
 }
 
 /// Names in a folder, sorted.
@@ -130,7 +131,7 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Time since a file was last written; `None` where it is not known.
+/// Time since a file was last written; `None` where the system does not provide it.
 pub fn age(path: &Path) -> Option<Duration> {
     fs::metadata(path).ok()?.modified().ok()?.elapsed().ok()
 }
@@ -139,7 +140,7 @@ pub fn age(path: &Path) -> Option<Duration> {
 mod tests {
     use super::*;
 
-    /// Whoever opens a pipe waits for somebody at its other end.
+    /// Opening a pipe would block until another process opens its other end.
     #[test]
     fn a_pipe_in_the_place_of_a_file_is_not_opened() {
         let desk = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Hulls that earlier trials left in `fit.json` or `trace.json`, as what is expected of the next ones.
+//! Priors of hull coefficients from earlier trials, stored in `fit.json` or `trace.json`.
 
 use document::IdentifiedShip;
 use document::stored_hull::StoredHull;
@@ -7,21 +7,21 @@ use nalgebra::{DMatrix, DVector};
 use predict::{PredictError, drawable_hull};
 use ship::vessel::prior::HullParticulars;
 
-/// The hulls of an identified ship.
+/// Hulls of an identified ship, as priors of later fits.
 ///
-/// Fails for a hull that is none of this program.
+/// Fails for a stored hull that this program cannot read.
 pub fn hulls_of(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError> {
-    ship.hulls.iter().map(earlier).collect()
+    ship.hulls.iter().map(earlier_hull).collect()
 }
 
-fn earlier(own: &StoredHull) -> Result<EarlierHull, PredictError> {
-    drawable_hull::check(own)?;
-    let particulars = HullParticulars { length: own.length_m, speed: own.speed_m_s, ..own.particulars()? };
-    let size = own.coefficients.len();
+fn earlier_hull(stored: &StoredHull) -> Result<EarlierHull, PredictError> {
+    drawable_hull::check(stored)?;
+    let particulars = HullParticulars { length: stored.length_m, speed: stored.speed_m_s, ..stored.particulars()? };
+    let size = stored.coefficients.len();
     Ok(EarlierHull {
-        form: own.form()?,
+        form: stored.form()?,
         particulars,
-        values: DVector::from_vec(own.values()),
-        covariance: DMatrix::from_fn(size, size, |row, column| own.covariance[row][column]),
+        values: DVector::from_vec(stored.values()),
+        covariance: DMatrix::from_fn(size, size, |row, column| stored.covariance[row][column]),
     })
 }

@@ -1,7 +1,7 @@
-//! The engine: one trial simulated, every method on that same trial, one row each. Which trials there are, and in what
-//! order, is decided in [`crate::plan`]; where rows go in [`crate::blocks`].
+//! The engine: simulates one trial and runs every method on it, one row each. [`crate::plan`] decides which trials are
+//! run and in what order, [`crate::blocks`] stores the rows.
 //!
-//! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
+//! All random draws follow from the key of the trial, so rows depend neither on threads nor on the order of trials.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -21,13 +21,13 @@ use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
-use crate::scenario::{Method, Procedure, Scenario, Specification, TrialSpecification};
+use crate::scenario::{Procedure, Scenario, Specification, TrialSpecification};
 use crate::statistics::Moments;
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::TrialTiming;
 
-/// Rows of one trial, and what they took.
+/// Rows of one trial, and their timing.
 pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
     pub rows: Vec<StudyRow>,
@@ -35,20 +35,20 @@ pub struct TrialOutcome {
     pub timing: TrialTiming,
 }
 
-/// How the failure of rows begins whose trial could not be made.
-const NOT_MADE: [&str; 2] = ["specification:", "simulation:"];
+/// Prefixes of a failure that concerns the trial itself and not a method.
+const NO_TRIAL: [&str; 2] = ["specification:", "simulation:"];
 
-/// Whether a failure is of a method, on a trial that was made.
-pub fn is_made(failure: &str) -> bool {
-    !NOT_MADE.iter().any(|begin| failure.starts_with(begin))
+/// `true` if a failure is that of a method on a trial that could be simulated.
+pub fn is_method_failure(failure: &str) -> bool {
+    !NO_TRIAL.iter().any(|begin| failure.starts_with(begin))
 }
 
-/// Key of all that is random in one trial.
+/// Key of all random draws of one trial.
 pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
     StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
 
-/// Simulates one trial: its record, and further ones of the same ship where the scenario asks for them.
+/// Simulates one trial: its record, and the further records of the same ship that the scenario specifies.
 pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, String> {
     let key = key(scenario, task);
     let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
@@ -56,16 +56,16 @@ pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, Strin
     records.collect::<Result<_, _>>().map_err(|error| error.to_string())
 }
 
-/// The responses that answers to a trial are held against.
+/// True first-order responses of a trial, against which estimates are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truths {
-    /// The first-order response nearest to the ship, which is the ship itself where that is first order.
+    /// First-order response nearest to the ship; the ship itself where it is first order.
     pub nearest: Option<FirstOrder>,
-    /// The ship's own base, where it has effects beside it.
+    /// First-order base of a response ship with effects.
     pub own: Option<FirstOrder>,
 }
 
-/// The truths of one trial. Fails when its drawn values make no ship.
+/// True responses of one trial. Fails when its drawn values define no ship.
 pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     let key = key(scenario, task);
     let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
@@ -74,24 +74,24 @@ pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     Ok(Truths { nearest, own: base.filter(|_| truth.is_none()) })
 }
 
-/// Runs trials of one study; what all trials of a cell share is made once.
+/// Runner of the trials of one study; references and prepared simulations are shared within a cell.
 pub struct TrialRunner<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
     references: Vec<OnceLock<TrialReference>>,
-    /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
+    /// Prepared simulations of cells whose trials differ by noise alone; empty where preparation does not pay.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
-/// Most cells whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a
-/// megabyte.
-const MOST_PREPARED: usize = 64;
+/// Largest number of cells with prepared simulations: with more, each cell has few trials, and a record of 1000 rows
+/// takes 0.1 MB.
+const MAX_PREPARED_CELLS: usize = 64;
 
 impl<'a> TrialRunner<'a> {
-    /// For trials of these cells.
+    /// Runner for the trials of a range of cells.
     pub fn new(scenario: &'a Scenario, cells: std::ops::RangeInclusive<usize>) -> Self {
         let count = cells.clone().count();
-        let kept = if count <= MOST_PREPARED { count } else { 0 };
+        let kept = if count <= MAX_PREPARED_CELLS { count } else { 0 };
         Self {
             scenario,
             first_cell: *cells.start(),
@@ -119,19 +119,19 @@ impl<'a> TrialRunner<'a> {
         std::iter::once(first).chain(records.map(|(simulation, key)| simulation.run(&key))).collect()
     }
 
-    /// Runs one trial. One that cannot be made has a row for every method all the same.
+    /// Runs one trial. A trial that cannot be simulated has a failed row for every method.
     pub fn run(&self, task: Task) -> TrialOutcome {
         let cell = &self.scenario.cells[task.cell];
         let key = key(self.scenario, task);
         let start = Instant::now();
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
-        let made = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NOT_MADE[0])).and_then(|specimen| {
+        let trial = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|specimen| {
             blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
             let simulated = self.simulate(task.cell, &specimen, &key);
-            Ok((simulated.map_err(|error| format!("{} {error}", NOT_MADE[1]))?, specimen))
+            Ok((simulated.map_err(|error| format!("{} {error}", NO_TRIAL[1]))?, specimen))
         });
         let simulation = start.elapsed();
-        let (rows, methods) = match made {
+        let (rows, methods) = match trial {
             Ok((simulated, specimen)) => self.answers(task.cell, &key, blank, simulated, &specimen),
             Err(reason) => {
                 let blank = StudyRow { failure: Some(reason.into()), ..blank };
@@ -141,7 +141,7 @@ impl<'a> TrialRunner<'a> {
         TrialOutcome { rows, timing: TrialTiming { cell: task.cell as u64, simulation, methods } }
     }
 
-    /// The answers of all methods to a trial, and the times they took.
+    /// Rows of all methods on a trial, and their durations.
     fn answers(
         &self,
         index: usize,
@@ -151,18 +151,18 @@ impl<'a> TrialRunner<'a> {
         specimen: &TrialSpecification,
     ) -> (Vec<StudyRow>, Vec<Duration>) {
         let cell = &self.scenario.cells[index];
-        let own;
+        let individual;
         let reference = if cell.is_fixed() {
             self.references[index - self.first_cell].get_or_init(|| self.shared(index))
         } else {
-            own = TrialReference::of(specimen, &simulated, key, cell.traces());
-            &own
+            individual = TrialReference::of(specimen, &simulated, key, cell.traces());
+            &individual
         };
         let blank = StudyRow {
             true_k_per_s: reference.nearest.map(|nearest| nearest.K()),
             true_t_s: reference.nearest.map(|nearest| nearest.T()),
-            own_k_per_s: reference.own.map(|own| own.K()),
-            own_t_s: reference.own.map(|own| own.T()),
+            base_k_per_s: reference.base.map(|base| base.K()),
+            base_t_s: reference.base.map(|base| base.T()),
             bound: reference.bound.map(|(bound, _)| bound),
             ..blank
         };
@@ -170,13 +170,12 @@ impl<'a> TrialRunner<'a> {
         let specification = &*specimen.specification;
         let check = self.scenario.predictions.as_ref();
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
-        let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
-        let row = |(method, own): (usize, &Method)| question.ask(&own.procedure, StudyRow { method, ..blank.clone() });
-        cell.methods.iter().enumerate().map(row).unzip()
+        let input = TrialInput { trials: &trials, key, reference, missing: &specification.missing, check };
+        let row = |(method, procedure)| input.row(procedure, StudyRow { method, ..blank.clone() });
+        cell.methods.iter().map(|method| &method.procedure).enumerate().map(row).unzip()
     }
 
-    /// The reference of a cell whose trials all have one specification: made with its first trial, whichever trial
-    /// asks.
+    /// Reference of a cell whose trials share one specification, computed from its first trial.
     fn shared(&self, cell: usize) -> TrialReference {
         let key = key(self.scenario, Task { cell, replicate: 0 });
         let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return TrialReference::default() };
@@ -187,8 +186,8 @@ impl<'a> TrialRunner<'a> {
     }
 }
 
-/// What every method of a trial is asked.
-pub(crate) struct TrialQuestion<'a> {
+/// Input of every method on a trial.
+pub(crate) struct TrialInput<'a> {
     pub trials: &'a [Trial],
     pub key: &'a StreamKey,
     pub reference: &'a TrialReference,
@@ -196,9 +195,9 @@ pub(crate) struct TrialQuestion<'a> {
     pub check: Option<PredictionCheck<'a>>,
 }
 
-impl TrialQuestion<'_> {
-    /// The row of a method, and the time it took.
-    fn ask(&self, procedure: &Procedure, blank: StudyRow) -> (StudyRow, Duration) {
+impl TrialInput<'_> {
+    /// Row of a method, and its duration.
+    fn row(&self, procedure: &Procedure, blank: StudyRow) -> (StudyRow, Duration) {
         let start = Instant::now();
         let (row, time) = match procedure {
             Procedure::Trace(settings) => {
@@ -222,6 +221,7 @@ impl TrialQuestion<'_> {
         (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
     }
 
+    /// Row of a first-order estimate.
     pub fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
@@ -235,11 +235,11 @@ impl TrialQuestion<'_> {
         }
     }
 
-    /// The row of a ship that keeps her heading, of which as of all others the initial heading is the best.
+    /// Row of the null model, a ship that keeps her heading; the initial heading is fitted, as for every method.
     pub fn straight_on(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
             let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
-            let sums = |sums: [f64; 2], own: Moments| [sums[0] + own.second, sums[1] + own.count];
+            let sums = |sums: [f64; 2], moments: Moments| [sums[0] + moments.second, sums[1] + moments.count];
             let [square, rows] = trials.iter().map(headings).fold([0.0; 2], sums);
             finite(to_deg((square / rows).sqrt()))
         };
@@ -251,51 +251,51 @@ impl TrialQuestion<'_> {
         }
     }
 
-    /// The row of a trace whose ship makes the second manoeuvre in a calm.
+    /// Row of a trace, validated on the undisturbed second manoeuvre.
     fn traced_in_a_calm(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
         let validation = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
         self.traced(blank, analysis, validation.as_ref())
     }
 
-    /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
+    /// Row of a trace: K, T and δ_r of the augmented model, replay errors, and effects named.
     pub fn traced(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
         let end = self.trials.iter().filter_map(|trial| trial.time().last().copied()).fold(0.0, f64::max);
         let probability =
-            |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
+            |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
-        // Effects may ask for a speed and a sway.
-        let known =
+        // Effects may need a speed and a sway.
+        let identified =
             |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])));
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading))),
             stop: Some(StopReason::Converged.as_str()),
-            predicted: self.check.as_ref().map(|check| check.figures(known)),
+            predicted: self.check.as_ref().map(|check| check.figures(identified)),
             traced: Some(Box::new(TraceAnswer {
                 verdict: document.verdict,
                 named: document.effects.iter().map(NamedEffect::of).collect(),
                 located: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
                     .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
-                    .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
+                    .filter(|(_, probability)| *probability >= MIN_PROBABILITY)
                     .collect(),
                 margin: margin(analysis, self.missing),
                 expected: self.reference.expected,
-                band_fitted: analysis.identification[0].after.coverage().map(|own| own.share()),
-                band_held_out: validation.and_then(ReplayResult::coverage).map(|own| own.share()),
+                band_fitted: analysis.identification[0].after.coverage().map(|coverage| coverage.share()),
+                band_held_out: validation.and_then(ReplayResult::coverage).map(|coverage| coverage.share()),
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }
     }
 }
 
-/// A moment that was located in records that end at a time, s.
+/// Located moment, in records that end at `end`, s.
 fn located(entry: &LocatedEntry, end: f64) -> LocatedMoment {
     let is_named = |id: &&str| {
         let name = names::effect(id);
-        let is_of_name = |words: &String| words.split(" (").next() == Some(&name);
+        let is_of_name = |label: &String| label.split(" (").next() == Some(&name);
         entry.alternatives.iter().any(is_of_name)
     };
     LocatedMoment {
@@ -319,7 +319,7 @@ fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
     }
 }
 
-/// Why there is no trace, in a word.
+/// Kind of failure of a trace.
 pub(crate) fn failure(error: &TraceError) -> &'static str {
     match error {
         TraceError::Settings(_) | TraceError::Asked { .. } => "settings",
@@ -328,18 +328,18 @@ pub(crate) fn failure(error: &TraceError) -> &'static str {
     }
 }
 
-/// A smaller probability is not stored.
-const NEXT_TO_NOTHING: f64 = 0.005;
+/// Smallest probability that is stored.
+const MIN_PROBABILITY: f64 = 0.005;
 
-/// Probabilities are stored in multiples of one over this, so that a stored row is the one that was computed.
+/// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
 const DIGITS: f64 = 1000.0;
 
-/// By how much more log evidence speaks for the one missing effect than for the best other one.
+/// Log evidence of the one missing effect less that of the best other effect; `None` unless exactly one is missing.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {
-        let candidates = analysis.document.candidates.iter().filter(|one| (one.id == *truth) == is_truth);
-        candidates.filter_map(|one| one.delta_bic).map(|delta| -0.5 * delta).max_by(f64::total_cmp)
+        let candidates = analysis.document.candidates.iter().filter(|candidate| (candidate.id == *truth) == is_truth);
+        candidates.filter_map(|candidate| candidate.delta_bic).map(|delta| -0.5 * delta).max_by(f64::total_cmp)
     };
     Some(best(true)? - best(false)?)
 }
@@ -348,7 +348,7 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A row with K (1/s), T (s) and δ_r (rad) and their intervals.
+/// Row with K (1/s), T (s), δ_r (rad) and their intervals.
 fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
     StudyRow {
         k_per_s: finite(k.value),
@@ -361,8 +361,8 @@ fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
     }
 }
 
-/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` where every trial has a bound of its
-/// own, and where there is none.
+/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` where the bound varies between trials,
+/// and where there is none.
 pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
     let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).bound;
     scenario.cells[cell].is_fixed().then(bound).flatten().map(|(_, percent2)| percent2)
@@ -392,8 +392,8 @@ method.output-error = {}
         TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
     }
 
-    /// Information of separate records adds up: the bound of two is that of 1/(1/a + 1/b) where they tell alike, and
-    /// what a method makes of both is nearer than what it makes of one.
+    /// Information of separate records adds: two records of one manoeuvre have a bound smaller by √2, and the spread of
+    /// the estimates from both follows it.
     #[test]
     fn further_records_of_the_ship_are_identified_together() {
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
@@ -403,9 +403,9 @@ method.output-error = {}
             let runner = TrialRunner::new(&scenario, 0..=0);
             (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
         };
-        let (one, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
+        let (single, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
         let bound = |rows: &[StudyRow]| rows[0].bound.expect("white noise")[0];
-        let share = bound(&both) / bound(&one);
+        let share = bound(&both) / bound(&single);
         assert!((share - 0.5f64.sqrt()).abs() < 0.01, "two records of one manoeuvre: {share}");
         let spread = |rows: &[StudyRow]| {
             let square = rows.iter().map(|row| row.errors()[0].expect("an answer").powi(2)).sum::<f64>();
@@ -414,7 +414,7 @@ method.output-error = {}
         assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
         let first = |text: &str| {
             let scenario = scenario(text);
-            simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|one| one.trial)
+            simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|record| record.trial)
         };
         let records: Vec<Trial> = first(&format!("{linear}{further}")).collect();
         let alone = first(&linear).next().expect("a record");
@@ -422,13 +422,14 @@ method.output-error = {}
         assert_ne!(records[0].heading(), records[1].heading(), "each has a chance of its own");
     }
 
-    /// The ship is the same whoever asks: a trace beside a method changes nothing of what the method is held against.
+    /// The true response does not depend on the methods: a trace beside a method leaves the reference of the method
+    /// unchanged.
     #[test]
     fn a_ship_has_one_truth_whoever_asks() {
         let alone = &rows("")[0];
         let [beside, traced] = &rows("[[identifier]]\ntrace = {}\n")[..] else { panic!("two methods") };
         assert_eq!(alone, beside);
-        assert_eq!([alone.own_k_per_s, alone.own_t_s], [Some(0.1), Some(25.0)]);
+        assert_eq!([alone.base_k_per_s, alone.base_t_s], [Some(0.1), Some(25.0)]);
         let nearest = alone.true_t_s.expect("a response is nearest");
         assert!(nearest < 24.0, "the damping shortens T: {nearest}");
         assert_eq!(alone.truth()[1], Some(nearest), "output error fits a first-order response");

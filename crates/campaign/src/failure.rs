@@ -1,4 +1,4 @@
-//! Why something could not be done, as a user sees it: one message, and who has to act.
+//! Failures as a user sees them: one message, and who has to act.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -10,24 +10,24 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use document::ErrorCode;
 use serde::Serialize;
 
-/// What stands before the message of a failure.
+/// Prefix of the message of a failure.
 const ERROR: &str = "error: ";
 
-/// A failure as the user sees it.
+/// A failure: its message, its parts, and its kind.
 #[derive(Debug)]
 pub struct Failure {
-    /// Whether the input or the work is at fault, or somebody asked to stop.
+    /// Kind of failure: wrong input, failed work, or a request to stop.
     pub blame: Blame,
     /// The whole message, without the word "error" before it.
     pub message: String,
-    /// The same in parts, for programs.
+    /// The parts of the message, for programs.
     pub parts: Box<FailureParts>,
 }
 
-/// The parts of a message; what a failure does not say is missing.
+/// Parts of a message; a part that a failure does not have is none.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 pub struct FailureParts {
-    /// What it is about.
+    /// Error code.
     pub code: ErrorCode,
     /// The file it is about.
     pub file: Option<String>,
@@ -43,7 +43,7 @@ pub struct FailureParts {
     pub help: Option<String>,
 }
 
-/// Why it was not done.
+/// Kind of failure, which decides the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Blame {
@@ -83,30 +83,30 @@ impl Failure {
         Self { blame: Blame::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
     }
 
-    /// The same with what it is about.
+    /// The failure with an error code.
     #[must_use]
     pub fn with_code(mut self, code: ErrorCode) -> Self {
         self.parts.code = code;
         self
     }
 
-    /// The input is wrong at a place of a text file: the line is shown, the place underlined with what was `expected`
-    /// there, and `advice` says what to do.
-    pub fn at(file: &Path, text: &str, span: Range<usize>, found: &str, expected: &str, advice: &str) -> Self {
+    /// Wrong input at a byte range of a text file: the message shows the line, underlines the range with `expected`,
+    /// and ends with `advice`, what to do.
+    pub fn at(file: &Path, text: &str, span: Range<usize>, problem: &str, expected: &str, advice: &str) -> Self {
         let name = file.display().to_string();
         let span = span.start.min(text.len())..span.end.min(text.len());
         let start = span.start;
         let place = AnnotationKind::Primary.span(span).label(expected);
         let snippet = Snippet::source(text).path(&name).annotation(place);
-        let (found, advice) = (shortened(found), shortened(advice));
-        let group = Level::ERROR.primary_title(&*found).element(snippet).element(Level::HELP.message(&*advice));
+        let (problem, advice) = (shortened(problem), shortened(advice));
+        let group = Level::ERROR.primary_title(&*problem).element(snippet).element(Level::HELP.message(&*advice));
         let shown = Renderer::plain().render(&[group]);
         let before = text.get(..start).unwrap_or_default();
         let parts = FailureParts {
             code: ErrorCode::Scenario,
             line: Some(before.matches('\n').count() + 1),
             column: Some(before.rsplit('\n').next().unwrap_or_default().chars().count() + 1),
-            problem: found.to_string(),
+            problem: problem.to_string(),
             expected: Some(expected.to_owned()),
             help: Some(advice.to_string()),
             file: Some(name),
@@ -115,16 +115,16 @@ impl Failure {
     }
 }
 
-/// Most characters of a sentence in a message: what was found may be a key of any length.
-const LONGEST_SENTENCE: usize = 1000;
+/// Largest length of a sentence in a message, characters; it may quote a key of any length.
+const MAX_SENTENCE_CHARACTERS: usize = 1000;
 
-/// A sentence, without its middle where it is too long.
+/// A sentence, with `…` for its middle where it is too long.
 fn shortened(sentence: &str) -> Cow<'_, str> {
     let count = sentence.chars().count();
-    if count <= LONGEST_SENTENCE {
+    if count <= MAX_SENTENCE_CHARACTERS {
         return Cow::Borrowed(sentence);
     }
-    let half = LONGEST_SENTENCE / 2;
+    let half = MAX_SENTENCE_CHARACTERS / 2;
     let (head, tail) = (sentence.chars().take(half), sentence.chars().skip(count - half));
     Cow::Owned(head.chain(['…']).chain(tail).collect())
 }
@@ -137,9 +137,9 @@ impl fmt::Display for Failure {
 
 impl Error for Failure {}
 
-/// Reading and writing files of the study's own: the path belongs in the message.
+/// Conversion of an input/output error on a file of the study.
 pub trait OnPath<T> {
-    /// Turns an input/output error into a failure of the work that names the path and what was tried.
+    /// Failure that names the path and the action: "failed to TRIED PATH: cause".
     fn on(self, tried: &str, path: &Path) -> Result<T, Failure>;
 }
 
@@ -154,14 +154,14 @@ impl<T, E: Error> OnPath<T> for Result<T, E> {
     }
 }
 
-/// An error with its causes, each told once: some errors tell their cause themselves.
+/// Text of an error with its causes, without repeating a cause that the text already contains.
 fn with_causes(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {
-        let own = error.to_string();
-        if !text.contains(&own) {
-            text += &format!(": {own}");
+        let message = error.to_string();
+        if !text.contains(&message) {
+            text += &format!(": {message}");
         }
         cause = error.source();
     }
@@ -213,9 +213,9 @@ mod tests {
     fn the_cause_of_an_error_is_told_once() {
         let full = || std::io::Error::other("no space is left");
         let write = ReportError::Write { path: PathBuf::from("a.svg"), source: full() };
-        let told = Err::<(), _>(write).on("write the figure", Path::new("a")).expect_err("it failed").message;
-        assert_eq!(told, "failed to write the figure a: failed to write a.svg: no space is left");
-        let told = Err::<(), _>(full()).on("write", Path::new("b")).expect_err("it failed").message;
-        assert_eq!(told, "failed to write b: no space is left");
+        let message = Err::<(), _>(write).on("write the figure", Path::new("a")).expect_err("it failed").message;
+        assert_eq!(message, "failed to write the figure a: failed to write a.svg: no space is left");
+        let message = Err::<(), _>(full()).on("write", Path::new("b")).expect_err("it failed").message;
+        assert_eq!(message, "failed to write b: no space is left");
     }
 }

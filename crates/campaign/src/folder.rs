@@ -1,6 +1,6 @@
-//! A folder of results, and how files get into it. Every file is written beside its place under a name of this process
-//! alone and renamed when it is whole, so a reader finds the old one or the new one, a link in the folder is replaced
-//! and not followed, and programs that write into one folder at once do no harm to each other.
+//! A folder of results with atomic writes. Every file is written under a temporary name unique to this process and
+//! renamed when it is complete. So a reader finds the old file or the new one, a link in the folder is replaced and not
+//! followed, and several programs may write into one folder at once.
 
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, BufWriter, Write};
@@ -11,10 +11,10 @@ use std::time::Duration;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
 
-/// What the names of files under way begin with: other programs take such files for none of the folder.
+/// Prefix of temporary files, which other programs ignore.
 const UNDER_WAY: &str = ".kempf-";
 
-/// Age at which a file under way was left by a program that was killed.
+/// Age from which a temporary file counts as left behind by a killed program.
 const MAX_AGE: Duration = Duration::from_secs(3600);
 
 /// A folder of results.
@@ -24,9 +24,9 @@ pub struct ResultFolder {
 }
 
 impl ResultFolder {
-    /// Makes a folder for results where there is none.
+    /// Result folder at a path, created if it is missing.
     ///
-    /// Fails when the folder cannot be made.
+    /// Fails when it cannot be created.
     pub fn make(path: &Path) -> Result<Self, Failure> {
         disk::create_folder(path).map_err(|error| {
             Failure::work(format!("failed to make the folder {}: {error}; give another one with --out", path.display()))
@@ -34,9 +34,9 @@ impl ResultFolder {
         Ok(Self { path: path.to_owned() })
     }
 
-    /// A folder inside this one; made when it is missing.
+    /// Subfolder, created if it is missing.
     ///
-    /// Fails when its place is taken by a link: what is behind it belongs to somebody else.
+    /// Fails where the name is that of a link, whose target does not belong to the study.
     pub fn inside(&self, name: &str) -> Result<Self, Failure> {
         let path = self.place(name)?;
         if disk::is_link(&path).on("look for", &path)? {
@@ -48,12 +48,12 @@ impl ResultFolder {
         Self::make(&path)
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Place of a file in it. Fails when the name leads elsewhere.
+    /// Path of a file in it. Fails for a name that contains a path.
     fn place(&self, name: &str) -> Result<PathBuf, Failure> {
         let mut parts = Path::new(name).components();
         match (parts.next(), parts.next()) {
@@ -62,11 +62,11 @@ impl ResultFolder {
         }
     }
 
-    /// Begins a file, which appears under its name when it is [`TemporaryFile::put`] there.
+    /// Temporary file, which takes the given name on [`TemporaryFile::put`].
     pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
         let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;
-        // What a fault left there.
+        // Left by an earlier fault.
         disk::remove_if_there(&path).on("remove", &path)?;
         let file = disk::File::create_new(&path).on("create", &path)?;
         Ok(TemporaryFile { file: BufWriter::new(file), place, path, is_put: false })
@@ -79,7 +79,7 @@ impl ResultFolder {
         file.put()
     }
 
-    /// Writes a file that nothing else tells of, and waits until it is on the disk.
+    /// Writes a file and waits until it is on the disk: for content that cannot be computed again.
     pub fn keep(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let mut file = self.create(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
@@ -88,7 +88,7 @@ impl ResultFolder {
         file.put()
     }
 
-    /// Removes the files whose names are of some kind, and what programs that were killed left under way.
+    /// Removes the selected files, and temporary files that killed programs left behind.
     pub fn remove_all(&self, is_old: impl Fn(&str) -> bool) -> Result<(), Failure> {
         let is_left = |name: &str| name.starts_with(UNDER_WAY) && disk::age(&self.path.join(name)) > Some(MAX_AGE);
         let names = disk::names(&self.path).on("list the folder", &self.path)?.into_iter();
@@ -97,13 +97,13 @@ impl ResultFolder {
     }
 }
 
-/// A number that no other process on any machine has.
+/// Random identifier of this process.
 fn process() -> u64 {
     static NUMBER: OnceLock<u64> = OnceLock::new();
     *NUMBER.get_or_init(|| RandomState::new().hash_one(std::process::id()))
 }
 
-/// A file under way, beside its place. What is not put there goes away.
+/// Temporary file; it is removed on drop unless it was put in place.
 #[derive(Debug)]
 pub struct TemporaryFile {
     file: BufWriter<disk::File>,
@@ -123,7 +123,7 @@ impl Write for TemporaryFile {
 }
 
 impl TemporaryFile {
-    /// Gives the file its name.
+    /// Flushes the file and renames it to its final name.
     pub fn put(mut self) -> Result<(), Failure> {
         self.file.flush().on("write", &self.path)?;
         disk::rename(&self.path, &self.place).on("write", &self.place)?;
@@ -131,7 +131,7 @@ impl TemporaryFile {
         Ok(())
     }
 
-    /// Its path while it is under way, for messages.
+    /// Its temporary path, for messages.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -1,5 +1,4 @@
-//! What an estimate or an analysis knows of a ship, as a prediction takes it. Longer than most: it reads all that fits,
-//! traces and hulls leave.
+//! Identified ship of an estimate or a trace, for predictions: structures, noise, steering gear, valid range, hulls.
 
 use document::stored_hull::{by_keys, rows_of};
 use document::{
@@ -18,59 +17,59 @@ use trace::analysis::Plausible;
 use trial::zigzag::STRAIGHT_APPROACH;
 use trial::{Channel, Trial, ZigZag};
 
-/// What is not predicted where nothing is known of speed and drift.
-const NO_MOTION: &str = "speed loss and drift are not told by these records, and no track can be predicted";
+/// Reason for a prediction without a track.
+const NO_MOTION: &str = "these records do not determine speed loss and drift, so no track can be predicted";
 
-/// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
+/// Facts that records show of a ship independently of the fitted model, computed once for all methods.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
     trials: &'a [Trial],
     gear: Option<KnownGear>,
-    /// Noise of the readings of the heading, rad.
+    /// Standard deviation of the heading readings, rad.
     reading_noise: Option<f64>,
-    /// The zig-zag of every record that is one.
+    /// Zig-zag of each record; `None` for other manoeuvres.
     zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
     speed: Option<f64>,
-    /// The hulls of the ship, the nearest first.
+    /// Fitted hulls, smallest replay error first.
     pub hulls: Vec<StoredHull>,
-    /// The records against what earlier trials told of the ship, for every form of hull that they left, whether it is
-    /// near enough to take part or not; the nearest first.
+    /// Consistency checks of the records with the priors from earlier trials, one per form of hull, smallest replay
+    /// error first; hulls that are too far off to take part are included.
     pub checks: Vec<(&'static str, ExpectationCheck)>,
-    /// Why no track can be predicted from records that have a speed or positions; `None` where one can, and for records
+    /// Why records with speed or positions allow no prediction of a track; `None` where they do, and for records
     /// without.
     pub no_track: Option<String>,
 }
 
 impl<'a> RecordFacts<'a> {
-    /// What some records of one ship show, but for speed and drift.
+    /// Facts of the records of one ship, without speed and drift.
     pub fn of(trials: &'a [Trial]) -> Self {
         let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::of(trial).ok()).collect();
-        let particular = |of: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(of));
+        let particular = |value: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(value));
         Self {
             trials,
             gear: gear(trials, &zigzags),
             reading_noise: reading_noise(&zigzags),
             zigzags,
-            length: particular(|own| own.length),
-            speed: particular(|own| own.speed),
+            length: particular(|ship| ship.length),
+            speed: particular(|ship| ship.speed),
             hulls: Vec::new(),
             checks: Vec::new(),
             no_track: None,
         }
     }
 
-    /// The same with speed and drift: the hulls that these records speak for, where length and speed are known, all of
-    /// them begin away from rest, and they have a speed or positions, or an analysis or earlier trials told her hull.
+    /// The facts with hulls fitted to the records. Needs length and speed, records that begin under way, and a measured
+    /// speed or positions, or else hulls of an analysis or of earlier trials.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
-        let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|own| trial.channel(*own).is_some());
-        let told = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
-        let has_speed = |trial: &Trial| told.iter().any(|channels| has_all(trial, channels));
+        let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|channel| trial.channel(*channel).is_some());
+        let sources = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
+        let has_speed = |trial: &Trial| sources.iter().any(|channels| has_all(trial, channels));
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
-        // Structures may replay the records nearer, and know no speed of a manoeuvre that was not made.
+        // Structures may replay the records better, but have no speed in a manoeuvre that was not made.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
-        fitted.sort_by(|one, other| one.mean_square().total_cmp(&other.mean_square()));
+        fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
         let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
         self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
         let hulls = hull::members(fitted, f64::INFINITY);
@@ -82,7 +81,7 @@ impl<'a> RecordFacts<'a> {
         self
     }
 
-    /// What is known of the ship, when a model says the rest of it.
+    /// Identified ship with the structures and noise of a model.
     ///
     /// `rates` are the yaw rates of its replays of the records, rad/s.
     fn with<'b>(
@@ -92,7 +91,7 @@ impl<'a> RecordFacts<'a> {
         rates: impl Iterator<Item = &'b [f64]>,
     ) -> IdentifiedShip {
         let rates: Vec<&[f64]> = rates.collect();
-        // A hull leaves no residual that would tell the noise of a reading.
+        // The residual of a hull does not determine the noise of the readings.
         let of_readings = self.reading_noise.filter(|_| !self.hulls.is_empty());
         IdentifiedShip {
             members,
@@ -109,15 +108,15 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// A fitted hull as a file holds it, one of so many.
-    fn stored(&self, hull: &HullEstimate, of: usize) -> StoredHull {
+    /// Stored form of a fitted hull; its weight is one over the number `of` hulls.
+    fn stored(&self, hull: &HullEstimate, count: usize) -> StoredHull {
         let expected = &hull.expected;
-        let coefficient = |(own, value): (&HullCoefficient, &f64)| StoredCoefficient {
-            key: own.key.to_owned(),
-            symbol: own.symbol.to_owned(),
+        let coefficient = |(prior, value): (&HullCoefficient, &f64)| StoredCoefficient {
+            key: prior.key.to_owned(),
+            symbol: prior.symbol.to_owned(),
             value: *value,
-            expected: own.mean,
-            expected_sd: own.sd,
+            expected: prior.mean,
+            expected_sd: prior.sd,
         };
         let HullReference { length, speed, propeller } = hull.reference;
         StoredHull {
@@ -138,7 +137,7 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Root mean square of what replays of a hull begin with beyond the yaw rate of a straight approach, rad/s.
+    /// Root mean square of the initial yaw rates of hull replays less those of the straight approaches, rad/s.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
         let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
             Some((record.begins_with - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
@@ -147,9 +146,9 @@ impl<'a> RecordFacts<'a> {
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     }
 
-    /// Root mean square of the yaw rates at the ends of straight approaches, rad/s: of a zig-zag that at its first
-    /// execute, without what its reading errors make of it, of another record the first of its replay. Records that
-    /// begin in a turn have no part in it; 0 without any other.
+    /// Root mean square yaw rate at the end of straight approaches, rad/s: for a zig-zag at its first execute,
+    /// corrected for reading errors; for another record at the start of its replay. Records that begin in a turn are
+    /// excluded; 0 without any other.
     fn approach_yaw_rate(&self, replays: &[&[f64]]) -> f64 {
         let square = |(zigzag, rates): (&Option<ZigZag>, &&[f64])| match zigzag {
             Some(zigzag) => {
@@ -166,15 +165,15 @@ impl<'a> RecordFacts<'a> {
     }
 }
 
-/// Largest size of some values.
+/// Largest absolute value.
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// What a method knows of the ship of some records; `None` for a method without a covariance.
+/// Identified ship of a first-order estimate; `None` without a covariance.
 ///
-/// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
-/// is that of the readings, or what its replay leaves where the records are no zig-zags.
+/// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is that of the readings, or
+/// the rms residual of the replay where the records are not zig-zags.
 pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
@@ -195,38 +194,38 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
     Some(facts.with(vec![member], noise, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
 
-/// What an analysis knows of the ship of its fitted records.
+/// Identified ship of a trace.
 ///
-/// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
-/// its covariance holds the doubt about the noise, which that of a trace does not.
+/// Where no effect is missing but a random moment acts, the first-order member is that of `maximum-likelihood`, whose
+/// covariance includes the uncertainty of the noise law.
 pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = analysis.noise;
-    let known = facts.with(members, noise, rates);
-    match known.members.first() {
-        Some(first) if first.effects.is_empty() && !noise.moment.is_none() => with_likelihood(known, facts),
-        _ => known,
+    let ship = facts.with(members, noise, rates);
+    match ship.members.first() {
+        Some(first) if first.effects.is_empty() && !noise.moment.is_none() => with_likelihood(ship, facts),
+        _ => ship,
     }
 }
 
-/// The same with the first-order member and the noise of `maximum-likelihood`, where that finds a random moment, too.
-fn with_likelihood(mut known: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
+/// The ship with first-order member and noise of `maximum-likelihood`, if that also estimates a random moment.
+fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| of_estimate(&estimate, facts)) else {
-        return known;
+        return ship;
     };
     if let [member] = &likelihood.members[..]
         && !likelihood.noise.moment.is_none()
     {
-        known.members[0] = WeightedStructure { weight: known.members[0].weight, ..member.clone() };
-        known.noise = likelihood.noise;
+        ship.members[0] = WeightedStructure { weight: ship.members[0].weight, ..member.clone() };
+        ship.noise = likelihood.noise;
     }
-    known
+    ship
 }
 
-/// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a
-/// record does not show it.
+/// Root mean square standard deviation of the heading readings, rad, independent of a model; `None` where a record does
+/// not show it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
     let sum: Option<f64> = zigzags.iter().map(square).sum();
@@ -251,23 +250,22 @@ fn member(plausible: &Plausible) -> WeightedStructure {
     }
 }
 
-/// Rates a steering gear can have, rad/s; outside, a recorded rudder is an order or says nothing about its gear.
+/// Plausible rates of a steering gear, deg/s; outside, the recorded rudder is an order or does not resolve the gear.
 const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 
-/// Part of a sampling interval by which an end of a movement between two rows is not known (a uniform law).
+/// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.
 const BETWEEN_ROWS: f64 = 0.29;
 
-/// Steps of a movement whose neighbours are at least this share of them are made at the full rate.
+/// Smallest ratio of neighbouring steps to a step at full rate.
 const FULL: f64 = 0.7;
 
-/// Fewest such steps that say what the rate is.
-const FEWEST_STEPS: usize = 4;
+/// Smallest number of full-rate steps from which the rate is estimated.
+const MIN_STEPS: usize = 4;
 
-/// The steering gear, from the reversals of zig-zags; `None` where no record resolves them.
+/// Rate of the steering gear from the reversals of zig-zags; `None` where no record resolves them.
 ///
-/// The rate is the mean of the steps inside movements, its error what these steps differ by. Where movements are about
-/// as long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
-/// duration.
+/// The rate is the mean over steps inside movements, with the standard error of that mean. Where movements are about as
+/// long as a sampling interval, the error is that of a duration whose ends lie between two rows.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<KnownGear> {
     let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
     let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();
@@ -283,7 +281,7 @@ fn rudder_rate(trial: &Trial, zigzag: &ZigZag) -> Option<(f64, f64)> {
     let is_sound = |rate: &f64| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate));
     let rate = zigzag.rudder_rate.filter(is_sound)?;
     let inside = inside_movements(trial, rate);
-    if inside.len() >= FEWEST_STEPS {
+    if inside.len() >= MIN_STEPS {
         let count = inside.len() as f64;
         let mean = inside.iter().sum::<f64>() / count;
         let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
@@ -331,28 +329,28 @@ mod tests {
         simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a trial").trial
     }
 
-    /// From a record to the overshoot of a trial that was not made: 19.71 deg for YUKUN (20/20, 2.32 deg/s).
+    /// Predicted first overshoot of YUKUN in a 20/20 from a 10/10 record: 19.71 deg at 2.32 deg/s.
     #[test]
-    fn a_ten_ten_tells_the_twenty_twenty() {
+    fn a_ten_ten_predicts_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let known = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
-        let gear = known.gear.expect("a zig-zag");
+        let ship = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        let gear = ship.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
-        assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment.is_none());
+        assert!((to_deg(ship.noise.heading_sd_rad) - 0.1).abs() < 0.02 && ship.noise.moment.is_none());
         let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
         let prediction =
-            ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
+            ShipMixture::new(vec![(ship, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
         let first = &prediction.figures["first_overshoot_deg"];
         assert!((first.interval.median - 19.71).abs() < 0.5, "{:?}", first.interval);
         assert!(first.interval.ci90[1] - first.interval.ci90[0] < 1.5, "{:?}", first.interval);
         assert!(prediction.is_extrapolated(), "20 deg of rudder after 10");
     }
 
-    /// A record cut within a turn says nothing of how straight an approach is: 1.97 L of the initial turning to the
-    /// limit of 2.5 are certain.
+    /// A record that begins in a turn does not widen the approach: the initial turning of 1.97 L meets the limit of 2.5
+    /// with certainty.
     #[test]
-    fn a_record_that_begins_in_a_turn_says_nothing_of_the_approach() {
+    fn a_record_that_begins_in_a_turn_does_not_count_for_the_approach() {
         let whole = record(0.0);
         let turning = whole.time().partition_point(|time| *time < 45.0);
         let columns = trial::Columns {
@@ -367,11 +365,11 @@ mod tests {
         assert!(ZigZag::of(&cut).is_ok(), "the rest is a zig-zag");
         let trials = [cut];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let known = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
-        assert_eq!(known.approach_yaw_rate_rad_s, 0.0);
+        let ship = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        assert_eq!(ship.approach_yaw_rate_rad_s, 0.0);
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let prediction =
-            ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, false).expect("a turn");
+            ShipMixture::new(vec![(ship, 1.0)]).expect("sound").predict(&kind, 200, false).expect("a turn");
         let lengths = &prediction.figures["initial_turning_lengths"];
         assert_eq!(lengths.share_within(2.5), 1.0, "{:?}", lengths.interval);
     }
@@ -380,22 +378,22 @@ mod tests {
     fn the_moment_of_the_likelihood_is_handed_on() {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
-        let known =
+        let ship =
             of_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
-        assert!(!known.noise.moment.is_none());
-        assert!(known.noise.moment.size() > 0.0);
+        assert!(!ship.noise.moment.is_none());
+        assert!(ship.noise.moment.size() > 0.0);
     }
 
     #[test]
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let known = of_analysis(&analysis, &RecordFacts::of(&trials));
-        assert!((known.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
-        let first = &known.members[0];
+        let ship = of_analysis(&analysis, &RecordFacts::of(&trials));
+        assert!((ship.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
+        let first = &ship.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
         assert!((first.parameters[1] / first.parameters[0] - 0.1).abs() < 0.003);
-        ShipMixture::new(vec![(known, 1.0)]).expect("what is known can be drawn from");
+        ShipMixture::new(vec![(ship, 1.0)]).expect("a covariance to draw from");
     }
 
     /// Time of the ship KVLCC2, L/U, s.
@@ -425,28 +423,28 @@ mod tests {
         trial.with_conditions(trial::Conditions { hull, ..trial::Conditions::default() })
     }
 
-    /// Two zig-zags and her particulars tell her circle: advance and tactical diameter to 3 %. Without beam and draught
-    /// it is 4 % in the advance, within the interval.
+    /// Two zig-zags and the particulars predict the turning circle: advance and tactical diameter to 3 %. Without beam
+    /// and draught the advance is off by 4 %, within its interval.
     #[test]
-    fn zig_zags_of_a_tanker_tell_her_circle() {
+    fn zig_zags_of_a_tanker_predict_her_circle() {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
-        let known = of_estimate(&estimate, &facts).expect("a covariance");
-        assert!(facts.no_track.is_none() && !known.hulls.is_empty());
+        let ship = of_estimate(&estimate, &facts).expect("a covariance");
+        assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
         // She begins straight: the yaw rate of replays is an error, less than a twentieth of her rate in the circle.
         assert!(
-            facts.hulls.iter().all(|own| (1e-6..1e-3).contains(&own.beginning_yaw_rate_rad_s)),
+            facts.hulls.iter().all(|hull| (1e-6..1e-3).contains(&hull.beginning_yaw_rate_rad_s)),
             "{:?}",
             facts.hulls
         );
         let asked = Predictions { kinds: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
         let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
-        let figures = check.figures(|_| Some(known));
+        let figures = check.figures(|_| Some(ship));
         for name in ["advance_lengths", "tactical_diameter_lengths"] {
-            let figure = figures.iter().find(|own| own.name.ends_with(name)).expect("a hull has a track");
+            let figure = figures.iter().find(|figure| figure.name.ends_with(name)).expect("a hull has a track");
             assert!((figure.median / figure.truth - 1.0).abs() < 0.03, "{figure:?}");
         }
-        assert!(figures.iter().all(|own| !own.name.ends_with("advance_m")), "a length counts once: {figures:?}");
+        assert!(figures.iter().all(|figure| !figure.name.ends_with("advance_m")), "a length counts once: {figures:?}");
     }
 }

@@ -1,19 +1,19 @@
-//! A campaign: the trials of a scenario, run to rows that are stored, joined and summarised.
+//! A Monte-Carlo campaign: runs the trials of a scenario, stores their rows and summarises them.
 //!
 //! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. Nothing here draws, prints
-//! or reads the command line; who wants to see how far a campaign is implements [`Observer`].
+//! or reads the command line; an [`Observer`] receives progress and warnings.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | one trial, simulated or of measured records | [`engine`], `judged` |
+//! | one trial, simulated or of measured records | [`engine`], `shared_fit` |
 //! | many of them, in order | [`task`], [`block`], [`plan`], [`stopping`], [`collect`] |
-//! | answers from elsewhere | [`answers`] |
-//! | what is stored | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
-//! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
-//! | what is said about it | [`summary`], [`statistics`] |
-//! | records and answers for figures and other programs | [`curves`], [`stored_figures`], [`answer`] |
-//! | what is known of a ship, for a prediction | [`known`] |
-//! | methods against each other on measured and simulated records | [`benchmark`] |
+//! | answers of outside estimators | [`answers`] |
+//! | stored files | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
+//! | writing to disk | [`files`], [`folder`], [`disk`] |
+//! | summaries and their statistics | [`summary`], [`statistics`] |
+//! | plot data and document entries | [`curves`], [`stored_figures`], [`answer`] |
+//! | the identified ship, for predictions | [`known`] |
+//! | comparison of methods on measured and simulated records | [`benchmark`] |
 
 pub mod answer;
 pub mod answers;
@@ -30,7 +30,6 @@ pub mod engine;
 pub mod failure;
 pub mod files;
 pub mod folder;
-mod judged;
 pub mod known;
 pub mod manifest;
 pub mod observer;
@@ -40,6 +39,7 @@ mod prediction_check;
 mod reference;
 pub mod rows;
 pub mod scenario;
+mod shared_fit;
 pub mod showcase;
 pub mod statistics;
 pub mod stopping;

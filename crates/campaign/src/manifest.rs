@@ -1,4 +1,4 @@
-//! `manifest.toml`: what is needed to run a study again, beside what it ran on.
+//! `manifest.toml`: all that is needed to repeat a study, and the machine it ran on.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub struct Manifest {
     pub seed: u64,
     /// SHA-256 of the scenario text.
     pub scenario_sha256: String,
-    /// SHA-256 of all that decides the rows: the scenario without its prose, and the files it reads.
+    /// SHA-256 of the design: the scenario without its prose, and the files it reads.
     pub design_sha256: String,
     /// Version of the program.
     pub version: String,
@@ -32,21 +32,21 @@ pub struct Manifest {
     /// Whether that source had been changed since.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub git_dirty: bool,
-    /// What it ran on. Nothing in the rows depends on this.
+    /// The machine. No row depends on it.
     pub machine: Machine,
-    /// What the scenario leaves to be assumed and can decide what it finds.
+    /// Assumptions of the scenario that can influence its result, one sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumptions: Vec<String>,
     /// Versions of the crates that decide the numbers.
     pub crates: Vec<String>,
-    /// SHA-256 of the files that are made when all rows are there, by their names; before that none.
+    /// SHA-256 of the files written on completion, by name; empty before.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
     /// The scenario file as it was read.
     pub scenario: String,
 }
 
-/// What a study ran on.
+/// The machine of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Machine {
@@ -58,7 +58,7 @@ pub struct Machine {
     pub wall_time_s: f64,
 }
 
-/// Version and revision of the program: "0.2.0 (revision 1a2b3c4d5e)", with a word where its source had been changed.
+/// Version and revision of the program, such as "0.2.0 (revision 1a2b3c4d5e)"; ", changed" marks uncommitted source.
 pub fn version() -> String {
     let number = env!("CARGO_PKG_VERSION");
     let Some(revision) = option_env!("KEMPF_GIT_REVISION") else { return number.to_owned() };
@@ -66,14 +66,14 @@ pub fn version() -> String {
     format!("{number} (revision {}{changed})", &revision[..10])
 }
 
-/// Largest manifest, bytes: a scenario and little beside it.
-const LARGEST: u64 = 1 << 22;
+/// Largest manifest, bytes: a scenario and a few lines.
+const MAX_MANIFEST_BYTES: u64 = 1 << 22;
 
 /// First line of the file.
 const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n";
 
 impl Manifest {
-    /// The manifest of a scenario that is about to run.
+    /// Manifest of a scenario that is about to run.
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             name: scenario.name.clone(),
@@ -95,8 +95,7 @@ impl Manifest {
         }
     }
 
-    /// The program that ran it in one line, with the crates that decide its numbers: what a block says of its
-    /// origin.
+    /// Label of the program and of its numerical crates, which every block carries as its origin.
     pub fn program_label(&self) -> String {
         let revision = self.git_revision.as_deref().map_or_else(String::new, |revision| format!(" {revision}"));
         let changed = if self.git_dirty { " (changed)" } else { "" };
@@ -104,31 +103,29 @@ impl Manifest {
         format!("kempf {}{revision}{changed} with crates {}", self.version, &crates[..8])
     }
 
-    /// The same, of the program and on the machine of another manifest.
+    /// The manifest with program and machine of another.
     pub(crate) fn of_program_and_machine(self, other: &Self) -> Self {
         let Self { version, git_revision, git_dirty, crates, machine, .. } = other.clone();
         Self { version, git_revision, git_dirty, crates, machine, ..self }
     }
 
-    /// Whether the study is finished: its design and all else is stored beside its rows.
+    /// `true` if the study is finished: design, showcases and timings are stored beside its rows.
     pub fn is_finished(&self) -> bool {
         self.sha256.contains_key(DESIGN)
     }
 
-    /// What makes the rows of another manifest other rows, in words; empty when they are the same.
+    /// Differences in design and seed, one sentence each; empty when both manifests have the same rows.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.design_sha256 != other.design_sha256 {
             let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::design_of);
             let designs = design(self).zip(design(other));
-            let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
-            match found.is_empty() {
+            let changes = designs.map_or_else(Vec::new, |(there, here)| identity::differences(&there, &here));
+            match changes.is_empty() {
                 true => differences.push(
-                    "a record that the scenario replays, answers that were read, or a method that a program gave, has \
-                     changed"
-                        .to_owned(),
+                    "a replayed record, a table of answers or a method of the calling program has changed".to_owned(),
                 ),
-                false => differences.extend(found),
+                false => differences.extend(changes),
             }
         }
         if self.seed != other.seed {
@@ -137,7 +134,7 @@ impl Manifest {
         differences
     }
 
-    /// What the scenario says about itself.
+    /// Prose and presentation of the scenario.
     pub fn words(&self) -> Words {
         Words::of(&self.scenario)
     }
@@ -150,10 +147,10 @@ impl Manifest {
         folder.keep(MANIFEST, REPEAT.to_owned() + &text)
     }
 
-    /// Reads a manifest; `None` when there is none.
+    /// Manifest at a path; `None` without a file.
     pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
         let refuse = |problem: &str| Failure::about(path, format!("{problem}; expected the manifest of a study"));
-        let Some(bytes) = disk::read(path, LARGEST).on("read", path)? else { return Ok(None) };
+        let Some(bytes) = disk::read(path, MAX_MANIFEST_BYTES).on("read", path)? else { return Ok(None) };
         let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))?;
         toml::from_str(&text).map(Some).map_err(|error| refuse(error.message()))
     }
@@ -165,7 +162,7 @@ mod tests {
     fn every_crate_that_decides_the_numbers_has_its_version() {
         let crates = env!("KEMPF_NUMERIC_CRATES");
         for name in ["nalgebra", "rand", "rand_distr", "realfft", "statrs"] {
-            assert!(crates.split(',').any(|known| known.starts_with(&format!("{name} "))), "{name}: {crates}");
+            assert!(crates.split(',').any(|version| version.starts_with(&format!("{name} "))), "{name}: {crates}");
         }
     }
 }

@@ -1,42 +1,42 @@
-//! Who watches a study while it runs: the command line with its bar, its warnings and Ctrl-C, or nobody.
+//! Observers of a running study: the command line with its progress bar, warnings and Ctrl-C, or none.
 
 use rayon::ThreadPool;
 
 use crate::failure::Failure;
 
-/// Is told how far a study is and what was odd, and asked whether to stop.
+/// Receiver of progress, notes and warnings, which may also request a stop.
 pub trait Observer: Sync {
-    /// Trials are run from now on: `most` of them at most, of which `done` were stored before.
+    /// Start of the trials: at most `most`, of which `done` are already stored.
     fn begin(&self, _most: u64, _done: u64) {}
 
-    /// One trial is done.
+    /// End of one trial.
     fn advance(&self) {}
 
-    /// No more trials are run.
+    /// End of all trials.
     fn end(&self) {}
 
-    /// Something a person may want to know.
+    /// A note for the user.
     fn note(&self, _line: &str) {}
 
-    /// Something a person should know.
+    /// A warning for the user.
     fn warn(&self, _line: &str) {}
 
-    /// Whether to stop between two trials; what is done is kept.
+    /// `true` to stop between two trials; finished trials are kept.
     fn is_asked_to_stop(&self) -> bool {
         false
     }
 
-    /// The threads on which trials are run; those of the whole program where it gives none.
+    /// Thread pool for the trials; `None` for that of the whole program.
     fn threads(&self) -> Option<&ThreadPool> {
         None
     }
 
-    /// A trial does not end although the study was asked to stop. All trials before it are stored: a program may end
-    /// itself here, with this failure. Where it returns, the trial is waited for.
+    /// A running trial does not end after a request to stop. All trials before it are stored, so a program may exit
+    /// here with this failure. If the call returns, the trial is waited for.
     fn give_up(&self, _failure: &Failure) {}
 }
 
-/// Nobody watches.
+/// Observer that ignores everything.
 pub struct NoObserver;
 
 impl Observer for NoObserver {}

@@ -16,12 +16,12 @@ pub enum Values {
     Counts(Vec<Option<i64>>),
     /// Numbers.
     Numbers(Vec<Option<f64>>),
-    /// Words.
+    /// Texts.
     Texts(Vec<Option<String>>),
 }
 
 impl Values {
-    /// The column of a schema, whose values may be missing.
+    /// Schema of the column; values may be missing.
     fn field(&self, name: &str) -> TypePtr {
         let (physical, logical) = match self {
             Self::Counts(_) => (Physical::INT64, None),
@@ -72,7 +72,7 @@ fn write<T: DataType>(target: &mut SerializedColumnWriter<'_>, values: Vec<Optio
     target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
-/// The file of a table; all columns have the same number of rows.
+/// Parquet file of a table; all columns have the same number of rows.
 pub fn encode(columns: Vec<(String, Values)>) -> Result<Vec<u8>> {
     let fields = columns.iter().map(|(name, values)| values.field(name)).collect();
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();

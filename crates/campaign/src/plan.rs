@@ -1,8 +1,8 @@
-//! Which trials a study runs, in what order, and when a cell has had enough of them.
+//! The plan of a study: which trials are run, in what order, and when a cell stops.
 //!
-//! The order is cell by cell and replicate by replicate. A shard is a run of consecutive blocks, with a stopping rule a
-//! run of whole cells. The rule looks at whole blocks in their order, so the same trials are run whatever the number of
-//! threads, interruptions and shards.
+//! The order is cell by cell and replicate by replicate. A shard is a range of consecutive blocks, or of whole cells
+//! under a stopping rule. The rule is evaluated after complete blocks in order, so the same trials are run for any
+//! number of threads, interruptions and shards.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -14,27 +14,27 @@ use crate::scenario::Scenario;
 use crate::stopping::StopCheck;
 use crate::task::{Shard, Task};
 
-/// What reads the stored rows of a block again.
+/// Reader of the stored rows of a block.
 type BlockReader<'a> = dyn Fn(Block) -> Result<Vec<StudyRow>, Failure> + 'a;
 
-/// The trials of a study or a shard of it that are not stored, handed out in order.
+/// Missing trials of a study or a shard, issued in order.
 pub struct TrialPlan<'a> {
     scenario: &'a Scenario,
-    /// Trials that are stored, by their block, from its first on.
+    /// Number of stored trials by block, from its first on.
     stored: &'a HashMap<Block, u64>,
     read: &'a BlockReader<'a>,
-    /// Places of the blocks that are not begun.
+    /// Indices of the blocks not yet begun.
     blocks: Range<u64>,
     cell: usize,
-    /// Replicates of the block under way that are not handed out.
+    /// Replicates of the current block not yet issued.
     open: Range<u64>,
-    /// What the stopping rule has seen of the cell.
+    /// State of the stopping rule in the current cell.
     rule: Option<StopCheck>,
-    /// Trials that every cell has, as far as it is known.
+    /// Number of trials of every cell so far.
     pub trials: Vec<u64>,
 }
 
-/// Places of the blocks of a shard.
+/// Indices of the blocks of a shard.
 pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
     let of_cell = Block::of_cell(scenario.replicates);
     if scenario.stop.is_none() {
@@ -44,15 +44,15 @@ pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
     cells.start * of_cell..cells.end * of_cell
 }
 
-/// Trials of blocks, at most.
+/// Largest number of trials in a range of blocks.
 pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     let of_cell = Block::of_cell(scenario.replicates);
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
-        let of = |place| {
+        let trials = |place| {
             let block = Block::at(place, scenario);
             block.range(scenario.trials_of(block.cell)).count() as u64
         };
-        return blocks.clone().map(of).sum();
+        return blocks.clone().map(trials).sum();
     }
     let before = |place: u64| {
         place / of_cell * scenario.replicates + (place % of_cell * Block::REPLICATES).min(scenario.replicates)
@@ -61,7 +61,7 @@ pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
 }
 
 impl<'a> TrialPlan<'a> {
-    /// The plan of a shard of which some trials are `stored`; `read` gets the rows of such a block.
+    /// Plan of a shard with `stored` trials; `read` returns the rows of a stored block.
     pub fn new(
         scenario: &'a Scenario,
         shard: Shard,
@@ -80,25 +80,25 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// The first trial that is left, which is handed out as if nobody had asked; none when the part is done.
+    /// The next trial without issuing it; `None` when the shard is done.
     pub fn peek(&mut self) -> Result<Option<Task>, Failure> {
         let is_left = !self.open.is_empty() || self.begin()?;
         Ok(is_left.then_some(Task { cell: self.cell, replicate: self.open.start }))
     }
 
-    /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have
-    /// to have been shown to [`TrialPlan::saw`].
+    /// The next trials, at most `most` and for measured records whole blocks; empty when the shard is done. The rows of
+    /// all trials issued before must have been passed to [`TrialPlan::add`].
     pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
         let mut tasks = Vec::new();
         loop {
             let open = self.open.end.saturating_sub(self.open.start);
-            // Trials of measured records share their fits: all of a block are handed out at once.
+            // Trials of measured records share fits: a block is issued as a whole.
             let is_shared = self.scenario.cells[self.cell].record_set().is_some();
             let count = if is_shared { open } else { open.min(most.saturating_sub(tasks.len() as u64)) };
             let taken = self.open.start..self.open.start + count;
             tasks.extend(taken.map(|replicate| Task { cell: self.cell, replicate }));
             self.open.start += count;
-            // A rule looks at all rows of a block before it says what comes next.
+            // The rule needs all rows of a block before the next one is decided.
             let is_enough = tasks.len() as u64 >= most || self.rule.is_some() && !tasks.is_empty();
             if is_enough || !self.begin()? {
                 return Ok(tasks);
@@ -106,7 +106,7 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// Begins the next block of which trials are left; there may be none.
+    /// Begins the next block with missing trials; `false` when there is none.
     fn begin(&mut self) -> Result<bool, Failure> {
         while let Some(place) = self.blocks.next() {
             let block = Block::at(place, self.scenario);
@@ -119,7 +119,7 @@ impl<'a> TrialPlan<'a> {
             }
             let stored = self.stored.get(&block).copied().unwrap_or(0);
             if stored > 0 && self.rule.is_some() {
-                (self.read)(block)?.iter().for_each(|row| self.saw(row));
+                (self.read)(block)?.iter().for_each(|row| self.add(row));
             }
             self.trials[block.cell] = all.end;
             (self.cell, self.open) = (block.cell, all.start + stored..all.end);
@@ -130,10 +130,10 @@ impl<'a> TrialPlan<'a> {
         Ok(false)
     }
 
-    /// Takes note of a row, in order.
-    pub fn saw(&mut self, row: &StudyRow) {
+    /// Adds a row, in order, to the stopping rule.
+    pub fn add(&mut self, row: &StudyRow) {
         if let Some(rule) = &mut self.rule {
-            rule.see(row);
+            rule.add(row);
         }
     }
 }
@@ -208,7 +208,7 @@ mod tests {
         let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
         let first = plan.next(1000).expect("readable");
         assert_eq!((first.len(), first[255]), (256, Task { cell: 0, replicate: 255 }));
-        first.iter().for_each(|task| plan.saw(&row(0, task.replicate)));
+        first.iter().for_each(|task| plan.add(&row(0, task.replicate)));
         // One block is enough for the rule in the first cell, and in the second it is stored.
         assert_eq!((plan.next(1000).expect("readable"), plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
     }

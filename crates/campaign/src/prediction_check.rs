@@ -1,4 +1,4 @@
-//! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
+//! Check of predictions: figures of manoeuvres predicted from an estimate, and those of the true ship.
 
 use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;
@@ -10,31 +10,31 @@ use crate::known::RecordFacts;
 use crate::rows::PredictedFigure;
 use crate::scenario::Predictions;
 
-/// What the ship of a trial does in the manoeuvres that are predicted from answers to it.
+/// True manoeuvres of the ship of a trial, with the facts of its records.
 pub struct PredictionCheck<'a> {
     asked: &'a Predictions,
-    /// Figures by name, `None` where the ship does not come to the end of a manoeuvre.
+    /// True figures by name, per manoeuvre; `None` where the ship does not complete it.
     true_manoeuvres: Vec<Option<figures::Figures>>,
     facts: RecordFacts<'a>,
 }
 
-/// A time of a ship that is known by its simulation alone, s: rows of a record are closer than it.
-const ROWS: f64 = 10.0;
+/// Time scale of a ship without particulars and closed form, in sampling periods of its record.
+const TIMESCALE_PERIODS: f64 = 10.0;
 
-/// Whether a figure is a length in metres that stands there in lengths of the ship, too: it counts once.
+/// `true` if a figure in metres is also given in ship lengths, so that it counts once.
 pub fn is_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bool {
     name.strip_suffix("_m").is_some_and(|name| is_there(&format!("{name}_lengths")))
 }
 
 impl<'a> PredictionCheck<'a> {
-    /// Steers the ship of a trial through the manoeuvres, with her gear and in her weather; the chance is not that of
-    /// the records.
+    /// Simulates the manoeuvres with the ship, gear and weather of a trial, and random draws independent of its
+    /// records.
     pub fn new(asked: &'a Predictions, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
         let closed = simulation.vessel.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
         let of_hull = simulation.vessel.particulars().map(|particulars| particulars.length / particulars.speed);
-        let timescale = closed.or(of_hull).unwrap_or(ROWS * simulation.recording.period);
+        let timescale = closed.or(of_hull).unwrap_or(TIMESCALE_PERIODS * simulation.recording.period);
         let other = StreamKey { seed: !key.seed, ..*key };
-        let one = |kind: &Manoeuvre| {
+        let true_figures = |kind: &Manoeuvre| {
             let calm = Simulation {
                 manoeuvre: standard::steered(kind, timescale)?,
                 sensors: Sensors::default(),
@@ -45,13 +45,12 @@ impl<'a> PredictionCheck<'a> {
             let is_counted = |name: &str| !is_in_lengths(name, |lengths| all.contains_key(lengths));
             Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())
         };
-        Self { asked, true_manoeuvres: asked.kinds.iter().map(one).collect(), facts: RecordFacts::of(records) }
+        Self { asked, true_manoeuvres: asked.kinds.iter().map(true_figures).collect(), facts: RecordFacts::of(records) }
     }
 
-    /// What is predicted of the manoeuvres from an answer, beside what the ship does; figures that the ship or the
-    /// prediction does not have are left out.
-    pub fn figures(&self, known: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>) -> Box<[PredictedFigure]> {
-        let mixture = known(&self.facts).and_then(|known| ShipMixture::new(vec![(known, 1.0)]).ok());
+    /// Predicted and true figures of the manoeuvres; figures that either side lacks are left out.
+    pub fn figures(&self, identified: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>) -> Box<[PredictedFigure]> {
+        let mixture = identified(&self.facts).and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
         let Some(mixture) = mixture else { return Box::default() };
         let mut all = Vec::new();
         for (kind, truths) in self.asked.kinds.iter().zip(&self.true_manoeuvres) {

@@ -1,4 +1,4 @@
-//! What the answers to a trial are held against: the truth, the bound, and a manoeuvre that no method sees.
+//! Reference of a trial: true responses, Cramér–Rao bound, and a validation manoeuvre outside all fits.
 
 use identify::replay::replay;
 use identify::{Identifier, output_error};
@@ -10,45 +10,45 @@ use trial::Trial;
 use crate::bound;
 use crate::scenario::{Specification, TrialSpecification};
 
-/// What the trials of a cell are held against.
+/// Reference against which the estimates of a trial are compared.
 #[derive(Default)]
 pub struct TrialReference {
-    /// The first-order response that comes nearest to the ship: the ship itself where it is exactly first order.
+    /// First-order response nearest to the ship; the ship itself where it is first order.
     pub nearest: Option<FirstOrder>,
-    /// The base of a response ship with effects, where that is another one.
-    pub own: Option<FirstOrder>,
-    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) on this trial, and covariance of relative errors of K
-    /// and T, %².
+    /// First-order base of a response ship with effects.
+    pub base: Option<FirstOrder>,
+    /// Cramér–Rao bound of this trial: standard deviations of K (1/s), T (s) and K/T (1/s²), and covariance of the
+    /// relative errors of K and T, %².
     pub bound: Option<([f64; 3], [[f64; 2]; 2])>,
-    /// Undisturbed second manoeuvre, perfectly recorded.
+    /// Undisturbed second manoeuvre without measurement noise.
     pub validation: Option<Trial>,
-    /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
+    /// Expected likelihood ratio of the true model against the nearest first-order response.
     pub expected: Option<f64>,
 }
 
 impl TrialReference {
-    /// Of a trial with this chance; `traces` when a trace is among the methods.
+    /// Reference of the trial of a key; `traces` if a trace is among the methods.
     pub fn of(specimen: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&specimen.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
-        let own = base.filter(|_| truth.is_none());
+        let base = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
         let simulations = || specimen.specification.records(key).map(|(simulation, _)| simulation);
         let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        // Of a likelihood with white heading noise: what has a colour is another one.
+        // Defined for white heading noise only.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
         let white = sd.filter(|_| heading_wander.is_none());
         let ratio = |(near, sd): (NearestResponse, f64)| {
             near.mean_square / (sd * sd) * near.rows.div_ceil(heading_every_rows.unwrap_or(1)) as f64
         };
         let expected = near.filter(|_| traces).zip(white).map(ratio);
-        Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
+        Self { nearest, base, bound, validation: validation.map(|simulated| simulated.trial), expected }
     }
 }
 
-/// The first-order response that comes nearest to undisturbed, perfectly recorded records of a trial, and how near.
+/// Output-error fit of a first-order response to undisturbed, noise-free records of a trial.
 pub struct NearestResponse {
     /// The response.
     pub response: FirstOrder,
@@ -57,7 +57,7 @@ pub struct NearestResponse {
     rows: usize,
 }
 
-/// The first-order response nearest to the trial of a ship that is none.
+/// First-order response nearest to a ship in the manoeuvres of a trial, by output error (Ljung 1999).
 pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Option<NearestResponse> {
     let calm = |(simulation, key): (&Simulation, StreamKey)| {
         let calm = Simulation {

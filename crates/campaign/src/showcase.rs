@@ -1,5 +1,5 @@
-//! The first trial of a cell in detail: its characteristics, the Fourier fit, every method's answer and replay, as data
-//! for figures. Made once when a study runs, stored, and drawn from the store.
+//! Showcase of a cell: the first trial in detail, with its characteristics, Fourier fit, and the answers and replays of
+//! all methods, as plot data. It is computed when a study runs, and drawn from the stored file.
 
 use document::method::MethodEntry;
 use identify::{Estimate, IdentifierSettings};
@@ -19,7 +19,7 @@ use crate::stored_figures::{
 };
 use crate::task::Task;
 
-/// The first trial of one cell.
+/// First trial of a cell in detail.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Showcase {
     /// Title of the cell.
@@ -34,7 +34,7 @@ pub struct Showcase {
     pub replays: Replays,
     /// K and T of every method.
     pub intervals: Intervals,
-    /// The numbers behind the figures.
+    /// The answers of the methods.
     pub methods: Vec<ShownAnswer>,
 }
 
@@ -44,14 +44,14 @@ pub struct ShownAnswer {
     /// The answer.
     #[serde(flatten)]
     pub entry: MethodEntry,
-    /// What a reader should see beside the numbers.
+    /// Texts of its warnings.
     pub warnings: Vec<String>,
 }
 
 /// Points of a fitted curve between two rows of the record.
 const POINTS_PER_ROW: usize = 4;
 
-/// The showcase of a cell; `None` when its first trial could not be simulated.
+/// Showcase of a cell; `None` when its first trial cannot be simulated.
 pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = Task { cell: index, replicate: 0 };
@@ -60,7 +60,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answer = |method: &Method| {
-        // A trace is no first-order response; it has a report of its own.
+        // A trace has no first-order answer; it has its own report.
         let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
         Some(entry(&method.label, answer, &trials))
     };
@@ -122,7 +122,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
     }
 }
 
-/// A Fourier curve of the heading of a trial; its time runs from the first observed row.
+/// Fourier curve of the heading of a trial; its time counts from the first observed row.
 struct FourierCurve<'a> {
     origin: CurveOrigin,
     trial: &'a Trial,
@@ -131,8 +131,7 @@ struct FourierCurve<'a> {
 }
 
 impl<'a> FourierCurve<'a> {
-    /// The curves of the methods of a cell that have one: one for each kind of method, since variants differ in what
-    /// they do with it.
+    /// Fourier curves of the methods of a cell, one per method id, since variants share the curve.
     fn of(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
@@ -159,7 +158,7 @@ impl<'a> FourierCurve<'a> {
         self.trial.observed_rows().next().map_or(0.0, |row| self.trial.time()[row])
     }
 
-    /// A value within the window, dense enough to look smooth.
+    /// Samples of a function over the window, dense enough to look smooth.
     fn sampled(&self, value: impl Fn(f64) -> f64) -> PlotCurve {
         let [from, to] = self.window;
         let points = self.trial.len() * POINTS_PER_ROW;

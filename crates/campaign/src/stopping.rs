@@ -1,29 +1,30 @@
-//! The stopping rule: whether a figure of a cell is known well enough. It keeps running sums and no rows.
+//! Evaluation of the stopping rule: the standard error of a statistic in the current cell, from running sums
+//! (sequential estimation, Chow and Robbins 1965).
 
 use crate::rows::StudyRow;
 use crate::scenario::{Index, StopFigure, StopRule};
 use crate::statistics::Moments;
 
-/// What a rule has seen of one cell.
+/// State of a stopping rule in the current cell.
 #[derive(Clone)]
 pub struct StopCheck {
     rule: StopRule,
-    /// Place of the method that the rule is about; all have to meet it when there is none.
+    /// Index of the method of the rule; `None` where all methods have to meet it.
     method: Option<usize>,
     cell: u64,
     methods: Vec<FigureSums>,
 }
 
 impl StopCheck {
-    /// Before any row.
+    /// State before any row.
     pub fn new<'a>(rule: &StopRule, labels: impl Iterator<Item = &'a str>) -> Self {
         let labels: Vec<&str> = labels.collect();
-        let method = rule.method.as_deref().and_then(|own| labels.iter().position(|label| *label == own));
+        let method = rule.method.as_deref().and_then(|method| labels.iter().position(|label| *label == method));
         Self { rule: rule.clone(), method, cell: 0, methods: vec![FigureSums::default(); labels.len()] }
     }
 
-    /// Takes note of a row; one of another cell begins anew.
-    pub fn see(&mut self, row: &StudyRow) {
+    /// Adds a row; a row of another cell resets the state.
+    pub fn add(&mut self, row: &StudyRow) {
         if row.cell != self.cell {
             self.cell = row.cell;
             self.methods.fill(FigureSums::default());
@@ -42,7 +43,7 @@ impl StopCheck {
         }
     }
 
-    /// Whether the standard error is at most what the rule asks for, for its method or for all.
+    /// `true` if the standard error is at most that of the rule, for its method or for all.
     pub fn is_met(&self) -> bool {
         let met = |sums: &FigureSums| {
             sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error)
@@ -54,7 +55,7 @@ impl StopCheck {
     }
 }
 
-/// Moments of relative errors, per cent, and counts of intervals.
+/// Moments of relative errors, %, and counts of intervals.
 #[derive(Debug, Clone, Copy, Default)]
 struct FigureSums {
     errors: Moments,
@@ -63,7 +64,7 @@ struct FigureSums {
 }
 
 impl FigureSums {
-    /// Standard error of a figure in per cent, by the delta method; `None` below 20 values, too few to judge by.
+    /// Standard error of a statistic, %, by the delta method (Cramér 1946); `None` below 20 values.
     fn standard_error(&self, figure: StopFigure) -> Option<f64> {
         let Moments { count: n, mean, second, third, fourth, .. } = self.errors;
         let enough = |count: f64| (count >= 20.0).then_some(count);
@@ -81,7 +82,7 @@ impl FigureSums {
                 enough(n).map(|_| error)
             }
             StopFigure::CoverageK | StopFigure::CoverageT => enough(self.quoted).map(|n| {
-                // Agresti and Coull (1998): a share of 0 or 1 has an error too.
+                // Agresti and Coull (1998), so that a share of 0 or 1 has an error.
                 let (n, held) = (n + 4.0, self.held + 2.0);
                 let share = held / n;
                 100.0 * (share * (1.0 - share) / n).sqrt()

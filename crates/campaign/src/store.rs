@@ -1,5 +1,5 @@
-//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest. The
-//! manifest carries the SHA-256 of those that are made when all rows are there; a block of rows carries its own.
+//! Primary files of a result folder: rows, design, showcases, timings and manifest. The manifest holds the SHA-256 of
+//! the files written on completion; each block of rows holds its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::blocks::{self, BlockStore};
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{DESIGN, MANIFEST, ROWS_OF_OLD, SHOWCASES, TIMINGS};
+use crate::files::{DESIGN, LEGACY_ROWS, MANIFEST, SHOWCASES, TIMINGS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::rows::StudyRow;
@@ -19,24 +19,24 @@ use crate::scenario::hex;
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 
-/// Largest size of a stored text, bytes.
+/// Largest stored text, bytes.
 const MAX_TEXT_BYTES: u64 = 1 << 29;
 
-/// A finished study: everything but its rows, which are read a few at a time.
+/// A finished study without its rows, which are read block by block.
 pub struct StoredStudy {
     folder: PathBuf,
-    /// What ran, and on what.
+    /// Program, machine and scenario.
     pub manifest: Manifest,
     /// The design.
     pub design: Design,
-    /// The first trial of every cell in detail, where it was asked for.
+    /// Showcases of the cells, where requested.
     pub showcases: Vec<Showcase>,
-    /// How long the methods took.
+    /// Durations of the methods.
     pub timings: Timings,
 }
 
 impl StoredStudy {
-    /// Reads a finished study. Fails as wrong input when the folder holds none.
+    /// Finished study of a folder. Fails as wrong input when there is none.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let manifest = expected_in(folder)?;
         if !manifest.is_finished() {
@@ -45,15 +45,15 @@ impl StoredStudy {
         Self::of(folder, manifest)
     }
 
-    /// Reads what a manifest tells of.
+    /// Files listed by a manifest, verified by their SHA-256.
     pub(crate) fn of(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
         let text = |name: &str| {
             let path = folder.join(name);
             let bytes = disk::read(&path, MAX_TEXT_BYTES).on("read", &path)?;
-            let found = bytes.as_ref().map(|bytes| hex(&Sha256::digest(bytes)));
-            match found {
+            let sha256 = bytes.as_ref().map(|bytes| hex(&Sha256::digest(bytes)));
+            match sha256 {
                 None => Err(refused(&path, "it is missing")),
-                Some(found) if Some(&found) == manifest.sha256.get(name) => {
+                Some(sha256) if Some(&sha256) == manifest.sha256.get(name) => {
                     Ok((bytes.unwrap_or_default(), move |problem: String| refused(&path, &problem)))
                 }
                 Some(_) => Err(refused(&path, "it was changed: its SHA-256 is not the one in the manifest")),
@@ -69,8 +69,13 @@ impl StoredStudy {
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
     }
 
-    /// The same study after its words, or what is told of its cells, have changed; they are written where they have.
-    pub(crate) fn told_again(self, manifest: Manifest, design: Design, folder: &ResultFolder) -> Result<Self, Failure> {
+    /// The study with renewed prose and cell facts; changed files are written.
+    pub(crate) fn with_descriptions(
+        self,
+        manifest: Manifest,
+        design: Design,
+        folder: &ResultFolder,
+    ) -> Result<Self, Failure> {
         let mut sha256 = self.manifest.sha256.clone();
         write(DESIGN, &described(DESIGN, &design, folder)?, folder, &mut sha256)?;
         let manifest = Manifest { sha256, ..manifest };
@@ -80,29 +85,28 @@ impl StoredStudy {
         Ok(Self { design: Design { words: manifest.words(), ..design }, manifest, ..self })
     }
 
-    /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
+    /// Passes every row to `take`, in order. Fails when one is missing or belongs to another study.
     pub fn rows(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         BlockStore::new(&self.folder, &self.manifest, &self.design).rows(take)
     }
 }
 
-/// A file that is not what a study wrote, and what to do.
+/// Failure of a file that differs from what the study wrote.
 fn refused(path: &Path, problem: &str) -> Failure {
     Failure::about(
         path,
         format!(
-            "{problem}; expected what a finished study wrote; put the file back, or run the study again: what is whole \
-                 is not computed again"
+            "{problem}; expected the file that the finished study wrote; restore it, or run the study again; complete \
+                 blocks are kept"
         ),
     )
 }
 
-/// The manifest of a folder with rows; `None` where there are none. A folder that holds what was published without its
-/// rows has none.
+/// Manifest of a folder with rows; `None` without rows, as in a published folder.
 ///
-/// Fails where the rows are those of a version that stored them in one file.
+/// Fails for rows in the single file of earlier versions.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
-    let old = folder.join(ROWS_OF_OLD);
+    let old = folder.join(LEGACY_ROWS);
     if disk::is_there(&old).on("look for", &old)? {
         return Err(Failure::about(
             &old,
@@ -113,7 +117,7 @@ pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
     if blocks::is_in(folder)? { Manifest::read(&folder.join(MANIFEST)) } else { Ok(None) }
 }
 
-/// The same where there have to be rows.
+/// Manifest of a folder that must hold rows.
 pub fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     manifest_of_rows(folder)?.ok_or_else(|| {
         let problem = match folder.exists() {
@@ -126,20 +130,20 @@ pub fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
-/// The text of a file of this name.
-fn described(name: &str, what: &impl Serialize, folder: &ResultFolder) -> Result<Vec<u8>, Failure> {
-    let text = serde_json::to_string(what).on("describe", &folder.path().join(name))?;
+/// JSON text of a file.
+fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Result<Vec<u8>, Failure> {
+    let text = serde_json::to_string(content).on("describe", &folder.path().join(name))?;
     Ok((text + "\n").into_bytes())
 }
 
-/// Writes a file unless it is there with this text, and notes its SHA-256.
+/// Writes a file unless its SHA-256 is unchanged, and records it.
 fn write(name: &str, text: &[u8], folder: &ResultFolder, sha256: &mut BTreeMap<String, String>) -> Result<(), Failure> {
-    let own = hex(&Sha256::digest(text));
-    if sha256.insert(name.to_owned(), own.clone()) == Some(own) { Ok(()) } else { folder.keep(name, text) }
+    let digest = hex(&Sha256::digest(text));
+    if sha256.insert(name.to_owned(), digest.clone()) == Some(digest) { Ok(()) } else { folder.keep(name, text) }
 }
 
-/// Makes a folder that holds all rows a finished study: design, showcases, times, and the manifest last. What is
-/// returned is what was written, and need not be read again.
+/// Completes a folder that holds all rows: writes design, showcases, timings, and the manifest last. Returns the study
+/// as written.
 pub(crate) fn finish(
     folder: &ResultFolder,
     manifest: Manifest,
@@ -155,7 +159,7 @@ pub(crate) fn finish(
     let manifest = Manifest { sha256, ..manifest };
     // Last, since it makes the folder a finished study.
     manifest.write(folder)?;
-    // As they are written: to the nanosecond.
+    // As written, rounded to the nanosecond.
     let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
     let design = Design { words: manifest.words(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })

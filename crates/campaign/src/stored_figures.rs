@@ -1,4 +1,4 @@
-//! What a study stores of the first trial of a cell, besides the trial itself, and the figures of it.
+//! Stored plot data of the first trial of a cell, and its figures.
 
 use report::figures::{
     Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
@@ -43,13 +43,13 @@ impl CurveFit {
         ];
         let residual = Ruler::new("residual [°]", Division::Angle);
         let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
-        let finite = |value: Option<f64>| value.filter(|own| own.is_finite());
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         // Five decimals, because the fit of a smooth record differs from 1 in the fourth.
-        let r_squared = finite(self.r_squared).map(|own| format!("{} = {}", symbol("R²"), number::fixed(own, 5)));
+        let r_squared = finite(self.r_squared).map(|value| format!("{} = {}", symbol("R²"), number::fixed(value, 5)));
         let fundamental = finite(self.fundamental_rad_s)
-            .map(|own| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(own, 4)));
-        let said = r_squared.into_iter().chain(fundamental).collect();
-        Panels { said, ..Panels::over_time(rows) }
+            .map(|value| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(value, 4)));
+        let fit_figures = r_squared.into_iter().chain(fundamental).collect();
+        Panels { said: fit_figures, ..Panels::over_time(rows) }
     }
 }
 
@@ -79,17 +79,17 @@ impl DerivativeCurves {
     /// Heading, yaw rate and yaw acceleration above each other: what differentiation makes of a small error in the
     /// heading.
     pub fn panels(&self) -> Panels {
-        let row = |y: Ruler, of: fn(&MotionCurves) -> &PlotCurve| {
-            let layer = |own: &MotionCurves| {
-                let name = own.name.as_deref().unwrap_or_else(|| own.origin.label());
-                Layer::line(name, of(own).clone(), Pen::of(&own.origin))
+        let row = |y: Ruler, series: fn(&MotionCurves) -> &PlotCurve| {
+            let layer = |motion: &MotionCurves| {
+                let name = motion.name.as_deref().unwrap_or_else(|| motion.origin.label());
+                Layer::line(name, series(motion).clone(), Pen::of(&motion.origin))
             };
             (PanelRow::new(y, 0.2), self.curves.iter().map(layer).collect())
         };
         let rows = vec![
-            row(Ruler::heading(), |own| &own.heading),
-            row(Ruler::yaw_rate(), |own| &own.yaw_rate),
-            row(Ruler::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |own| &own.yaw_acceleration),
+            row(Ruler::heading(), |motion| &motion.heading),
+            row(Ruler::yaw_rate(), |motion| &motion.yaw_rate),
+            row(Ruler::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |motion| &motion.yaw_acceleration),
         ];
         Panels::over_time(rows)
     }
@@ -119,9 +119,9 @@ pub struct Replays {
     pub replays: Vec<ReplayCurves>,
 }
 
-/// A replay may leave the range of the record by this share of it before it is cut.
+/// Largest excursion of a replay beyond the range of the record, as a share of that range; beyond it is cut.
 const HEADING_ROOM: f64 = 0.25;
-/// A residual is cut at this many times the middle one of all sizes.
+/// Limit of a residual in multiples of the median of all sizes; beyond it is cut.
 const RESIDUAL_ROOM: f64 = 10.0;
 
 impl Replays {
@@ -130,20 +130,20 @@ impl Replays {
     /// others; above every panel stands how far its residual goes.
     pub fn panels(&self) -> Panels {
         let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
-        let truth = |own: &PlotCurve| Layer::line("truth", own.clone(), Pen::of(&CurveOrigin::Truth));
+        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::of(&CurveOrigin::Truth));
         upper.extend(self.truth.as_ref().map(truth));
-        upper.extend(self.replays.iter().map(|own| {
-            Layer::line(own.origin.label(), own.heading.clone(), Pen::of(&own.origin)).within(HEADING_ROOM)
+        upper.extend(self.replays.iter().map(|replay| {
+            Layer::line(replay.origin.label(), replay.heading.clone(), Pen::of(&replay.origin)).within(HEADING_ROOM)
         }));
-        let below = |own: &ReplayCurves| {
+        let below = |replay: &ReplayCurves| {
             let size = |size: f64| format!("{}°", number::significant(size, 2));
-            let rms = own.rms_deg.filter(|rms| rms.is_finite()).map_or_else(|| MISSING.into(), size);
-            let largest = own.residual.finite().map(|(_, y)| y.abs()).reduce(f64::max);
+            let rms = replay.rms_deg.filter(|rms| rms.is_finite()).map_or_else(|| MISSING.into(), size);
+            let largest = replay.residual.finite().map(|(_, y)| y.abs()).reduce(f64::max);
             let largest = largest.map_or_else(String::new, |largest| format!(", up to {}", size(largest)));
-            let solid = Pen::new(own.origin.look().colour).width(0.8);
+            let solid = Pen::new(replay.origin.look().colour).width(0.8);
             LayeredPanel {
-                head: Some(format!("{}, rms {rms}{largest}", own.origin.label())),
-                layers: vec![Layer::line("", own.residual.clone(), solid)],
+                head: Some(format!("{}, rms {rms}{largest}", replay.origin.label())),
+                layers: vec![Layer::line("", replay.residual.clone(), solid)],
             }
         };
         let residual = Ruler::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);
@@ -172,7 +172,7 @@ pub struct PointEstimate {
     pub interval: Option<[f64; 2]>,
 }
 
-/// What one method found; `None` where it found nothing.
+/// Estimates of one method; `None` where it has none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEstimate {
     /// The method; decides how its row looks.
@@ -203,22 +203,22 @@ pub struct Intervals {
     pub published: Option<Reference>,
 }
 
-/// The axis reaches this many times the usual distance from the truth; what lies beyond is an outlier.
+/// Half-width of the axis in multiples of the usual distance from the truth; values beyond are outliers.
 const SPREADS: f64 = 7.0;
 
 impl Intervals {
     /// K and T side by side, one row per method.
     pub fn rows(&self) -> NamedRows {
         type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
-        let column = |title: String, of: Estimated, reference: fn(&Reference) -> f64| {
-            let row = |own: &MethodEstimate| {
+        let column = |title: String, quantity: Estimated, reference: fn(&Reference) -> f64| {
+            let row = |estimate: &MethodEstimate| {
                 let mark = |point: PointEstimate| {
-                    RowItem::new("", RowKind::Mark(own.origin.look(), point.value, point.interval))
+                    RowItem::new("", RowKind::Mark(estimate.origin.look(), point.value, point.interval))
                 };
-                of(own).map(mark).into_iter().collect()
+                quantity(estimate).map(mark).into_iter().collect()
             };
-            let line = |origin: CurveOrigin, own: &Option<Reference>| {
-                own.as_ref().map(|own| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(own)))
+            let line = |origin: CurveOrigin, pair: &Option<Reference>| {
+                pair.as_ref().map(|pair| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(pair)))
             };
             let truth = line(CurveOrigin::Truth, &self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);
@@ -229,18 +229,19 @@ impl Intervals {
                 ..RowsColumn::default()
             }
         };
-        let mut points = self.estimates.iter().flat_map(|own| [own.k_per_s, own.t_s]).flatten();
-        let has_bars = points.any(|own| own.interval.is_some());
+        let mut points = self.estimates.iter().flat_map(|estimate| [estimate.k_per_s, estimate.t_s]).flatten();
+        let has_bars = points.any(|point| point.interval.is_some());
         let has_bars = has_bars.then(|| String::from("Bars: 95 % intervals, where they are wider than the mark."));
-        let lacks = |own: &&MethodEstimate| [own.k_per_s, own.t_s].iter().flatten().any(|own| own.interval.is_none());
-        let lacks: Vec<&str> = self.estimates.iter().filter(lacks).map(|own| own.origin.label()).collect();
+        let lacks =
+            |row: &&MethodEstimate| [row.k_per_s, row.t_s].iter().flatten().any(|point| point.interval.is_none());
+        let lacks: Vec<&str> = self.estimates.iter().filter(lacks).map(|estimate| estimate.origin.label()).collect();
         let lacks = (!lacks.is_empty()).then(|| format!("No interval from {}.", lacks.join(", ")));
         let note: Vec<String> = [has_bars, lacks].into_iter().flatten().collect();
         NamedRows {
-            names: self.estimates.iter().map(|own| own.origin.label().to_owned()).collect(),
+            names: self.estimates.iter().map(|estimate| estimate.origin.label().to_owned()).collect(),
             columns: vec![
-                column(format!("{} [1/s]", symbol("K")), |own| own.k_per_s, |own| own.k_per_s),
-                column(format!("{} [s]", symbol("T")), |own| own.t_s, |own| own.t_s),
+                column(format!("{} [1/s]", symbol("K")), |estimate| estimate.k_per_s, |estimate| estimate.k_per_s),
+                column(format!("{} [s]", symbol("T")), |estimate| estimate.t_s, |estimate| estimate.t_s),
             ],
             note: (!note.is_empty()).then(|| note.join(" ")),
             ..NamedRows::default()

@@ -1,4 +1,4 @@
-//! One trial of a design, and one part of a study.
+//! Trials and shards of a study.
 
 use std::fmt;
 use std::ops::Range;
@@ -14,12 +14,12 @@ pub struct Task {
     pub replicate: u64,
 }
 
-/// Part `number` of `of` parts of a study.
+/// Shard `number` of `of` shards of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1.
+    /// Number of the shard, from 1.
     pub number: u64,
-    /// How many there are.
+    /// Number of shards.
     pub of: u64,
 }
 
@@ -27,7 +27,7 @@ impl Shard {
     /// The whole study.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// The part of `count` things that belongs to this shard: consecutive ones, as even as can be.
+    /// Range of `count` items in this shard: consecutive, with sizes that differ by at most one.
     pub(crate) fn part(self, count: u64) -> Range<u64> {
         let end = |number: u64| (u128::from(count) * u128::from(number) / u128::from(self.of)) as u64;
         end(self.number - 1)..end(self.number)
@@ -52,7 +52,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Where a study is stored unless another folder is named.
+/// Default result folder of a study.
 pub fn default_folder(name: &str) -> PathBuf {
     Path::new("results").join(name)
 }

@@ -1,15 +1,15 @@
-//! Scenarios of the tests.
+//! Scenarios for tests.
 
 use std::path::Path;
 
 use crate::scenario::Scenario;
 
-/// A scenario that is right.
+/// Scenario from a valid text.
 pub fn scenario(text: impl Into<String>) -> Scenario {
     Scenario::parse(Path::new("it.toml"), "it", text.into(), None).unwrap_or_else(|failure| panic!("{failure}"))
 }
 
-/// A zig-zag of YUKUN for SRIVC: so many trials of a cell, and more keys.
+/// Zig-zag of YUKUN identified by SRIVC, with `replicates` trials and `more` keys.
 pub fn zig_zag(replicates: u64, more: &str) -> Scenario {
     scenario(format!(
         "question = \"?\"\nseed = 1\nreplicates = {replicates}\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\n\

@@ -1,5 +1,5 @@
-//! Every number of a scenario is checked: put to NaN it is refused, and the message shows its own key at its own line.
-//! Put to any other extreme it is refused, or its trials end.
+//! Checks of every number of a scenario: NaN is refused with a message at its key and line; any other extreme value is
+//! refused, or its trials end.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::scenario::Scenario;
 use crate::scenario::keys::ScenarioKey;
 use crate::task::Task;
 
-/// Scenarios that together hold every key with a number, one a line.
+/// Scenarios that together contain every numeric key, one per line.
 const EVERYTHING: [&str; 5] = [
     include_str!("tests/disturbed.toml"),
     include_str!("tests/second_order.toml"),
@@ -19,13 +19,13 @@ const EVERYTHING: [&str; 5] = [
     include_str!("tests/draws.toml"),
 ];
 
-/// Numbers of the study and of its methods, as far as [`EVERYTHING`] has none of them.
+/// Numeric keys of the study and of its methods that [`EVERYTHING`] lacks.
 const OF_STUDY: &str = include_str!("tests/of_study.toml");
 
 /// Numbers of a trace.
 const OF_TRACE: &str = include_str!("tests/of_trace.toml");
 
-/// Numbers that somebody may write, and nobody can mean; whole ones, which are read as any other number, too.
+/// Extreme values, integers included, which are read as any other number.
 const EXTREMES: [&str; 11] = [
     "0",
     "-1",
@@ -54,9 +54,9 @@ fn every_number_is_checked_and_found_again() {
                 return;
             }
             let Err(message) = parse(changed) else { panic!("`{key} = nan` was accepted in\n{text}") };
-            let own = key.rsplit('.').next().expect("a key");
+            let name = key.rsplit('.').next().expect("a key");
             let place = format!("--> all.toml:{}:", line + 2);
-            assert!(message.contains(&place) && message.contains(own), "{key}, expected {place}\n{message}");
+            assert!(message.contains(&place) && message.contains(name), "{key}, expected {place}\n{message}");
             assert!(message.to_lowercase().contains("is nan"), "{key}\n{message}");
         });
     }
@@ -74,9 +74,9 @@ fn every_declared_number_is_among_them() {
         if !is_of_a_trial || unit == "table" || unit == "text" || unit.contains(" or ") {
             continue;
         }
-        let (part, rest) = key.split_once('.').expect("a key of a part");
+        let (part, below) = key.split_once('.').expect("a key of a part");
         let is_in = |document: &toml::Table| {
-            document.get(part).and_then(|part| rest.split('.').try_fold(part, |value, name| value.get(name))).is_some()
+            document.get(part).and_then(|part| below.split('.').try_fold(part, |value, name| value.get(name))).is_some()
         };
         assert!(documents.iter().any(is_in), "{key}");
     }
@@ -88,9 +88,9 @@ fn with_each_number(text: &str, value: &str, mut see: impl FnMut(usize, &str, &s
     for number in 0..lines.len() {
         let Some((key, before)) = lines[number].rsplit_once(" = ") else { continue };
         if before.parse::<f64>().is_ok() {
-            let own = format!("{key} = {value}");
+            let line = format!("{key} = {value}");
             let mut changed = lines.clone();
-            changed[number] = &own;
+            changed[number] = &line;
             see(number, key, &changed.join("\n"));
         }
     }
@@ -169,7 +169,7 @@ fn a_drawn_trial_without_end_is_a_failed_row() {
     assert!(refused.count() > 2 && failures.iter().any(Option::is_none), "{failures:?}");
 }
 
-/// What the study is asked for in all, and how deep.
+/// Limits on the number of entries and on the depth of keys.
 #[test]
 fn no_list_is_longer_than_a_person_writes() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
@@ -178,7 +178,7 @@ fn no_list_is_longer_than_a_person_writes() {
         parse(&format!("{head}{all}")).err().unwrap_or_default()
     };
     let key = "a.".repeat(60_000);
-    for (found, message) in [
+    for (part, message) in [
         ("`sweep` has 8000 entries", entries("sweep", &|k| format!("key = \"sensor.k{k}\"\nvalues = [0.1]"), 8000)),
         (
             "`draw` has 65 entries",
@@ -199,7 +199,7 @@ fn no_list_is_longer_than_a_person_writes() {
             entries("draw", &|_| format!("key = \"{key}\"\nnormal = {{ mean = 1.0, sd = 0.1 }}"), 1),
         ),
     ] {
-        assert!(message.contains(found), "{found}\n{}", &message[..message.len().min(400)]);
+        assert!(message.contains(part), "{part}\n{}", &message[..message.len().min(400)]);
     }
 }
 

@@ -1,4 +1,4 @@
-//! How long simulation and identification took: the one result that depends on the machine, kept apart from the rows.
+//! Durations of simulation and identification: the only result that depends on the machine, stored apart from the rows.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -16,13 +16,13 @@ const SIMULATION: &str = "(simulation)";
 pub struct TrialTiming {
     /// Index of the cell.
     pub cell: u64,
-    /// To simulate it.
+    /// Of the simulation.
     pub simulation: Duration,
-    /// Of every method that was asked, in the order of the scenario; empty where the trial could not be simulated.
+    /// Of every method, in the order of the scenario; empty where the trial could not be simulated.
     pub methods: Vec<Duration>,
 }
 
-/// Times of one method in one cell: `timings.csv` has one line each.
+/// Line of `timings.csv`: durations of one method in one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimingLine {
@@ -34,34 +34,34 @@ pub struct TimingLine {
     shortest_us: f64,
 }
 
-/// Times of a study or a part of it.
+/// Durations of a study or a part of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings {
-    /// µs, by cell and by what is timed: 0 is the simulation, the methods follow.
+    /// Moments, µs, by cell and index: 0 is the simulation, the methods follow.
     times: BTreeMap<(u64, usize), Moments>,
 }
 
 impl Timings {
-    /// Takes note of one trial.
+    /// Adds a trial.
     pub fn add(&mut self, timing: &TrialTiming) {
         for (place, time) in [&timing.simulation].into_iter().chain(&timing.methods).enumerate() {
             self.times.entry((timing.cell, place)).or_default().add(time.as_secs_f64() * 1e6);
         }
     }
 
-    /// Joins the times of another part.
+    /// Adds the durations of another part.
     pub fn join(&mut self, other: &Self) {
         other.times.iter().for_each(|(place, times)| self.times.entry(*place).or_default().join(times));
     }
 
-    /// Mean time of a method over all its trials, µs, with its standard error; `None` when it was never asked.
+    /// Mean duration of a method over all trials, µs, with its standard error; `None` without trials.
     pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
         let mut all = Moments::default();
         self.times.iter().filter(|((_, place), _)| *place == 1 + method).for_each(|(_, times)| all.join(times));
         (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
     }
 
-    /// One line for every cell and method that was timed.
+    /// Lines of all timed cells and methods.
     pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = TimingLine> + 'a {
         let names: Vec<&str> = names(design).collect();
         self.times.iter().map(move |(&(cell, place), times)| TimingLine {
@@ -74,7 +74,7 @@ impl Timings {
         })
     }
 
-    /// Times from their lines; methods the design does not have are left out.
+    /// Durations from lines; methods outside the design are left out.
     pub fn of_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
         let times = lines.into_iter().filter_map(|line| {
             let place = names(design).position(|name| name == line.method)?;
@@ -86,27 +86,27 @@ impl Timings {
         Self { times: times.collect() }
     }
 
-    /// The text of `timings.csv`.
+    /// Text of `timings.csv`.
     pub fn to_text(&self, design: &Design) -> Result<Vec<u8>, Failure> {
-        let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to describe times: {error}"));
+        let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to write timings: {error}"));
         let mut file = csv::Writer::from_writer(Vec::new());
         self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
         file.into_inner().map_err(|error| refuse(&error))
     }
 
-    /// Reads the text of a `timings.csv`; methods the design does not have are left out. Fails when it is none.
+    /// Durations from the text of `timings.csv`; methods outside the design are left out. Fails for an invalid text.
     pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
         Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
     }
 }
 
-/// Names of what is timed.
+/// Names of the timed items.
 fn names(design: &Design) -> impl Iterator<Item = &str> {
     std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()))
 }
 
-/// What a clock tells, of a time in µs.
+/// A duration in µs, rounded to the nanosecond.
 fn to_the_nanosecond(time: f64) -> f64 {
     (time * 1e3).round() / 1e3
 }

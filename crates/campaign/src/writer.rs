@@ -1,4 +1,4 @@
-//! Trials as they come, stored block by block.
+//! Writer that stores trials block by block as they finish.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -12,30 +12,31 @@ use crate::scenario::Scenario;
 use crate::task::Task;
 use crate::timings::Timings;
 
-/// A block that is not whole is stored when its first new row is so old, so that little is lost to a kill,
+/// Age of the first unsaved row at which an incomplete block is stored, so that little is lost if the program is
+/// killed.
 const MIN_AGE: Duration = Duration::from_millis(250);
-/// or, later, when that age is this share of the time of the run, so that a block of long trials is not written often.
+/// The same age as a share of the run time, which applies once it is larger: blocks of long trials are written rarely.
 const AGE_SHARE: f64 = 0.01;
 
-/// Gathers the rows of a block and stores them when it is whole, and now and then before.
+/// Writer of the current block; it stores a block when it is complete, and at intervals before.
 pub struct BlockWriter<'a> {
     store: &'a BlockStore<'a>,
     scenario: &'a Scenario,
-    /// The block under way.
+    /// The current block.
     block: Option<Block>,
     rows: Vec<StudyRow>,
     timings: Timings,
-    /// Since when there are rows that are not stored.
+    /// Time of the first unsaved row.
     since: Option<Instant>,
 }
 
 impl<'a> BlockWriter<'a> {
-    /// Of a scenario, into a store of its blocks.
+    /// Writer of a scenario into a store of its blocks.
     pub fn new(store: &'a BlockStore<'a>, scenario: &'a Scenario) -> Self {
         Self { store, scenario, block: None, rows: Vec::new(), timings: Timings::default(), since: None }
     }
 
-    /// Stores trials as they come, in order, until there are no more.
+    /// Stores trials, which arrive in order, until there are no more.
     pub fn store(&mut self, outcomes: impl IntoIterator<Item = Vec<TrialOutcome>>) -> Result<(), Failure> {
         let start = Instant::now();
         for outcomes in outcomes {
@@ -48,7 +49,7 @@ impl<'a> BlockWriter<'a> {
         self.write()
     }
 
-    /// Replicates of a block.
+    /// Replicates of a block of the scenario.
     fn range(&self, block: Block) -> Range<u64> {
         block.range(self.scenario.trials_of(block.cell))
     }
@@ -59,7 +60,7 @@ impl<'a> BlockWriter<'a> {
         let block = Block::of(task);
         let all = self.range(block);
         if self.block != Some(block) {
-            // Of one that was begun before, the first rows are stored.
+            // The first rows of a block begun earlier are already stored.
             let is_new = task.replicate == all.start;
             self.rows = if is_new { Vec::new() } else { self.store.reread(block)? };
             self.timings = if is_new { Timings::default() } else { self.store.timings(block)? };
@@ -71,10 +72,10 @@ impl<'a> BlockWriter<'a> {
         if task.replicate + 1 == all.end { self.write() } else { Ok(()) }
     }
 
-    /// Stores what there is of the block under way.
+    /// Stores the current block as far as it is computed.
     fn write(&mut self) -> Result<(), Failure> {
         let Some(block) = self.block.filter(|_| self.since.take().is_some()) else { return Ok(()) };
-        // Another program may have more of it.
+        // Another program may have stored more rows of it.
         let is_whole = self.rows.last().is_some_and(|row| row.replicate + 1 == self.range(block).end);
         if !is_whole && self.store.read(block)?.is_ok_and(|rows| rows.len() > self.rows.len()) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! A method of one's own, run in a study beside those of the project: nothing of the workspace is edited.
+//! A user's identification method in a study, beside those of the project and without changes to the workspace.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use kempf::prelude::*;
 
-/// K and T by the slope of the yaw rate: ψ̈ = (K/T) δ − (1/T) ψ̇ fitted to differences of the heading, without a rudder
-/// bias.
+/// Least squares of ψ̈ = (K/T) δ − (1/T) ψ̇ on central differences of the heading, without rudder bias.
 struct Differences;
 
 impl Identifier for Differences {
@@ -23,7 +22,7 @@ impl Identifier for Differences {
         let mut sums = [0.0; 5];
         for trial in trials {
             let (time, heading, rudder) = (trial.time(), trial.heading(), trial.rudder());
-            // Rows so far apart that the noise of the heading does not drown its change.
+            // A step of 5 s keeps the change of heading above its noise.
             let step = (5.0 / trial.sampling_period()).ceil() as usize;
             for row in step..trial.len().saturating_sub(step) {
                 let (before, after) = (row - step, row + step);

@@ -1,4 +1,4 @@
-//! Simulates a 10/10 zig-zag of a known ship and holds every answer against the truth.
+//! Simulates a 10/10 zig-zag of a known ship and prints the errors of every method.
 
 use std::error::Error;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 continue;
             }
         };
-        let error = |found: f64, truth: f64| 100.0 * (found / truth - 1.0);
+        let error = |value: f64, truth: f64| 100.0 * (value / truth - 1.0);
         let (k, t) = (error(estimate.K().value, truth.K()), error(estimate.T().value, truth.T()));
         let interval = estimate.T().ci95.map_or("none".to_owned(), |[low, high]| format!("[{low:.2}, {high:.2}]"));
         println!("{:24} {k:7.2}% {t:7.2}%  {interval}", method.id());

@@ -1,4 +1,4 @@
-//! Traces what a first-order model lacks of a record, and prints its error before and after:
+//! Traces the effects that a first-order model lacks on a record, and prints the heading error before and after:
 //! `cargo run -p kempf --example trace_record -- RECORD.csv`.
 
 use std::error::Error;

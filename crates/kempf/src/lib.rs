@@ -1,7 +1,8 @@
 //! Ship zig-zag trials: simulate them, identify the manoeuvrability indices K and T, trace what a first-order model
 //! lacks, and benchmark the methods against each other.
 //!
-//! One crate to depend on. It holds no code: the parts are crates of their own, and are here under their short names.
+//! It is the one crate to depend on and contains no code: it re-exports the parts, which are separate crates, under
+//! short names.
 //!
 //! | to | use |
 //! |---|---|
@@ -11,12 +12,12 @@
 //! | draw the track of a turn | [`simulate::motion`] |
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
-//! | find K, T and δ_r with their intervals | [`identify`] |
-//! | find what a first-order model lacks | [`trace`](mod@trace) |
-//! | read what a fit, trace or prediction wrote | [`document`] |
+//! | identify K, T and δ_r with intervals | [`identify`] |
+//! | trace the effects that a first-order model lacks | [`trace`](mod@trace) |
+//! | read the documents of a fit, trace or prediction | [`document`] |
 //! | read a scenario file | [`scenario`] |
 //! | run one to rows and summarise them | [`campaign`] |
-//! | hold methods against each other on published records | [`campaign::benchmark`] |
+//! | compare methods on published records | [`campaign::benchmark`] |
 //!
 //! ```
 //! use kempf::prelude::*;
@@ -42,7 +43,7 @@ pub use campaign::scenario;
 pub use trial::find;
 pub use {campaign, document, identify, predict, ship, simulate, trace, trial};
 
-/// What most programs need, under one `use`.
+/// Names that most programs need.
 pub mod prelude {
     pub use campaign::collect::{collect, in_memory};
     pub use campaign::folder::ResultFolder;

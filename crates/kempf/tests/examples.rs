@@ -1,9 +1,9 @@
-//! Every example runs to its end from the root of the workspace and says what it promises.
+//! Every example runs from the root of the workspace and prints its result.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What an example prints.
+/// Standard output of an example.
 fn output(name: &str) -> String {
     let here = std::env::current_exe().expect("a test is a program");
     let built = here.ancestors().nth(2).expect("tests are two folders down").join("examples").join(name);
@@ -22,7 +22,7 @@ fn a_csv_is_fitted() {
 }
 
 #[test]
-fn an_answer_is_held_against_the_truth() {
+fn estimates_are_compared_with_the_truth() {
     let text = output("simulate_and_identify");
     assert!(text.contains("integral-least-squares") && text.contains("95 % interval of T"), "{text}");
 }
@@ -34,8 +34,8 @@ fn a_record_is_traced() {
 }
 
 #[test]
-fn a_method_of_ones_own_runs_in_a_study() {
+fn a_users_method_runs_in_a_study() {
     let text = output("own_identifier");
-    let own = text.lines().find(|line| line.starts_with("differences")).expect("the method is in the table");
-    assert!(own.split_whitespace().last().is_some_and(|size| size.parse::<f64>().is_ok()), "{text}");
+    let row = text.lines().find(|line| line.starts_with("differences")).expect("the method is in the table");
+    assert!(row.split_whitespace().last().is_some_and(|size| size.parse::<f64>().is_ok()), "{text}");
 }

@@ -1,14 +1,14 @@
-//! Models of earlier trials as they come from Python.
+//! Models of earlier trials, as passed from Python.
 
 use std::path::PathBuf;
 
 use campaign::failure::Failure;
 use study::work::earlier::EarlierModel;
 
-/// The name of a model, and its text where it is no file.
+/// Name of a model, with its text unless it is a file.
 pub type ModelText = (String, Option<String>);
 
-/// The models.
+/// Models of earlier trials, read from files or texts.
 pub fn earlier(models: &[ModelText]) -> Result<Vec<EarlierModel>, Failure> {
     let read = |(name, text): &ModelText| match text {
         Some(text) => EarlierModel::of_document(name, text).map(|model| vec![model]),

@@ -6,17 +6,17 @@ use study::commands::find::found;
 use study::documents;
 use study::options::FindRequest;
 
-use crate::asked::request;
+use crate::options::request;
 use crate::record::sentences;
 use crate::wait::patiently;
 
-/// The document of the manoeuvres, and the warnings; `words` are options of the command line.
+/// Document of the manoeuvres found, and warnings; `options` are those of the command line.
 #[pyfunction]
-pub fn find(py: Python<'_>, logs: Vec<String>, words: Vec<String>) -> PyResult<(String, Vec<String>)> {
+pub fn find(py: Python<'_>, logs: Vec<String>, options: Vec<String>) -> PyResult<(String, Vec<String>)> {
     patiently(py, move || {
-        let asked: FindRequest = request(words.into_iter().chain([String::from("--")]).chain(logs).collect())?;
+        let asked: FindRequest = request(options.into_iter().chain([String::from("--")]).chain(logs).collect())?;
         let mut warnings = Warnings::default();
-        let found = found(&asked, &mut warnings)?;
-        Ok((documents::of(&found)?, sentences(&warnings.ranked())))
+        let manoeuvres = found(&asked, &mut warnings)?;
+        Ok((documents::of(&manoeuvres)?, sentences(&warnings.ranked())))
     })
 }

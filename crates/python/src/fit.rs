@@ -13,57 +13,57 @@ use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
 use crate::earlier::{ModelText, earlier};
-use crate::own::{OwnMethods, PyIdentifier};
+use crate::python_method::{PyIdentifier, PythonMethods};
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
-/// What came out, with what its figures are made from.
+/// Result of a fit, with the records and estimates for its figures.
 #[pyclass(frozen, name = "Fit", module = "kempf._kempf")]
 pub struct PyFit {
     #[pyo3(get)]
     text: String,
     #[pyo3(get)]
     warnings: Vec<String>,
-    /// Fitted records, then those of the validation, at one scale.
+    /// Fitted records, then validation records, at one scale.
     trials: Vec<Trial>,
     answers: Vec<(String, Option<Estimate>)>,
 }
 
 #[pymethods]
 impl PyFit {
-    /// A record as it was fitted: at the scale of the first.
+    /// Record number `place` as fitted, at the scale of the first.
     fn record(&self, place: usize) -> Option<PyRecord> {
         self.trials.get(place).cloned().map(PyRecord::plain)
     }
 
-    /// The rudder of a record replayed through the answer of a method; `None` where it has none.
+    /// Replay of a record by the estimate of a method; `None` where the method has none.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
     }
 }
 
-/// Identifies records by the named methods, or by the usual ones, and by functions of the caller's own; `priors` are
-/// models of earlier trials.
+/// Fit of records by the named methods, or by the default ones, and by the caller's functions; `priors` are models of
+/// earlier trials.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
     records: Vec<Py<PyRecord>>,
     validate: Vec<Py<PyRecord>>,
     methods: Vec<String>,
-    own: OwnMethods,
+    functions: PythonMethods,
     seed: Option<u64>,
     priors: Vec<ModelText>,
 ) -> PyResult<PyFit> {
-    // The document has what reading warned of, as that of the command; Python has been told before.
-    let told: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
-    let (records, others) = (trials(&records), trials(&validate));
+    // The document lists warnings of reading, as on the command line; Python has already issued them.
+    let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
+    let (records, validation) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let priors = earlier(&priors)?;
         let mut methods = work::fit::methods(&methods, seed)?;
-        for (label, function) in own {
+        for (label, function) in functions {
             name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
-            if methods.iter().any(|(known, _)| *known == label) {
+            if methods.iter().any(|(other, _)| *other == label) {
                 return Err(Failure::input(format!(
                     "own: {label:?}: another method has this label; give it one of its own"
                 )));
@@ -71,9 +71,9 @@ pub fn fit(
             methods.push((label, Box::new(PyIdentifier(function))));
         }
         let mut warnings = Warnings::default();
-        warnings.extend(told.iter().cloned().chain(repetitions(&records, &others)));
-        let done = work::fit::fit([&records, &others], &methods, &priors, true, warnings)?;
-        let warnings = sentences(done.document.of_answer().filter(|warning| !told.contains(warning)));
+        warnings.extend(reading.iter().cloned().chain(repetitions(&records, &validation)));
+        let done = work::fit::fit([&records, &validation], &methods, &priors, true, warnings)?;
+        let warnings = sentences(done.document.of_answer().filter(|warning| !reading.contains(warning)));
         Ok(PyFit {
             text: documents::text(&done.document).map_err(Failure::work)?,
             warnings,

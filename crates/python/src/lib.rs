@@ -1,25 +1,25 @@
-//! Kempf for Python: the compiled half of the package `kempf`. It hands records to [`study::work`], as the command line
-//! does, and gives back the same documents; words, tables and figures are made in Python, in `python/kempf`.
+//! Kempf for Python: the compiled part of the package `kempf`. It passes records to [`study::work`], as the command
+//! line does, and returns the same documents. Texts, tables and figures are made in Python, in `python/kempf`.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | records | `record` |
-//! | what is asked of them | `find`, `fit`, `trace`, `predict`, `bench` |
+//! | tasks on records | `find`, `fit`, `trace`, `predict`, `bench` |
 //! | models of earlier trials | `earlier` |
-//! | functions of Python as methods | `own` |
+//! | functions of Python as methods | `python_method` |
 //! | scenarios | `scene`, `simulate`, `run` |
-//! | work that is waited for, and Ctrl-C | `wait` |
-//! | keywords as options of the command line | `asked` |
+//! | background work, and Ctrl-C | `wait` |
+//! | keywords as options of the command line | `options` |
 //! | exceptions | `raise` |
 
-mod asked;
 mod bench;
 mod curve;
 mod earlier;
 mod find;
 mod fit;
-mod own;
+mod options;
 mod predict;
+mod python_method;
 mod raise;
 mod record;
 mod run;

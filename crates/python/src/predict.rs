@@ -1,4 +1,4 @@
-//! `predict`: what an identified ship will do.
+//! `predict`: predictions of manoeuvres by an identified ship.
 
 use std::path::{Path, PathBuf};
 
@@ -9,27 +9,28 @@ use study::documents;
 use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
-use crate::asked::request;
 use crate::earlier::{ModelText, earlier};
+use crate::options::request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
-/// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
-/// `words` are options of the command line, `priors` models of earlier trials.
+/// Document of a prediction, and warnings. `models` are file names, or names with a text; `options` are those of the
+/// command line, `priors` models of earlier trials.
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
     models: Vec<(String, Option<String>)>,
     replay: Vec<Py<PyRecord>>,
-    words: Vec<String>,
+    options: Vec<String>,
     priors: Vec<ModelText>,
 ) -> PyResult<(String, Vec<String>)> {
-    // The document has what reading warned of, as that of the command; Python has been told before.
-    let told: Vec<Warning> = read_warnings(&replay).collect();
+    // The document lists warnings of reading, as on the command line; Python has already issued them.
+    let reading: Vec<Warning> = read_warnings(&replay).collect();
     let records = trials(&replay);
     patiently(py, move || {
         let names = models.iter().map(|(name, _)| name.clone());
-        let mut asked: PredictRequest = request(words.into_iter().chain([String::from("--")]).chain(names).collect())?;
+        let mut asked: PredictRequest =
+            request(options.into_iter().chain([String::from("--")]).chain(names).collect())?;
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
         let mut warnings = Warnings::default();
         let read = |(name, text): &(String, Option<String>)| match text {
@@ -37,12 +38,12 @@ pub fn predict(
             None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
-        warnings.extend(told.iter().cloned());
+        warnings.extend(reading.iter().cloned());
         let earlier = earlier(&priors)?;
         let input =
             PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
-        let warnings = sentences(predicted.warnings.iter().filter(|warning| !told.contains(warning)));
+        let warnings = sentences(predicted.warnings.iter().filter(|warning| !reading.contains(warning)));
         Ok((documents::text(&predicted).map_err(Failure::work)?, warnings))
     })
 }

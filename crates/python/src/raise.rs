@@ -9,16 +9,11 @@ create_exception!(
     kempf,
     KempfError,
     PyValueError,
-    "The input is wrong: a record, a scenario, a model or an option. The message says where, what was found, what was \
+    "The input is wrong: a record, a scenario, a model or an option. The message names the place, the problem, what was \
      expected and what to do."
 );
 create_exception!(kempf, WorkError, PyRuntimeError, "The work could not be done, as when a disk is full.");
-create_exception!(
-    kempf,
-    KempfWarning,
-    PyUserWarning,
-    "Something a person should know of a record or a result; what came out stands all the same."
-);
+create_exception!(kempf, KempfWarning, PyUserWarning, "A remark on a record or a result, which remains valid.");
 
 /// The exception of a failure.
 pub fn raised(failure: Failure) -> PyErr {

@@ -1,4 +1,4 @@
-//! Records: read from files or made of columns, and their columns as arrays.
+//! Records, read from files or built from columns, and their columns as arrays.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use study::records::{expand, file_of, of_log, read_all, source};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
-use crate::asked::request;
+use crate::options::request;
 use crate::raise::raised;
 use crate::wait::patiently;
 
@@ -25,23 +25,23 @@ pub struct PyRecord {
 }
 
 impl PyRecord {
-    /// A record of which there is nothing to say.
+    /// Record without warnings.
     pub fn plain(trial: Trial) -> Self {
         Self { trial, warnings: Vec::new() }
     }
 }
 
-/// What reading some records warned of, in their order.
+/// Warnings of reading records, in order.
 pub fn read_warnings(records: &[Py<PyRecord>]) -> impl Iterator<Item = Warning> {
     records.iter().flat_map(|record| record.get().warnings.clone())
 }
 
-/// Warnings as Python has them.
+/// Texts of warnings.
 pub fn sentences<'a>(warnings: impl IntoIterator<Item = &'a Warning>) -> Vec<String> {
     warnings.into_iter().map(Warning::to_string).collect()
 }
 
-/// The records that Python handed in.
+/// Trials of the records passed from Python.
 pub fn trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
     records.iter().map(|record| record.get().trial.clone()).collect()
 }
@@ -94,7 +94,7 @@ impl PyRecord {
         std::iter::once(TIME_COLUMN.to_owned()).chain(channels.map(Channel::column_name)).chain(unknown).collect()
     }
 
-    /// A column in the unit of its name; `None` where there is none.
+    /// Column in the unit of its name; `None` for a missing one.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> Option<Bound<'py, PyArray1<f64>>> {
         if name == TIME_COLUMN {
             return Some(PyArray1::from_slice(py, self.trial.time()));
@@ -107,13 +107,13 @@ impl PyRecord {
                 Some(PyArray1::from_vec(py, values.collect()))
             }
             None => {
-                let (_, values) = self.trial.unknown().iter().find(|(known, _)| known == name)?;
+                let (_, values) = self.trial.unknown().iter().find(|(column, _)| column == name)?;
                 Some(PyArray1::from_slice(py, values))
             }
         }
     }
 
-    /// The record as the text of a table.
+    /// CSV text of the record.
     fn csv(&self) -> PyResult<String> {
         let mut table = Vec::new();
         trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::work(error)))?;
@@ -121,42 +121,42 @@ impl PyRecord {
     }
 }
 
-/// Reads a record, or all records of a folder; `words` are options of the command line.
+/// Records of a file or of a folder; `options` are those of the command line.
 #[pyfunction]
-pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<PyRecord>> {
+pub fn read(py: Python<'_>, path: PathBuf, options: Vec<String>) -> PyResult<Vec<PyRecord>> {
     patiently(py, move || {
-        let options: ReadingOptions = request(words)?;
-        let one = |file: PathBuf| {
+        let options: ReadingOptions = request(options)?;
+        let record = |file: PathBuf| {
             let mut warnings = Warnings::default();
             let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
             Ok(PyRecord { trial: trials.remove(0), warnings: warnings.ranked() })
         };
-        expand(std::slice::from_ref(&path))?.into_iter().map(one).collect()
+        expand(std::slice::from_ref(&path))?.into_iter().map(record).collect()
     })
 }
 
-/// A column of a table that is no file.
+/// A column passed from Python.
 #[derive(FromPyObject)]
 pub enum PyColumn<'py> {
-    /// Numbers; NaN where there is none.
+    /// Numbers; NaN for a missing one.
     Numbers(PyReadonlyArray1<'py, f64>),
     /// Anything else, such as stamps of date and time.
-    Words(Vec<String>),
+    Texts(Vec<String>),
 }
 
-/// The record that columns make: it is read as a file of them would be.
+/// Record from columns, read like a file of them.
 #[pyfunction]
 pub fn record_of(
     py: Python<'_>,
     name: String,
     columns: Vec<(String, PyColumn<'_>)>,
-    words: Vec<String>,
+    options: Vec<String>,
 ) -> PyResult<PyRecord> {
     let table = table(&columns).map_err(raised)?;
-    patiently(py, move || of_table(&name, &table, &request(words)?, None))
+    patiently(py, move || of_table(&name, &table, &request(options)?, None))
 }
 
-/// The record that the text of a table holds, called `name`, as that of its sidecar describes it.
+/// Record `name` from the text of a table and of its sidecar.
 pub fn of_table(
     name: &str,
     table: &[u8],
@@ -174,7 +174,7 @@ pub fn of_table(
     Ok(PyRecord { trial, warnings: warnings.ranked() })
 }
 
-/// Columns as the text of a table, with as many digits as a number needs.
+/// CSV text of columns, with the digits that reproduce every number.
 fn table(columns: &[(String, PyColumn)]) -> Result<Vec<u8>, Failure> {
     let lengths: Vec<usize> = columns.iter().map(|(_, column)| column.len()).collect();
     let rows = lengths.first().copied().unwrap_or_default();
@@ -203,7 +203,7 @@ impl PyColumn<'_> {
     fn len(&self) -> usize {
         match self {
             Self::Numbers(values) => values.as_array().len(),
-            Self::Words(words) => words.len(),
+            Self::Texts(texts) => texts.len(),
         }
     }
 
@@ -213,7 +213,7 @@ impl PyColumn<'_> {
                 let value = values.as_array()[row];
                 if value.is_nan() { String::new() } else { value.to_string() }
             }
-            Self::Words(words) => words[row].clone(),
+            Self::Texts(texts) => texts[row].clone(),
         }
     }
 }

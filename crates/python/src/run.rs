@@ -19,25 +19,25 @@ use crate::raise::raised;
 use crate::scene::ScenarioInput;
 use crate::wait::Underway;
 
-/// Who watches work that Python waits for.
+/// Observer of background work: progress, messages and requests to stop.
 #[derive(Default)]
 pub struct Watch {
     is_asked: AtomicBool,
     most: AtomicU64,
     done: AtomicU64,
     /// Notes and warnings.
-    said: Mutex<[Vec<String>; 2]>,
+    messages: Mutex<[Vec<String>; 2]>,
     threads: Option<ThreadPool>,
 }
 
 impl Watch {
-    /// Notes and warnings, once.
-    pub fn told(&self) -> [Vec<String>; 2] {
-        std::mem::take(&mut *self.said())
+    /// Notes and warnings since the last call.
+    pub fn take_messages(&self) -> [Vec<String>; 2] {
+        std::mem::take(&mut *self.messages())
     }
 
-    fn said(&self) -> MutexGuard<'_, [Vec<String>; 2]> {
-        self.said.lock().unwrap_or_else(PoisonError::into_inner)
+    fn messages(&self) -> MutexGuard<'_, [Vec<String>; 2]> {
+        self.messages.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -52,11 +52,11 @@ impl Observer for Watch {
     }
 
     fn note(&self, line: &str) {
-        self.said()[0].push(line.to_owned());
+        self.messages()[0].push(line.to_owned());
     }
 
     fn warn(&self, line: &str) {
-        self.said()[1].push(line.to_owned());
+        self.messages()[1].push(line.to_owned());
     }
 
     fn is_asked_to_stop(&self) -> bool {
@@ -68,7 +68,7 @@ impl Observer for Watch {
     }
 }
 
-/// Threads of a study alone.
+/// Thread pool of a study.
 fn pool(count: i64) -> Result<ThreadPool, Failure> {
     if !(1..=MOST_THREADS).contains(&count) {
         return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MOST_THREADS}")));
@@ -77,7 +77,7 @@ fn pool(count: i64) -> Result<ThreadPool, Failure> {
     pool.map_err(|error| Failure::work(format!("failed to start {count} threads: {error}")))
 }
 
-/// Runs what is missing and publishes what is stored; returns the document of the study.
+/// Runs the missing trials of a study and publishes it; returns its document.
 fn study(
     scene: &ScenarioInput,
     out: Option<PathBuf>,
@@ -97,8 +97,8 @@ fn study(
     publish::document(&stored, &summary, &folder)
 }
 
-/// Runs a scenario: its document, what was noted, and the warnings. `progress` is called with the trials that are done
-/// and that there are at most.
+/// Runs a scenario; returns its document, notes and warnings. `progress` is called with the number of finished trials
+/// and the largest number of trials.
 #[pyfunction]
 #[pyo3(signature = (scene, out, threads, seed, restart, progress))]
 pub fn run(
@@ -112,13 +112,13 @@ pub fn run(
 ) -> PyResult<(String, Vec<String>, Vec<String>)> {
     let threads = threads.map(pool).transpose().map_err(raised)?;
     let watch = Arc::new(Watch { threads, ..Watch::default() });
-    let own = Arc::clone(&watch);
-    let text = watched(py, &watch, progress.as_ref(), move || study(&scene, out, seed, restart, &own))?;
-    let [notes, warnings] = watch.told();
+    let observer = Arc::clone(&watch);
+    let text = watched(py, &watch, progress.as_ref(), move || study(&scene, out, seed, restart, &observer))?;
+    let [notes, warnings] = watch.take_messages();
     Ok((text, notes, warnings))
 }
 
-/// Waits for work that is watched; `progress` is called with the steps that are done and that there are at most.
+/// Waits for observed work; `progress` is called with the number of finished steps and the largest number of steps.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
     watch: &Watch,
@@ -126,11 +126,11 @@ pub fn watched<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     let mut underway = Underway::start(work)?;
-    let mut told = None;
+    let mut last = None;
     loop {
         let done = underway.wait(py);
         let now = (watch.done.load(Ordering::Relaxed), watch.most.load(Ordering::Relaxed));
-        if let Some(progress) = progress.filter(|_| now.1 > 0 && told.replace(now) != Some(now))
+        if let Some(progress) = progress.filter(|_| now.1 > 0 && last.replace(now) != Some(now))
             && let Err(raised) = progress.call1(py, now)
         {
             return Err(stopped(py, watch, underway, raised));
@@ -144,8 +144,8 @@ pub fn watched<T: Send + 'static>(
     }
 }
 
-/// Asks a study to stop and waits until its rows are kept, unless there is another signal. An interruption says what
-/// was kept.
+/// Requests a stop and waits until the rows are stored, or for a second signal. The message of the interruption says
+/// what was stored.
 fn stopped<T: Send + 'static>(py: Python<'_>, watch: &Watch, mut underway: Underway<T>, raised: PyErr) -> PyErr {
     watch.is_asked.store(true, Ordering::Relaxed);
     loop {

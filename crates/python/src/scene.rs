@@ -1,4 +1,4 @@
-//! Scenarios: files, texts and dictionaries.
+//! Scenarios from files, texts and dictionaries.
 
 use std::path::{Path, PathBuf};
 
@@ -9,32 +9,32 @@ use serde_json::Value;
 
 use crate::raise::raised;
 
-/// A scenario as Python hands it in.
+/// A scenario as passed from Python.
 #[derive(FromPyObject)]
 pub struct ScenarioInput {
-    /// The file, or what messages call the text.
+    /// Path of the file, or name of the text in messages.
     #[pyo3(item)]
     path: PathBuf,
-    /// Its text; `None` where it is to be read from the file.
+    /// Text; `None` for a file.
     #[pyo3(item)]
     text: Option<String>,
 }
 
 impl ScenarioInput {
-    /// Reads it. Fails as the command line does.
+    /// Resolves the scenario; fails like the command line.
     pub fn read(&self, seed: Option<u64>) -> Result<Scenario, Failure> {
         let Some(text) = &self.text else { return Scenario::read(&self.path, seed) };
         let name = self.path.file_stem().unwrap_or(Path::new("scenario").as_os_str());
         Scenario::parse(&self.path, &name.to_string_lossy(), text.clone(), seed)
     }
 
-    /// The file, or what messages call the text.
+    /// Path of the file, or name of the text in messages.
     pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-/// The TOML of a document, which is given as JSON.
+/// TOML text of a JSON document.
 #[pyfunction]
 pub fn toml_of(json: &str) -> PyResult<String> {
     let value: Value = serde_json::from_str(json).map_err(|error| raised(Failure::input(error)))?;

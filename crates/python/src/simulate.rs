@@ -1,4 +1,4 @@
-//! `simulate`: trials of a scenario as records with their truth.
+//! `simulate`: trials of a scenario, as records with their truth.
 
 use campaign::answers::record_name;
 use campaign::failure::Failure;
@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use study::options::{Replicates, SimulateRequest};
 use study::work::simulate::{RecordFiles, records, tasks};
 
-use crate::asked::request;
+use crate::options::request;
 use crate::record::{PyRecord, of_table};
 use crate::scene::ScenarioInput;
 use crate::wait::patiently;
 
-/// The trials that are asked for, each with its truth as JSON. A record is what the command line writes, read again.
+/// Selected trials, each with its truth as JSON. Records pass through the file format, as from the command line.
 #[pyfunction]
 pub fn simulate(
     py: Python<'_>,
@@ -32,7 +32,7 @@ pub fn simulate(
         let trials = tasks(&scenario, &asked)?
             .into_par_iter()
             .map(|task| records(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect());
-        // The first failure in the order of the trials, whichever came first.
+        // The first failure in the order of the trials.
         let trials: Vec<Result<Vec<(PyRecord, String)>, Failure>> = trials.collect();
         Ok(trials.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     })

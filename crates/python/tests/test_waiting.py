@@ -77,7 +77,7 @@ def test_rows_are_the_same_however_often_a_study_was_interrupted(tmp_path, inter
         kempf.run(some, tmp_path / "parts", progress=stop)
     assert not (tmp_path / "parts" / "cells.json").exists()
     parts = kempf.run(some, tmp_path / "parts", threads=1)
-    assert "going on after" in parts.notes[0]
+    assert "resuming after" in parts.notes[0]
     blocks = sorted(path.name for path in whole.rows_path.iterdir())
     assert len(blocks) == 32
     for block in blocks:

@@ -1,10 +1,12 @@
-//! Leaderboards: the scores of one task on measured or on simulated records, method by method. An answer that failed is
-//! worse than any other, whatever is made of it.
+//! Leaderboards: scores of all methods on one task, for the records of one study. A failed answer ranks below any
+//! other.
+//!
+//! Mean ranks follow Friedman (1937), intervals of shares Wilson (1927).
 
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::cases::{BenchCase, BenchTask};
-use crate::benchmark::statistics::{mean, middle_and_high, ranks, ratio};
+use crate::benchmark::statistics::{mean, median_and_p90, ranks, ratio};
 use crate::statistics::{Statistic, grouped, resampled, share};
 
 pub use crate::benchmark::statistics::ScoreFigure;
@@ -19,9 +21,9 @@ pub struct Board {
     pub field: String,
     /// Number of cases.
     pub cases: usize,
-    /// Number of trials or scored records that are drawn for intervals; cases of one are not independent.
+    /// Number of trials or scored records that the bootstrap resamples; cases of one cluster are not independent.
     pub clusters: usize,
-    /// The methods, that with the smallest median first.
+    /// The methods, smallest median first.
     pub standings: Vec<LeaderboardRow>,
 }
 
@@ -35,46 +37,46 @@ pub struct LeaderboardRow {
     pub failed: usize,
     /// Median of the score.
     pub median: ScoreFigure,
-    /// What the score does not exceed in 90 % of the cases.
+    /// 90 % quantile of the score.
     pub high: ScoreFigure,
-    /// Median of the score over that of the reference in the same case; none of the reference itself, and where it
+    /// Median ratio of the score to that of the reference in the same case; none for the reference itself, and where it
     /// takes no part.
     pub ratio: Option<ScoreFigure>,
-    /// WilsonShare of cases in which the score is smaller than that of the reference, equal ones counted half.
+    /// Share of cases in which the score is smaller than that of the reference; ties count half.
     pub better: Option<ScoreFigure>,
     /// Mean rank among all methods.
     pub rank: f64,
-    /// How often 95 % intervals of K and of T hold the truth; none without intervals.
+    /// Coverage of the 95 % intervals of K and of T; none without intervals.
     pub holds: Option<[WilsonShare; 2]>,
 }
 
-/// A share with Wilson's 95 % interval.
+/// A share with its 95 % interval (Wilson 1927).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WilsonShare {
-    /// How many.
+    /// Number of successes.
     pub count: usize,
-    /// Of how many.
+    /// Number of cases.
     pub of: usize,
     /// The interval.
     pub ci95: [f64; 2],
 }
 
 impl WilsonShare {
-    /// A share; `None` of nothing.
+    /// Share of `count` in `of`; `None` without cases.
     pub fn new(count: usize, of: usize) -> Option<Self> {
         let Statistic { ci95, .. } = share(count as u64, of as u64)?;
         Some(Self { count, of, ci95: ci95? })
     }
 }
 
-/// The boards of all tasks that have a score.
+/// Leaderboards of all tasks that have a score, one per task and study.
 pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
     let scored = by_field(cases, |task| task.score().is_some());
-    scored.into_iter().map(|((task, field), own)| board(task, field, &own, methods, reference)).collect()
+    scored.into_iter().map(|((task, field), group)| board(task, field, &group, methods, reference)).collect()
 }
 
-/// The cases of some tasks, field by field.
+/// Cases of the selected tasks, grouped by task and study.
 pub(super) fn by_field(
     cases: &[BenchCase],
     is_wanted: impl Fn(BenchTask) -> bool,
@@ -82,33 +84,33 @@ pub(super) fn by_field(
     grouped(cases.iter().filter(|case| is_wanted(case.task)), |case| (case.task, case.field.as_str()))
 }
 
-/// Scores of some cases.
+/// Scores of a set of cases.
 pub(super) struct Scores {
-    /// Cases that are drawn together, as their places.
+    /// Clusters of the bootstrap, as case indices.
     pub clusters: Vec<Vec<usize>>,
-    /// Methods that were asked in all cases, and their scores case by case.
+    /// Methods with an answer to every case, and their scores by case.
     pub methods: Vec<(String, Vec<f64>)>,
-    /// Ranks of these methods case by case.
+    /// Ranks of these methods, by case.
     pub ranks: Vec<Vec<f64>>,
 }
 
 impl Scores {
     pub(super) fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
         let of_method = |method: &String| {
-            let own: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
-            Some((method.clone(), own?))
+            let scores: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
+            Some((method.clone(), scores?))
         };
         let methods: Vec<(String, Vec<f64>)> = methods.iter().filter_map(of_method).collect();
-        let of_case = |case: usize| ranks(&methods.iter().map(|(_, own)| own[case]).collect::<Vec<f64>>());
+        let of_case = |case: usize| ranks(&methods.iter().map(|(_, scores)| scores[case]).collect::<Vec<f64>>());
         let ranks = (0..cases.len()).map(of_case).collect();
         let clusters = grouped(0..cases.len(), |&place| cases[place].cluster());
         Self { clusters: clusters.into_iter().map(|(_, places)| places).collect(), methods, ranks }
     }
 
-    /// Two figures of all cases, with intervals.
-    fn figures(&self, of: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
+    /// Two statistics of all cases, with intervals of the cluster bootstrap.
+    fn figures(&self, statistic: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
         let whole: Vec<usize> = (0..self.ranks.len()).collect();
-        let (values, drawn) = (of(&whole), resampled(&self.clusters, &of));
+        let (values, drawn) = (statistic(&whole), resampled(&self.clusters, &statistic));
         [0, 1]
             .map(|k| ScoreFigure::new(values[k], self.clusters.len(), drawn.iter().map(|figures| figures[k]).collect()))
     }
@@ -117,12 +119,12 @@ impl Scores {
 fn board(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
     let scores = Scores::of(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
-    let row = |(place, (method, own)): (usize, &(String, Vec<f64>))| {
-        let [median, high] = scores.figures(|cases| middle_and_high(cases.iter().map(|&case| own[case]).collect()));
+    let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {
+        let [median, high] = scores.figures(|cases| median_and_p90(cases.iter().map(|&case| values[case]).collect()));
         let paired = other.filter(|_| method != reference).map(|other| {
             scores.figures(|cases| {
-                let median = middle_and_high(cases.iter().map(|&case| ratio(own[case], other[case])).collect())[0];
-                let smaller = cases.iter().map(|&case| match own[case].total_cmp(&other[case]) {
+                let median = median_and_p90(cases.iter().map(|&case| ratio(values[case], other[case])).collect())[0];
+                let smaller = cases.iter().map(|&case| match values[case].total_cmp(&other[case]) {
                     std::cmp::Ordering::Less => 1.0,
                     std::cmp::Ordering::Equal => 0.5,
                     std::cmp::Ordering::Greater => 0.0,
@@ -132,26 +134,26 @@ fn board(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String],
         });
         LeaderboardRow {
             method: method.clone(),
-            failed: own.iter().filter(|score| score.is_infinite()).count(),
+            failed: values.iter().filter(|score| score.is_infinite()).count(),
             median,
             high,
             ratio: paired.map(|[ratio, _]| ratio),
             better: paired.map(|[_, better]| better),
-            rank: mean(scores.ranks.iter().map(|own| own[place])),
+            rank: mean(scores.ranks.iter().map(|ranks| ranks[place])),
             holds: holds(cases, method),
         }
     };
     let mut standings: Vec<LeaderboardRow> = scores.methods.iter().enumerate().map(row).collect();
-    standings.sort_by(|one, other| one.median.order(&other.median).then(one.high.order(&other.high)));
+    standings.sort_by(|a, b| a.median.order(&b.median).then(a.high.order(&b.high)));
     Board { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
-/// How often the intervals of a method hold K and T.
+/// Coverage of the intervals of a method, for K and T.
 fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.holds).collect();
-    let of = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
-    Some([of(0)?, of(1)?])
+    let coverage = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
+    Some([coverage(0)?, coverage(1)?])
 }
 
 /// The scores of one set.
@@ -163,21 +165,21 @@ pub struct SetLine {
     pub set: String,
     /// Number of cases.
     pub cases: usize,
-    /// Median and failures of every method; none of one that takes no part.
+    /// Median and failures of every method; none for a method that takes no part.
     pub methods: Vec<Option<(f64, usize)>>,
 }
 
-/// Medians set by set.
+/// Medians of all methods, by task and set.
 pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
     let scored = cases.iter().filter(|case| case.task.score().is_some());
-    let line = |((task, set), own): ((BenchTask, &str), Vec<&BenchCase>)| {
-        let scores = Scores::of(&own, methods);
-        let of = |method: &String| {
-            let (_, own) = scores.methods.iter().find(|(known, _)| known == method)?;
-            let failed = own.iter().filter(|score| score.is_infinite()).count();
-            Some((middle_and_high(own.clone())[0], failed))
+    let line = |((task, set), group): ((BenchTask, &str), Vec<&BenchCase>)| {
+        let scores = Scores::of(&group, methods);
+        let figures = |method: &String| {
+            let (_, values) = scores.methods.iter().find(|(name, _)| name == method)?;
+            let failed = values.iter().filter(|score| score.is_infinite()).count();
+            Some((median_and_p90(values.clone())[0], failed))
         };
-        SetLine { task, set: set.to_owned(), cases: own.len(), methods: methods.iter().map(of).collect() }
+        SetLine { task, set: set.to_owned(), cases: group.len(), methods: methods.iter().map(figures).collect() }
     };
     grouped(scored, |case| (case.task, case.set.as_str())).into_iter().map(line).collect()
 }

@@ -1,4 +1,4 @@
-//! What was asked and what was answered: one case for every question on every trial, with the answers of all methods.
+//! Cases of the benchmark: one per task and trial, with the answers of all methods.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::benchmark::statistics::ratio;
 pub enum BenchTask {
     /// Fit a record and replay its rudder on it.
     Identify,
-    /// Find K and T of a ship that is first order.
+    /// Identify K and T of a first-order ship.
     Indices,
     /// Fit a zig-zag to one side first, replay one to the other.
     OtherSide,
@@ -39,7 +39,7 @@ impl BenchTask {
         }
     }
 
-    /// What it is, in a few words.
+    /// Short title for tables and pages.
     pub fn title(self) -> &'static str {
         match self {
             Self::Identify => "replay the fitted record",
@@ -51,7 +51,7 @@ impl BenchTask {
         }
     }
 
-    /// What the score is; `None` where an answer is right or wrong.
+    /// Name and unit of the score; `None` where an answer is right or wrong.
     pub fn score(self) -> Option<&'static str> {
         match self {
             Self::Indices => Some("larger error of K and T [%]"),
@@ -61,13 +61,13 @@ impl BenchTask {
     }
 }
 
-/// One question with all answers.
+/// One task on one trial, with the answers of all methods.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchCase {
-    /// What was asked.
+    /// The task.
     pub task: BenchTask,
-    /// What the case is counted with: the study.
+    /// The study that the case is counted with.
     pub field: String,
     /// Name of the set.
     pub set: String,
@@ -76,10 +76,10 @@ pub struct BenchCase {
     pub trial: Option<u64>,
     /// Names of the records that were fitted together.
     pub fitted: Vec<String>,
-    /// Name of the record that was scored; none where the ship was asked about.
+    /// Name of the scored record; none for tasks about the ship itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scored: Option<String>,
-    /// The effect that the ship lacks, where it was asked for; none where it lacks nothing.
+    /// The effect to be named; none where the first-order model lacks nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
     /// The answers, in the order of methods.
@@ -92,46 +92,46 @@ pub struct BenchCase {
 pub struct CaseAnswer {
     /// Label of the method.
     pub method: String,
-    /// Heading error, deg, or the larger error of K and T, %; none where there is none, or where the answer is right or
+    /// Heading error, deg, or the larger error of K and T, %; none for a failed answer, and where an answer is right or
     /// wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub score: Option<f64>,
-    /// K and T found over the true ones, less one, %.
+    /// Relative errors of K and T, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors_percent: Option<[f64; 2]>,
-    /// Whether the 95 % intervals of K and T hold the truth, where there are intervals.
+    /// Whether the 95 % intervals contain K and T, where there are intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<[bool; 2]>,
-    /// What was made of the effect.
+    /// Correctness of the effects named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub naming: Option<Naming>,
-    /// Effects that were named, each followed by those the records cannot tell from it.
+    /// Effects named, each followed by its aliases: effects that the records cannot distinguish from it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub named: Vec<Vec<String>>,
-    /// Why there is no answer.
+    /// Kind of failure of a missing answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
-/// A set.
+/// A set of trials: one cell of a study.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Present {
-    /// What it is called.
+pub struct BenchSet {
+    /// Name of the set.
     pub name: String,
     /// Number of its trials.
     pub trials: u64,
     /// Its records.
-    pub records: Vec<PresentRecord>,
+    pub records: Vec<BenchRecord>,
 }
 
 /// A record of a set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PresentRecord {
-    /// What it is called.
+pub struct BenchRecord {
+    /// Name of the record.
     pub name: String,
-    /// What the ship did.
+    /// Manoeuvre and angles.
     pub manoeuvre: String,
     /// SHA-256 of its file; none of a simulated record.
     pub sha256: Option<String>,
@@ -149,27 +149,27 @@ pub struct Skipped {
     pub reason: String,
 }
 
-/// What a method that names effects said.
+/// Correctness of the effects that a method named, against the one effect that is missing or none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Naming {
-    /// What is missing, and nothing else; of a ship that lacks nothing, nothing.
+    /// The missing effect alone; nothing where nothing is missing.
     Right,
-    /// A group that holds what is missing, under the name of another, and nothing else.
+    /// One group whose aliases contain the missing effect.
     Alias,
-    /// What is missing or a group that holds it, and something else.
+    /// The missing effect or its group, and further effects.
     More,
-    /// Something else.
+    /// Other effects only.
     Wrong,
-    /// Nothing, though something is missing.
+    /// No effect, although one is missing.
     Nothing,
 }
 
 impl Naming {
-    /// All of them, the best first.
+    /// All values, best first.
     pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
 
-    /// In words.
+    /// Label in tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -180,7 +180,7 @@ impl Naming {
         }
     }
 
-    /// What the groups that were named are worth where one effect is missing, or none.
+    /// Correctness of the groups named where `missing` is the one missing effect, or none.
     pub fn of(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
         let holder = named.iter().find(|group| group.iter().any(|id| id == missing));
@@ -195,27 +195,26 @@ impl Naming {
 }
 
 impl BenchCase {
-    /// What is drawn together when intervals are made: all cases of one simulated trial, or all in which one measured
-    /// record is scored.
+    /// Cluster of the bootstrap: all cases of one simulated trial, or all in which one measured record is scored.
     pub fn cluster(&self) -> (&str, String) {
-        let own = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
-        (&self.set, own)
+        let unit = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
+        (&self.set, unit)
     }
 
-    /// The score of a method over that of another; `None` where one of them was not asked.
+    /// Ratio of the scores of two methods; `None` where one of them takes no part.
     pub fn ratio_of(&self, method: &str, reference: &str) -> Option<f64> {
         Some(ratio(self.score_of(method)?, self.score_of(reference)?))
     }
 
-    /// The score of a method: worse than any where it has no answer, `None` where it was not asked.
+    /// Score of a method: infinite for a failed answer, `None` where it takes no part.
     pub fn score_of(&self, method: &str) -> Option<f64> {
         let answer = self.answers.iter().find(|answer| answer.method == method)?;
         Some(answer.score.unwrap_or(f64::INFINITY))
     }
 }
 
-/// A number as it is stored: six digits. Boards are made of stored numbers, so that anybody finds the same.
-pub fn stored(value: f64) -> f64 {
+/// A number as stored, with six digits. Leaderboards are computed from stored numbers, so that anybody can repeat them.
+pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("it was written as a number")
 }
 
@@ -228,7 +227,7 @@ mod tests {
         let groups = |named: &[&[&str]]| -> Vec<Vec<String>> {
             named.iter().map(|group| group.iter().map(|id| (*id).to_owned()).collect()).collect()
         };
-        for (missing, named, said) in [
+        for (missing, named, naming) in [
             (Some("a"), groups(&[&["a"]]), Naming::Right),
             (Some("a"), groups(&[&["a", "b"]]), Naming::Right),
             (Some("a"), groups(&[&["b", "a"]]), Naming::Alias),
@@ -239,12 +238,12 @@ mod tests {
             (None, groups(&[]), Naming::Right),
             (None, groups(&[&["a"]]), Naming::Wrong),
         ] {
-            assert_eq!(Naming::of(missing, &named), said, "{missing:?} {named:?}");
+            assert_eq!(Naming::of(missing, &named), naming, "{missing:?} {named:?}");
         }
     }
 
     #[test]
     fn stored_numbers_have_six_digits() {
-        assert_eq!([1.234_567_89, -0.0123456789, 0.0].map(stored), [1.23457, -0.0123457, 0.0]);
+        assert_eq!([1.234_567_89, -0.0123456789, 0.0].map(rounded), [1.23457, -0.0123457, 0.0]);
     }
 }

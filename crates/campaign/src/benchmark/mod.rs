@@ -1,12 +1,12 @@
 //! A benchmark of methods that identify ships from zig-zag trials.
 //!
-//! It is a few studies, [`shipped`] with the program: simulated ships, and measured records that are known by their
-//! SHA-256. What their rows ask and answer is scored, and methods are compared case by case.
+//! It consists of a few studies, [`shipped`] with the program: simulated ships, and measured records identified by
+//! their SHA-256. The rows of these studies are scored, and methods are compared case by case.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the studies of the program | [`shipped`] |
-//! | what is asked and answered | `questions`, [`cases`] |
+//! | tasks and answers | `questions`, [`cases`] |
 //! | leaderboards | [`board`], [`naming`], [`overall`], `statistics` |
 //! | the whole result, as it is stored | [`results`] |
 

@@ -1,5 +1,5 @@
-//! One ranking over all predictions: the mean over their boards of the mean rank of a method. It hides by how much a
-//! method is better, on which ships and at what.
+//! Overall ranking: mean over the leaderboards of predictions of the mean rank of each method (Friedman 1937). It does
+//! not show by how much a method is better, on which ships or at which task.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,18 +12,18 @@ use crate::statistics::{grouped, resampled_by_set};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OverallRanking {
-    /// The boards it is made of, each counting the same.
+    /// The leaderboards it averages, with equal weights.
     pub boards: Vec<(BenchTask, String)>,
-    /// Mean ranks, the best first. Intervals come from drawing sets, and their records.
+    /// Mean ranks, best first. Intervals by resampling sets and clusters within them.
     pub standings: Vec<(String, ScoreFigure)>,
 }
 
-/// Ranks methods over the tasks in which a record is predicted that was not fitted; `None` without such a task.
+/// Ranking over the tasks that predict a record outside the fit; `None` without such a task.
 pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
     let fields = by_field(cases, is_prediction);
     let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
-    // Every method is asked for every prediction.
+    // Every method takes part in every prediction.
     let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::of(cases, methods)).collect();
     let first = of_boards.first()?;
     let clusters = of_boards.iter().map(|board| board.clusters).sum();
@@ -34,11 +34,11 @@ pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking
         (method.clone(), ScoreFigure::new(value, clusters, drawn))
     };
     let mut standings: Vec<(String, ScoreFigure)> = first.methods.iter().enumerate().map(standing).collect();
-    standings.sort_by(|(_, one), (_, other)| one.order(other));
+    standings.sort_by(|(_, a), (_, b)| a.order(b));
     Some(OverallRanking { boards, standings })
 }
 
-/// Mean ranks of all methods on one board, and of many draws of its sets.
+/// Mean ranks of all methods on one leaderboard: of all cases, and of every resample of its sets.
 struct MeanRanks {
     methods: Vec<String>,
     clusters: usize,

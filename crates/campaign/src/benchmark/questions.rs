@@ -1,8 +1,8 @@
-//! What the rows of a study ask and answer: a case for every task of every trial.
+//! Cases from the rows of a study: one for every task of every trial.
 //!
-//! Tasks follow from the manoeuvres. A record that was fitted alone is replayed; a judging zig-zag is of the other side
-//! or of another amplitude, whatever else judges is a turn. K and T are asked of ships that are first order. In a study
-//! in which ships lack effects of the list, these are to be named, and nothing else is asked.
+//! The manoeuvres determine the tasks. A record that was fitted alone is replayed. A zig-zag as validation record is of
+//! the other side or of another amplitude; any other validation record is a turn. K and T are scored for first-order
+//! ships. In a study in which ships lack listed effects, the only task is to name them.
 
 use std::collections::HashSet;
 
@@ -10,24 +10,24 @@ use simulate::Manoeuvre;
 use trial::manoeuvre::whole_deg;
 use trial::{Origin, Side, Trial, ZigZag};
 
-use crate::benchmark::cases::{BenchCase, BenchTask, CaseAnswer, Naming, Present, PresentRecord, Skipped, stored};
-use crate::engine::is_made;
+use crate::benchmark::cases::{BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, Skipped, rounded};
+use crate::engine::is_method_failure;
 use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::records::RecordSet;
 use crate::scenario::{DesignCell, HULL, Method, Procedure, Scenario};
 use crate::statistics::distinct;
 
-/// Cases of a study, and what was not there.
+/// Cases of a study, its sets, and what was skipped.
 pub(super) struct StudyCases {
     pub cases: Vec<BenchCase>,
-    pub sets: Vec<Present>,
+    pub sets: Vec<BenchSet>,
     pub skipped: Vec<Skipped>,
 }
 
-/// A record as the tasks see it.
+/// A record with the steering that decides its task.
 struct SteeredRecord {
-    record: PresentRecord,
-    /// Of a zig-zag the nominal angles, deg, where they are known, and the side of its first execute.
+    record: BenchRecord,
+    /// For a zig-zag: nominal rudder and heading angle, deg, where known, and the side of the first execute.
     zig_zag: Option<(Option<[f64; 2]>, Side)>,
 }
 
@@ -44,7 +44,7 @@ impl SteeredRecord {
             None => turn,
         };
         let name = name.map_or_else(|| manoeuvre.clone(), str::to_owned);
-        Self { record: PresentRecord { name, manoeuvre, sha256 }, zig_zag }
+        Self { record: BenchRecord { name, manoeuvre, sha256 }, zig_zag }
     }
 
     fn simulated(manoeuvre: &Manoeuvre) -> Self {
@@ -69,27 +69,27 @@ impl SteeredRecord {
     }
 }
 
-/// The task of predicting a record from others; `None` where it repeats one of them, or turns are fitted.
+/// Task of predicting a record from others; `None` where it repeats one of them, or where turns are fitted.
 fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchTask> {
-    let fitted: Vec<_> = fitted.iter().map(|own| own.zig_zag).collect::<Option<_>>()?;
+    let fitted: Vec<_> = fitted.iter().map(|record| record.zig_zag).collect::<Option<_>>()?;
     let Some((angles, first)) = judge.zig_zag else { return Some(BenchTask::Circle) };
-    if fitted.iter().all(|own| own.0 == angles && own.1 != first) {
+    if fitted.iter().all(|zig_zag| zig_zag.0 == angles && zig_zag.1 != first) {
         return Some(BenchTask::OtherSide);
     }
-    fitted.iter().all(|own| own.0 != angles).then_some(BenchTask::OtherAmplitude)
+    fitted.iter().all(|zig_zag| zig_zag.0 != angles).then_some(BenchTask::OtherAmplitude)
 }
 
-/// What a study asks in a cell.
+/// Tasks of one cell.
 struct CellQuestions {
     set: String,
-    /// The records, in order: those of the set, or of a simulated trial the fitted ones and the one that judges.
+    /// Records of the set; for simulated trials the fitted ones and then the validation record.
     records: Vec<SteeredRecord>,
     /// Number of fitted records of a simulated trial.
     fitted: usize,
     is_simulated: bool,
     /// Whether K and T are known.
     has_indices: bool,
-    /// What the ship lacks, where it is to be named.
+    /// The missing effect or none, where it is to be named.
     missing: Option<Option<String>>,
 }
 
@@ -114,12 +114,12 @@ impl CellQuestions {
         }
     }
 
-    /// The fitted records of a trial, and the one that judges.
+    /// Fitted records of a trial, and its validation record.
     fn of_trial(&self, set: Option<&RecordSet>, replicate: u64) -> (Vec<&SteeredRecord>, Option<&SteeredRecord>) {
-        match set.map(|set| &set.questions[replicate as usize]) {
-            Some(question) => {
-                let fitted = question.fitted.iter().map(|&place| &self.records[place]).collect();
-                (fitted, question.judge.map(|place| &self.records[place]))
+        match set.map(|set| &set.splits[replicate as usize]) {
+            Some(split) => {
+                let fitted = split.fitted.iter().map(|&place| &self.records[place]).collect();
+                (fitted, split.judge.map(|place| &self.records[place]))
             }
             None => (self.records[..self.fitted].iter().collect(), self.records.get(self.fitted)),
         }
@@ -138,7 +138,7 @@ impl CellQuestions {
     }
 }
 
-/// The cases of a study with these rows, which are in their order.
+/// Cases of a study with these rows, which are in order.
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     let lacks = |cell: &DesignCell| cell.missing().iter().any(|id| id != HULL);
     let is_of_names = scenario.cells.iter().any(lacks);
@@ -148,16 +148,16 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     for rows in rows.chunk_by(|row, next| (row.cell, row.replicate) == (next.cell, next.replicate)) {
         let (place, replicate) = (rows[0].cell as usize, rows[0].replicate);
         let (cell, questions) = (&scenario.cells[place], &cells[place]);
-        if let Some(reason) = rows[0].failure.as_deref().filter(|failure| !is_made(failure)) {
+        if let Some(reason) = rows[0].failure.as_deref().filter(|failure| !is_method_failure(failure)) {
             let record = format!("trial {replicate}");
             skipped.push(Skipped { set: questions.set.clone(), record, reason: reason.to_owned() });
             continue;
         }
         let (fitted, judge) = questions.of_trial(cell.record_set(), replicate);
-        let fitted_names: Vec<String> = fitted.iter().map(|own| own.record.name.clone()).collect();
+        let fitted_names: Vec<String> = fitted.iter().map(|steered| steered.record.name.clone()).collect();
         for (task, scored) in questions.tasks(&fitted, judge) {
             let trial = questions.is_simulated.then_some(replicate);
-            // A record is fitted for each that judges it, and asked about itself once.
+            // A fit recurs with every validation record; its own replay is scored once.
             if !asked.insert((questions.set.clone(), task, trial, fitted_names.clone(), scored.clone())) {
                 continue;
             }
@@ -176,13 +176,13 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
         }
     }
     cases.retain(|case| !case.answers.is_empty());
-    StudyCases { cases, sets: present(scenario, cells), skipped }
+    StudyCases { cases, sets: bench_sets(scenario, cells), skipped }
 }
 
-/// Records that are not there.
+/// Records that are absent.
 fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
-    let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, own)| Some((cell.record_set()?, &own.set)));
-    let of = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
+    let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
+    let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
         let skipped = |(record, reason): &(String, String)| Skipped {
             set: set.clone(),
             record: record.clone(),
@@ -190,27 +190,27 @@ fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
         };
         records.absent.iter().map(skipped).collect()
     };
-    distinct(sets.flat_map(of))
+    distinct(sets.flat_map(of_set))
 }
 
 /// The sets of a study with their records.
-fn present(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<Present> {
-    let mut sets: Vec<Present> = Vec::new();
+fn bench_sets(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<BenchSet> {
+    let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
         let trials = scenario.trials_of(place);
-        let records = cell.records.into_iter().map(|own| own.record);
+        let records = cell.records.into_iter().map(|steered| steered.record);
         match sets.iter_mut().find(|set| set.name == cell.set) {
             Some(set) => {
                 set.trials += trials;
                 set.records = distinct(set.records.drain(..).chain(records));
             }
-            None => sets.push(Present { name: cell.set, trials, records: records.collect() }),
+            None => sets.push(BenchSet { name: cell.set, trials, records: records.collect() }),
         }
     }
     sets
 }
 
-/// What a row answers to a task; `None` where its method takes no part.
+/// Answer of a row to a task; `None` where its method takes no part.
 fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str>) -> Option<CaseAnswer> {
     let takes_part = match task {
         BenchTask::Indices => !matches!(method.procedure, Procedure::StraightOn),
@@ -219,13 +219,13 @@ fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str
     };
     let blank = || CaseAnswer { method: method.label.clone(), ..CaseAnswer::default() };
     let answered = match task {
-        BenchTask::Name => row.traced.as_deref().map(|said| {
-            let named = named(said);
+        BenchTask::Name => row.traced.as_deref().map(|trace| {
+            let named = named(trace);
             CaseAnswer { naming: Some(Naming::of(missing, &named)), named, ..blank() }
         }),
-        BenchTask::Indices => indices(row).map(|own| CaseAnswer { method: method.label.clone(), ..own }),
-        BenchTask::Identify => row.heading_rmse_deg.map(|error| CaseAnswer { score: Some(stored(error)), ..blank() }),
-        _ => row.validation_rmse_deg.map(|error| CaseAnswer { score: Some(stored(error)), ..blank() }),
+        BenchTask::Indices => indices(row).map(|answer| CaseAnswer { method: method.label.clone(), ..answer }),
+        BenchTask::Identify => row.heading_rmse_deg.map(|error| CaseAnswer { score: Some(rounded(error)), ..blank() }),
+        _ => row.validation_rmse_deg.map(|error| CaseAnswer { score: Some(rounded(error)), ..blank() }),
     };
     let failed = || {
         let failure = row.failure.as_deref().unwrap_or("not-finite");
@@ -234,16 +234,16 @@ fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str
     takes_part.then(|| answered.filter(|_| row.failure.is_none()).unwrap_or_else(failed))
 }
 
-/// The effects that a trace named, each followed by those that the record cannot tell from it.
-fn named(said: &TraceAnswer) -> Vec<Vec<String>> {
-    let group = |own: &NamedEffect| std::iter::once(&own.id).chain(&own.aliases).map(|id| id.to_string()).collect();
-    said.named.iter().map(group).collect()
+/// Effects named by a trace, each followed by its aliases.
+fn named(trace: &TraceAnswer) -> Vec<Vec<String>> {
+    let group = |term: &NamedEffect| std::iter::once(&term.id).chain(&term.aliases).map(|id| id.to_string()).collect();
+    trace.named.iter().map(group).collect()
 }
 
-/// Errors of K and T of a ship that is first order.
+/// Relative errors of K and T of a first-order ship, %, and whether the intervals contain the truth.
 fn indices(row: &StudyRow) -> Option<CaseAnswer> {
     let [k, t, _] = row.errors();
-    let errors = [k?, t?].map(|error| stored(100.0 * error));
+    let errors = [k?, t?].map(|error| rounded(100.0 * error));
     let [true_k, true_t] = row.truth();
     let holds = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
     let holds = holds(row.k_ci95_per_s, true_k).zip(holds(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);

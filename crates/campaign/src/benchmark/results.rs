@@ -1,9 +1,9 @@
-//! The result of a benchmark, as it is stored in `bench.json`. Nothing in it depends on clock, machine or threads.
+//! `bench.json`, the result of a benchmark. It depends on neither clock, machine nor number of threads.
 
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
-use crate::benchmark::cases::{BenchCase, BenchTask, Present, Skipped};
+use crate::benchmark::cases::{BenchCase, BenchSet, BenchTask, Skipped};
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
 use crate::benchmark::questions;
@@ -20,27 +20,27 @@ pub const SCHEMA: &str = "bench/2";
 pub struct BenchDocument {
     /// Version of the file.
     pub schema: String,
-    /// The studies it is made of.
+    /// The studies of the benchmark.
     pub studies: Vec<StudyFacts>,
     /// Version of the program.
     pub program: String,
-    /// The method that others are compared with: the first one.
+    /// The reference method: the first one.
     pub reference: String,
     /// All methods, in order.
     pub methods: Vec<String>,
-    /// One line on each.
+    /// One-line summary of each method.
     pub summaries: Vec<String>,
     /// The sets.
-    pub sets: Vec<Present>,
-    /// Records that were not there, and trials that could not be made.
+    pub sets: Vec<BenchSet>,
+    /// Absent records, and trials that could not be simulated.
     pub skipped: Vec<Skipped>,
     /// Leaderboards.
     pub boards: Vec<Board>,
-    /// What was said of missing effects.
+    /// Counts of correct and wrong effect names.
     pub naming: Vec<NamingLine>,
     /// The ranking over all predictions.
     pub overall: Option<OverallRanking>,
-    /// Every question with every answer.
+    /// Every case with every answer.
     pub cases: Vec<BenchCase>,
 }
 
@@ -50,19 +50,18 @@ pub struct BenchDocument {
 pub struct StudyFacts {
     /// Name of its scenario.
     pub name: String,
-    /// What it asks.
+    /// Its question.
     pub question: String,
-    /// What it says about its records.
+    /// Its description of the records.
     pub analysis: String,
-    /// SHA-256 of its design and of the measured records that were there.
+    /// SHA-256 of its design and of the measured records that are present.
     pub design_sha256: String,
     /// Key of every random draw.
     pub seed: u64,
 }
 
 impl BenchDocument {
-    /// The result of some studies with all their rows, which are in their order; `tasks` are those that are asked, all
-    /// of none.
+    /// Result of studies with all their rows, in order; `tasks` selects tasks, and an empty list all of them.
     pub fn of(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
         let facts = |(scenario, _): &(Scenario, Vec<StudyRow>)| StudyFacts {
             name: scenario.name.clone(),
@@ -77,10 +76,10 @@ impl BenchDocument {
         }));
         let (labels, summaries): (Vec<String>, Vec<String>) = methods.into_iter().unzip();
         let (mut cases, mut sets, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
-        for own in studies.iter().map(|(scenario, rows)| questions::cases(scenario, rows)) {
-            cases.extend(own.cases.into_iter().filter(|case| tasks.is_empty() || tasks.contains(&case.task)));
-            sets.extend(own.sets);
-            skipped.extend(own.skipped);
+        for study in studies.iter().map(|(scenario, rows)| questions::cases(scenario, rows)) {
+            cases.extend(study.cases.into_iter().filter(|case| tasks.is_empty() || tasks.contains(&case.task)));
+            sets.extend(study.sets);
+            skipped.extend(study.skipped);
         }
         // By task, as they are read; within a task in the order of the studies.
         cases.sort_by_key(|case| case.task);
@@ -101,14 +100,14 @@ impl BenchDocument {
         }
     }
 
-    /// The fields of records, in order.
+    /// Names of the studies that have a leaderboard, in order.
     pub fn fields(&self) -> Vec<&str> {
         distinct(self.boards.iter().map(|board| board.field.as_str()))
     }
 
-    /// The same as JSON: everything indented, and a line for every case.
+    /// JSON text: indented, with one line per case.
     ///
-    /// Fails where a number is none that JSON knows, which stored ones are not.
+    /// Fails for a number that JSON cannot represent; stored numbers are finite.
     pub fn json(&self) -> Result<String, serde_json::Error> {
         let head = serde_json::to_string_pretty(&Self { cases: Vec::new(), ..self.clone() })?;
         let lines: Vec<String> = self.cases.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;

@@ -1,11 +1,11 @@
-//! The studies of the benchmark with all files they name, so that it runs from anywhere.
+//! The studies of the benchmark and their sidecars, embedded in the program.
 
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::folder::ResultFolder;
 
-/// Folder of the scenarios, and that of the sidecars which one of them names.
+/// Folder of the scenarios, and folder of the sidecars that one of them names.
 const FOLDERS: [&str; 2] = ["bench", "measured"];
 
 macro_rules! files {
@@ -32,7 +32,7 @@ const SIDECARS: &[(&str, &str)] = files![
     "zigzag_14_10_05.trial.toml",
 ];
 
-/// Writes the files into a folder; the places of the scenarios.
+/// Writes all files into a folder; returns the paths of the scenarios.
 pub fn unpack(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let folder = ResultFolder::make(folder)?;
     for (name, files) in FOLDERS.iter().zip([SCENARIOS, SIDECARS]) {

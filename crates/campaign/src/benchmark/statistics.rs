@@ -1,4 +1,4 @@
-//! Quantiles of scores among which some are infinite, and their intervals.
+//! Quantiles and ranks of scores, where failed answers count as infinite, with bootstrap intervals (Efron 1979).
 
 use std::cmp::Ordering;
 
@@ -11,45 +11,45 @@ use crate::statistics::{Moments, interval};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreFigure {
-    /// The figure; none where an answer that failed stands there.
+    /// The figure; none where it falls on a failed answer.
     pub value: Option<f64>,
-    /// Its interval, where there are six clusters or more; an end is none where an answer that failed stands there.
+    /// Its interval, from six clusters on; an end is none where it falls on a failed answer.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
 impl ScoreFigure {
-    /// A figure of some clusters; of several of its values, in any order, the ends of the interval.
+    /// A figure with the interval of its resampled values, in any order.
     pub fn new(value: f64, clusters: usize, resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         Self { value: finite(value), ci95: interval(clusters, resampled).map(|ends| ends.map(finite)) }
     }
 
-    /// Order of two figures, that which an answer that failed decides behind all others.
+    /// Order by value; a figure that falls on a failed answer comes last.
     pub(super) fn order(&self, other: &Self) -> Ordering {
-        let [one, other] = [self, other].map(|figure| figure.value.unwrap_or(f64::INFINITY));
-        one.total_cmp(&other)
+        let [value, other] = [self, other].map(|figure| figure.value.unwrap_or(f64::INFINITY));
+        value.total_cmp(&other)
     }
 }
 
-/// Mean of some numbers; NaN of none.
+/// Mean; NaN without values.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let mut moments = Moments::default();
     values.for_each(|value| moments.add(value));
     if moments.count > 0.0 { moments.mean } else { f64::NAN }
 }
 
-/// The median and the 90 % point of some scores.
-pub fn middle_and_high(mut scores: Vec<f64>) -> [f64; 2] {
+/// Median and 90 % quantile of scores.
+pub fn median_and_p90(mut scores: Vec<f64>) -> [f64; 2] {
     scores.sort_by(f64::total_cmp);
     [0.5, 0.9].map(|p| quantile(&scores, p))
 }
 
-/// One score over another of the same case: two that failed are alike, and one that failed is endlessly worse.
-pub fn ratio(one: f64, other: f64) -> f64 {
-    if one == other { 1.0 } else { one / other }
+/// Ratio of a score to that of the reference in the same case: 1 where both failed, infinite where only the first did.
+pub fn ratio(score: f64, reference: f64) -> f64 {
+    if score == reference { 1.0 } else { score / reference }
 }
 
-/// Ranks of some scores from 1, the smallest first; equal ones share the mean of their ranks.
+/// Ranks of scores from 1, smallest first; ties share their mean rank.
 pub fn ranks(scores: &[f64]) -> Vec<f64> {
     let rank = |score: &f64| {
         let smaller = scores.iter().filter(|other| *other < score).count();
@@ -71,10 +71,10 @@ mod tests {
 
     #[test]
     fn quantiles_know_answers_that_failed() {
-        assert_eq!(middle_and_high(vec![3.0, 1.0, 2.0]), [2.0, 2.8]);
-        assert_eq!(middle_and_high(vec![1.0, WORST, 2.0, 3.0]), [2.5, WORST]);
-        assert_eq!(middle_and_high(vec![1.0, WORST]), [WORST, WORST]);
-        assert_eq!(middle_and_high(vec![WORST; 4]), [WORST, WORST]);
+        assert_eq!(median_and_p90(vec![3.0, 1.0, 2.0]), [2.0, 2.8]);
+        assert_eq!(median_and_p90(vec![1.0, WORST, 2.0, 3.0]), [2.5, WORST]);
+        assert_eq!(median_and_p90(vec![1.0, WORST]), [WORST, WORST]);
+        assert_eq!(median_and_p90(vec![WORST; 4]), [WORST, WORST]);
     }
 
     #[test]
@@ -93,10 +93,10 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
         let samples = 300;
         let covered = (0..samples).filter(|sample| {
-            let own: Vec<f64> = (0..40).map(|_| -rng.random::<f64>().ln()).collect();
+            let values: Vec<f64> = (0..40).map(|_| -rng.random::<f64>().ln()).collect();
             // Every number twice, in a cluster of its own.
             let clusters: Vec<Vec<usize>> = (0..40).map(|place| vec![place, place]).collect();
-            let of = |cases: &[usize]| middle_and_high(cases.iter().map(|&case| own[case]).collect())[0];
+            let of = |cases: &[usize]| median_and_p90(cases.iter().map(|&case| values[case]).collect())[0];
             let figure = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
             if *sample == 0 {
                 assert_eq!(figure, ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of)));

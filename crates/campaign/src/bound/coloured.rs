@@ -1,5 +1,5 @@
-//! The bound where the compass has a white and a coloured error at once, which the likelihood of the methods does not
-//! have: the sensitivities of the heading, made white by the filter of those two errors.
+//! Cramér–Rao bound for a compass with a white and a coloured error at once, which the likelihood of the methods does
+//! not cover. The heading sensitivities are whitened by the innovations filter of the two errors (Kalman 1960).
 
 use identify::likelihood::track::{Coefficients, MotionColumns, Track, is_backward};
 use nalgebra::{Matrix3, Matrix5};
@@ -45,11 +45,11 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
     Some(Matrix3::from_fn(|i, j| covariance[(i, j)] / (unit[i] * unit[j])))
 }
 
-/// Makes columns at growing `times` (s) as white, with unit variance, as the errors would become by it.
+/// Whitens columns at increasing `times` (s) by the filter that turns the errors into white noise of unit variance.
 fn whiten(times: &[f64], error: &CompassError, columns: &mut [Vec<f64>; 5]) {
     let CompassError { white, coloured } = *error;
     let (white, stationary) = (white * white, coloured.sd * coloured.sd);
-    // Of the coloured error, given all readings so far: its variance, and its estimate from each column.
+    // Of the coloured error, given the readings so far: conditional variance, and one estimate per column.
     let (mut variance, mut estimates) = (stationary, [0.0; 5]);
     for (row, &t) in times.iter().enumerate() {
         if row > 0 {
@@ -86,7 +86,7 @@ mod tests {
         simulation.run(&StreamKey::default()).expect("a zig-zag").trial
     }
 
-    /// Nearly no coloured error, one that is as good as white, and nearly no white one: bounds of other sources.
+    /// Limits: negligible coloured error, nearly white coloured error, negligible white error.
     #[test]
     fn its_limits_are_the_bounds_of_white_and_of_coloured_noise() {
         let stable = FirstOrder::from_indices(0.1, 16.3, 0.0);
@@ -109,17 +109,17 @@ mod tests {
                 (bound(1e-6, 0.3, 10.0), coloured.matrix),
                 (bound(0.0, 0.3, 10.0), coloured.matrix),
             ];
-            for (case, (own, other)) in pairs.into_iter().enumerate() {
+            for (case, (bound, reference)) in pairs.into_iter().enumerate() {
                 for (i, j) in [(0, 0), (0, 1), (1, 1)] {
-                    let scale = (other[(i, i)] * other[(j, j)]).sqrt();
-                    let apart = (own[(i, j)] - other[(i, j)]).abs() / scale;
-                    assert!(apart < 1e-4, "case {case}, {i} {j}: {own} {other}");
+                    let scale = (reference[(i, i)] * reference[(j, j)]).sqrt();
+                    let apart = (bound[(i, j)] - reference[(i, j)]).abs() / scale;
+                    assert!(apart < 1e-4, "case {case}, {i} {j}: {bound} {reference}");
                 }
             }
         }
     }
 
-    /// The filter does what the inverse of the covariance of all errors does.
+    /// Products of whitened columns equal those by the inverse of the full covariance.
     #[test]
     fn white_columns_have_the_products_of_the_whole_covariance() {
         let times = [0.0, 1.0, 1.5, 4.0, 10.0, 11.0];
@@ -127,17 +127,17 @@ mod tests {
         let raw: [Vec<f64>; 5] =
             std::array::from_fn(|k| times.iter().map(|t| (0.7 * t + k as f64).sin()).collect::<Vec<f64>>());
         let covariance = DMatrix::from_fn(times.len(), times.len(), |i, j| {
-            let own = if i == j { error.white.powi(2) } else { 0.0 };
-            own + error.coloured.sd.powi(2) * (-(times[i] - times[j]).abs() / error.coloured.correlation_time).exp()
+            let white = if i == j { error.white.powi(2) } else { 0.0 };
+            white + error.coloured.sd.powi(2) * (-(times[i] - times[j]).abs() / error.coloured.correlation_time).exp()
         });
         let inverse = covariance.try_inverse().expect("it is positive definite");
         let mut white = raw.clone();
         whiten(&times, &error, &mut white);
         for (i, left) in raw.iter().enumerate() {
             for (j, right) in raw.iter().enumerate() {
-                let (one, other) = (DMatrix::from_row_slice(1, 6, left), DMatrix::from_column_slice(6, 1, right));
+                let (row, column) = (DMatrix::from_row_slice(1, 6, left), DMatrix::from_column_slice(6, 1, right));
                 let product: f64 = white[i].iter().zip(&white[j]).map(|(x, y)| x * y).sum();
-                let expected = (one * &inverse * other)[(0, 0)];
+                let expected = (row * &inverse * column)[(0, 0)];
                 assert!((product - expected).abs() < 1e-10 * expected.abs().max(1.0), "{product} {expected}");
             }
         }

@@ -1,4 +1,4 @@
-//! Faults of the disk for tests: below one folder, operations from the n-th on fail, one of them or all that follow.
+//! Disk faults for tests: below one folder, the operations in a range of numbers fail.
 
 use std::io;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// The folder below which operations fail, which of them do, and how many there were.
+/// Root folder, numbers of the failing operations, and operations so far.
 struct DiskFault {
     root: PathBuf,
     failing: Range<u64>,
@@ -15,13 +15,13 @@ struct DiskFault {
 
 static FAULTS: Mutex<Vec<DiskFault>> = Mutex::new(Vec::new());
 
-/// How many folders there are whose operations fail: none, outside of tests.
+/// Number of folders with failing operations; 0 outside tests.
 static ARMED: AtomicUsize = AtomicUsize::new(0);
 
-/// While this lives, operations below its folder fail.
+/// Guard of an armed fault: operations below its folder fail until it is dropped.
 pub struct Armed(PathBuf);
 
-/// Lets the operations below `root` with these numbers, counted from 0, fail.
+/// Makes the operations below `root` with these numbers, counted from 0, fail.
 pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
     let fault = DiskFault { root: root.to_owned(), failing, seen: 0 };
     FAULTS.lock().unwrap_or_else(PoisonError::into_inner).push(fault);

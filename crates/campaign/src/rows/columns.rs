@@ -1,4 +1,4 @@
-//! The columns of a file of rows: names, units, meanings, and how each is taken out of a row and put back.
+//! Columns of a file of rows: names, units, meanings, and access to the row fields.
 
 use std::borrow::Cow;
 
@@ -10,16 +10,16 @@ use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
 use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
 
-/// A column that every file of rows has.
+/// A fixed column of a file of rows.
 pub struct RowColumn {
-    /// Name in the file; the unit is its end.
+    /// Name in the file, ending in the unit.
     pub name: &'static str,
-    /// What it holds.
+    /// Meaning, for documentation.
     pub meaning: &'static str,
     pub(super) access: Access,
 }
 
-/// How a column is taken out of a row, and put back.
+/// Getter and setter of a column.
 #[derive(Clone, Copy)]
 pub(super) enum Access {
     Count(fn(&StudyRow) -> u64, fn(&mut StudyRow, u64)),
@@ -28,8 +28,8 @@ pub(super) enum Access {
     Method,
 }
 
-/// Columns, each with how it is taken out of a row and put back: `count field`, `field`, one of the numbers of a field
-/// that are there together, one of the numbers of a trace, or by functions.
+/// Columns with their access to a row: a count, a number, one number of an array, a number of a trace, or functions for
+/// a text.
 macro_rules! columns {
     ($($name:literal, $meaning:literal => $kind:ident $field:tt;)*) => {
         [$(RowColumn { name: $name, meaning: $meaning, access: access!($kind $field) }),*]
@@ -60,27 +60,27 @@ macro_rules! access {
     };
 }
 
-/// The columns every file of rows has, in their order. Behind them come one column `axis.NAME` per axis of the design,
-/// a number or the label of the point, and one `draw.KEY` per drawn value, in the unit of the key.
+/// Columns of every file of rows, in order. They are followed by one column `axis.NAME` per axis of the design, a
+/// number or the label of the point, and one `draw.KEY` per drawn value, in the unit of the key.
 pub const COLUMNS: [RowColumn; 22] = columns! {
     "cell", "index of the cell in the design, from 0" => count(cell);
     "replicate", "index of the trial in its cell, from 0; every method sees the same trial" => count(replicate);
     "method", "label of the method" => method();
     "failure", "why the method gave no answer; null when it did" => text(failure, set_failure);
     "true_K_per_s",
-    "K of the first-order response nearest to the ship, its own where it is first order; null where it has none"
+    "K of the first-order response nearest to the ship; null where there is none"
         => number(true_k_per_s);
     "true_T_s", "T of that response" => number(true_t_s);
     "bound_K_per_s", "Cramér–Rao bound on the standard deviation of K on this trial" => number(bound, 0);
     "bound_T_s", "the same of T" => number(bound, 1);
     "bound_K_over_T_per_s2", "the same of K/T" => number(bound, 2);
-    "K_per_s", "K found" => number(k_per_s);
+    "K_per_s", "estimate of K" => number(k_per_s);
     "K_lower95_per_s", "lower end of its 95 % interval; null where the method quotes none" => number(k_ci95_per_s, 0);
     "K_upper95_per_s", "upper end" => number(k_ci95_per_s, 1);
-    "T_s", "T found; negative for a course-unstable answer" => number(t_s);
+    "T_s", "estimate of T; negative for a course-unstable ship" => number(t_s);
     "T_lower95_s", "lower end of its 95 % interval" => number(t_ci95_s, 0);
     "T_upper95_s", "upper end" => number(t_ci95_s, 1);
-    "delta_r_deg", "rudder bias found" => number(rudder_bias_deg);
+    "delta_r_deg", "estimate of the rudder bias" => number(rudder_bias_deg);
     "delta_r_lower95_deg", "lower end of its 95 % interval" => number(rudder_bias_ci95_deg, 0);
     "delta_r_upper95_deg", "upper end" => number(rudder_bias_ci95_deg, 1);
     "heading_rmse_deg", "rms error of the heading on the trial itself, its rudder replayed through the answer"
@@ -91,15 +91,15 @@ pub const COLUMNS: [RowColumn; 22] = columns! {
     "stop", "why the method stopped: direct, converged, iteration-limit, range-limit" => text(stop, set_stop);
 };
 
-/// Columns that follow in a study of ships that are a first-order base with effects.
-pub const OWN_COLUMNS: [RowColumn; 2] = columns! {
+/// Further columns of a study whose ships are a first-order base with effects.
+pub const BASE_COLUMNS: [RowColumn; 2] = columns! {
     "own_K_per_s",
     "K of the ship's own base, against which a trace is held; null where the ship is first order or a hull"
-        => number(own_k_per_s);
-    "own_T_s", "T of that base" => number(own_t_s);
+        => number(base_k_per_s);
+    "own_T_s", "T of that base" => number(base_t_s);
 };
 
-/// Columns that follow in a study with a trace.
+/// Further columns of a study with a trace.
 pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
     "trace_verdict", "clean, disturbed, traced, located or unexplained" => text(verdict, set_verdict);
     "trace_named", "effects named, joined by +; empty where none was" => text(named, set_named);
@@ -120,7 +120,7 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
         => traced(band_held_out);
 };
 
-/// Columns that follow in a study of measured records.
+/// Further columns of a study of measured records.
 pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
     "validation_60_s_rmse_deg",
     "in a study of measured records: rms error of the heading on the record that judges, its replay restarted every 60 s"
@@ -131,7 +131,7 @@ pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
         => text(sizes, set_sizes);
 };
 
-/// Columns that follow in a study whose ships state what is right to say of them.
+/// Further columns of a study whose ships state the missing physics.
 pub const LOCATED_COLUMNS: [RowColumn; 2] = columns! {
     "trace_times", "when the effects named act, s, joined by +; – for one that is no matter of time"
         => text(times, set_times);
@@ -141,7 +141,7 @@ pub const LOCATED_COLUMNS: [RowColumn; 2] = columns! {
         => text(located, set_located);
 };
 
-/// Columns that follow in a study that predicts manoeuvres.
+/// Further columns of a study that predicts manoeuvres.
 pub const PREDICT_COLUMNS: [RowColumn; 1] = columns! {
     "predicted",
     "figures of manoeuvres predicted from the answer, joined by +: name=truth|median|lower 90 %|upper 90 %; empty where \
@@ -163,28 +163,28 @@ fn stop(row: &StudyRow) -> Option<Cow<'_, str>> {
 }
 
 fn set_stop(row: &mut StudyRow, word: &str) -> Result<(), String> {
-    let known = StopReason::ALL.iter().map(|reason| reason.as_str()).find(|known| *known == word);
-    row.stop = Some(known.ok_or_else(|| format!("no method stops because of {word:?}"))?);
+    let id = StopReason::ALL.iter().map(|reason| reason.as_str()).find(|id| *id == word);
+    row.stop = Some(id.ok_or_else(|| format!("no method stops because of {word:?}"))?);
     Ok(())
 }
 
-/// What a trace said, begun with the first of its columns that is read.
+/// Trace answer of a row, created with the first of its columns that is read.
 fn answer(row: &mut StudyRow) -> &mut TraceAnswer {
     row.traced.get_or_insert_default()
 }
 
-/// A list as one text.
-fn joined<T>(all: &[T], one: impl Fn(&T) -> String) -> Cow<'static, str> {
-    all.iter().map(one).collect::<Vec<_>>().join("+").into()
+/// Text of a list, entries joined by `+`.
+fn joined<T>(all: &[T], write: impl Fn(&T) -> String) -> Cow<'static, str> {
+    all.iter().map(write).collect::<Vec<_>>().join("+").into()
 }
 
-/// The list in a text; fails where a part of it is none of `what`.
-fn list<T>(text: &str, what: &str, one: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
+/// List from a text; fails where an entry is invalid, and names it as `what`.
+fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
     let parts = text.split('+').filter(|part| !part.is_empty());
-    parts.map(one).collect::<Option<_>>().ok_or_else(|| format!("{text:?} are no {what}"))
+    parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))
 }
 
-/// The effects named.
+/// Effects named.
 fn named(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| effect.id.to_string()))
 }
@@ -194,13 +194,13 @@ fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The same with the aliases of each.
+/// Effects named, each with its aliases.
 fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
     let group = |effect: &NamedEffect| [std::slice::from_ref(&effect.id), effect.aliases.as_slice()].concat().join("|");
     Some(joined(&row.traced.as_ref()?.named, group))
 }
 
-/// The column before has named the effects: these are their aliases.
+/// Aliases of the effects, which an earlier column has named.
 fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let group = |part: &str| {
         let mut ids = part.split('|').filter(|id| !id.is_empty()).map(Box::from);
@@ -215,7 +215,7 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The parameters of the effects named.
+/// Parameters of the effects named.
 fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     let size = |EffectSize { symbol, value, sd }: &EffectSize| {
         format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))
@@ -224,7 +224,7 @@ fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, effect))
 }
 
-/// The columns before have named the effects.
+/// For effects that an earlier column has named.
 fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let size = |part: &str| {
         let (symbol, number) = part.split_once('=')?;
@@ -233,7 +233,7 @@ fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
         Some(EffectSize { symbol: symbol.into(), value: value.parse().ok()?, sd })
     };
     let effect = |part: &str| part.split('|').filter(|size| !size.is_empty()).map(size).collect::<Option<Vec<_>>>();
-    let fault = || format!("{text:?} are no parameters of the effects named");
+    let fault = || format!("{text:?} does not list the parameters of the effects named");
     let named = &mut answer(row).named;
     let parts: Vec<&str> = if named.is_empty() { Vec::new() } else { text.split('+').collect() };
     if parts.len() != named.len() {
@@ -245,14 +245,14 @@ fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// What stands for a time that there is not.
+/// Text for a missing time.
 const NEVER: &str = "–";
 
 fn time(time_s: Option<f64>) -> String {
     time_s.map_or_else(|| NEVER.to_owned(), |time_s| time_s.to_string())
 }
 
-/// A time in a text, or that there is none; `None` for another text.
+/// Time from a text, or the missing time; `None` for any other text.
 fn read_time(text: &str) -> Option<Option<f64>> {
     if text == NEVER { Some(None) } else { text.parse().ok().map(Some) }
 }
@@ -261,7 +261,7 @@ fn times(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| time(effect.time_s)))
 }
 
-/// The columns before have named the effects.
+/// For effects that an earlier column has named.
 fn set_times(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let times = list(text, "times of effects", read_time)?;
     let named = &mut answer(row).named;
@@ -299,11 +299,11 @@ fn probabilities(row: &StudyRow) -> Option<Cow<'_, str>> {
 }
 
 fn set_probabilities(row: &mut StudyRow, text: &str) -> Result<(), String> {
-    let one = |part: &str| {
+    let read = |part: &str| {
         let (id, number) = part.split_once('=')?;
         Some((Box::from(id), number.parse().ok().filter(|p| (0.0..=1.0).contains(p))?))
     };
-    answer(row).probabilities = list(text, "probabilities of effects", one)?;
+    answer(row).probabilities = list(text, "probabilities of effects", read)?;
     Ok(())
 }
 
@@ -318,19 +318,19 @@ fn set_verdict(row: &mut StudyRow, word: &str) -> Result<(), String> {
 }
 
 fn predicted(row: &StudyRow) -> Option<Cow<'_, str>> {
-    let one = |PredictedFigure { name, truth, median, ci90: [low, high] }: &PredictedFigure| {
+    let write = |PredictedFigure { name, truth, median, ci90: [low, high] }: &PredictedFigure| {
         format!("{name}={truth}|{median}|{low}|{high}")
     };
-    Some(joined(row.predicted.as_ref()?, one))
+    Some(joined(row.predicted.as_ref()?, write))
 }
 
 fn set_predicted(row: &mut StudyRow, text: &str) -> Result<(), String> {
-    let one = |part: &str| {
+    let read = |part: &str| {
         let (name, numbers) = part.split_once('=')?;
         let numbers: Vec<f64> = numbers.split('|').map(str::parse).collect::<Result<_, _>>().ok()?;
         let [truth, median, low, high] = *numbers.as_slice() else { return None };
         Some(PredictedFigure { name: name.into(), truth, median, ci90: [low, high] })
     };
-    row.predicted = Some(list(text, "predictions", one)?.into());
+    row.predicted = Some(list(text, "predictions", read)?.into());
     Ok(())
 }

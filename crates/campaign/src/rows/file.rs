@@ -1,5 +1,5 @@
-//! A block of rows as a Parquet file of one row group. Its metadata say of which study, program and block it is, and
-//! hold the SHA-256 of the values: whoever reads it knows that it is whole, wherever it was copied.
+//! A block of rows as a Parquet file of one row group. Its metadata name study, program and block, and hold the SHA-256
+//! of the values, so that a reader can verify a file wherever it was copied.
 
 use std::sync::Arc;
 
@@ -22,26 +22,26 @@ use crate::block::Block;
 use crate::parquet_table::{self, Values};
 use crate::scenario::hex;
 
-/// Key of the label in the metadata of the file, and that of the SHA-256 of the label.
+/// Metadata keys of the label and of its SHA-256.
 const LABEL: &str = "kempf.block";
 const LABEL_SHA256: &str = "kempf.block-sha256";
 
-/// Longest text of a row, bytes: a failure in the words of another program is far shorter.
+/// Largest text of a row, bytes; failure messages of outside programs are far shorter.
 const MAX_TEXT_BYTES: usize = 4096;
 
-/// Largest column of a block when it is unpacked, bytes: texts of traces and predictions.
+/// Largest uncompressed column of a block, bytes.
 const MAX_COLUMN_BYTES: i64 = 1 << 28;
 
-/// Largest page when it is unpacked, bytes, and the most values in one.
+/// Largest uncompressed page, bytes, and largest number of values in a page.
 const MAX_PAGE_BYTES: u64 = 1 << 24;
 const MAX_PAGE_VALUES: u64 = 1 << 20;
 
-/// Whether a page is one of a block.
+/// `true` if a page is within the limits of a block.
 fn fits(page: PageHead) -> bool {
     page.unpacked <= MAX_PAGE_BYTES && page.values <= MAX_PAGE_VALUES
 }
 
-/// What a block says of itself.
+/// Label of a block: its study, program and position.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BlockLabel {
     /// SHA-256 of the design of the study.
@@ -63,7 +63,7 @@ impl BlockLabel {
     }
 }
 
-/// A label with what its file holds.
+/// Label with row count and SHA-256 of the values of its file.
 #[derive(Serialize, Deserialize)]
 struct SealedLabel {
     #[serde(flatten)]
@@ -72,18 +72,18 @@ struct SealedLabel {
     values_sha256: String,
 }
 
-/// Why a file is not the block that is expected.
+/// Reason why a file is not the expected block.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Damage {
-    /// It is not what was written, in words.
+    /// Damaged or altered; the text says how.
     Changed(String),
-    /// It is a whole block of another study, program or place.
+    /// A valid block of another study, program or position.
     Foreign(BlockLabel),
 }
 
 impl From<String> for Damage {
-    fn from(words: String) -> Self {
-        Self::Changed(words)
+    fn from(problem: String) -> Self {
+        Self::Changed(problem)
     }
 }
 
@@ -99,7 +99,7 @@ fn sha256_of(columns: &[Values]) -> String {
     hex(&digest.finalize())
 }
 
-/// The file of a block.
+/// Parquet file of a block.
 pub fn encode(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> Result<Vec<u8>, String> {
     written(rows, label, layout).map_err(|error| error.to_string())
 }
@@ -120,9 +120,9 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
     file.into_inner()
 }
 
-/// The rows of a block: those of whole trials, from the first of the block on.
+/// Rows of a block: complete trials, from the first of the block on.
 ///
-/// Fails unless the file is what [`encode`] wrote for this block of this study and program.
+/// Fails unless [`encode`] wrote the file for this block of this study and program.
 pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
     let damaged = || Damage::Changed("it is damaged".to_owned());
     let rows = trial::decoder::guarded(|| read_file(bytes, expected, layout)).unwrap_or_else(|| Err(damaged()))?;
@@ -134,13 +134,13 @@ pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resu
     let most = Block::REPLICATES as usize * methods;
     match rows.len().is_multiple_of(methods) && rows.len() <= most && rows.iter().enumerate().all(is_next) {
         true => Ok(rows),
-        false => Err(Damage::Changed("its rows are not those of whole trials in their order".to_owned())),
+        false => Err(Damage::Changed("its rows are not complete trials in order".to_owned())),
     }
 }
 
 fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
-    let words = |error: parquet::errors::ParquetError| error.to_string();
-    let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(words)?;
+    let message = |error: parquet::errors::ParquetError| error.to_string();
+    let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(message)?;
     let SealedLabel { label, rows, values_sha256 } = label_of(file.metadata().file_metadata())?;
     if label != *expected {
         return Err(Damage::Foreign(label));
@@ -154,23 +154,23 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
     let sizes = group.columns().iter().map(|column| column.uncompressed_size());
     let most = Block::REPLICATES as usize * layout.methods();
     if rows > most || group.num_rows() != rows as i64 || !sizes.into_iter().all(is_sound) {
-        return Err("it has other rows than it says".to_owned().into());
+        return Err("its number of rows differs from its label".to_owned().into());
     }
-    let group = file.get_row_group(0).map_err(words)?;
-    let column = |place: usize| values(&mut group.get_column_reader(place).map_err(words)?, rows);
+    let group = file.get_row_group(0).map_err(message)?;
+    let column = |place: usize| values(&mut group.get_column_reader(place).map_err(message)?, rows);
     let columns: Vec<Values> = (0..group.num_columns()).map(column).collect::<Result<_, String>>()?;
     if sha256_of(&columns) != values_sha256 {
-        return Err("its values have another SHA-256".to_owned().into());
+        return Err("the SHA-256 of its values differs from its label".to_owned().into());
     }
     Ok(layout.put(columns, rows)?)
 }
 
-/// The label of a file, when it is what was written.
+/// Verified label of a file.
 fn label_of(file: &FileMetaData) -> Result<SealedLabel, String> {
     let value = |name: &str| {
         file.key_value_metadata()?.iter().find(|pair| pair.key == name).and_then(|pair| pair.value.as_deref())
     };
-    let label = value(LABEL).ok_or("it is no block of a study")?;
+    let label = value(LABEL).ok_or("it is not a block of a study")?;
     if value(LABEL_SHA256) != Some(hex(&Sha256::digest(label)).as_str()) {
         return Err("its label is damaged".to_owned());
     }
@@ -192,11 +192,11 @@ fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
 fn text(bytes: &ByteArray) -> Result<String, String> {
     match bytes.len() {
         0..=MAX_TEXT_BYTES => bytes.as_utf8().map(str::to_owned).map_err(|error| error.to_string()),
-        long => Err(format!("a text of it has {long} bytes, more than the {MAX_TEXT_BYTES} of any study")),
+        long => Err(format!("a text in it has {long} bytes; the limit is {MAX_TEXT_BYTES}")),
     }
 }
 
-/// Values of `length` rows.
+/// Values of `length` rows of a column.
 fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<Vec<Option<T::T>>, String> {
     let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
     let mut read = 0;

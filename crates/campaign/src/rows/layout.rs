@@ -1,5 +1,4 @@
-//! What the rows of one study look like: the fixed columns, its axes and its draws, and how rows become columns and
-//! back.
+//! Row layout of one study: its fixed columns, axes and draws, and the conversion between rows and columns.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -8,25 +7,25 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::TypePtr;
 
 use super::columns::{
-    Access, COLUMNS, LOCATED_COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
+    Access, BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
 };
 use super::row::StudyRow;
 use crate::design::{Design, JudgedRecord};
 use crate::parquet_table::{self, Values};
 use crate::scenario::TRACE;
 
-/// What the rows of one study look like: the fixed columns, its axes and its draws.
+/// Row layout of one study: fixed columns, axes, draws and records.
 pub struct RowLayout {
     methods: Vec<String>,
     fixed: Vec<&'static RowColumn>,
-    /// Names, and the points of the cells.
+    /// Names of the axes, each with the points of the cells.
     axes: Vec<(String, Values)>,
-    /// In a study of measured records those of every cell, a trial each.
+    /// In a study of measured records: the records of every trial, by cell.
     records: Option<Vec<Vec<JudgedRecord>>>,
     draws: Vec<String>,
 }
 
-/// Where the values of a column come from.
+/// Source of the values of a column.
 enum ColumnSource<'a> {
     Fixed(&'static RowColumn),
     Axis(&'a str, &'a Values),
@@ -46,7 +45,7 @@ impl RowLayout {
         let is_traced = design.methods.iter().any(|method| method.id == TRACE);
         let groups = [
             (true, COLUMNS.as_slice()),
-            (design.cells.iter().any(|cell| cell.has_own_indices), &OWN_COLUMNS),
+            (design.cells.iter().any(|cell| cell.has_own_indices), &BASE_COLUMNS),
             (is_traced, &TRACE_COLUMNS),
             (is_traced && design.cells.iter().any(|cell| cell.physics.is_some()), &LOCATED_COLUMNS),
             (design.is_measured(), &RECORD_COLUMNS),
@@ -61,12 +60,12 @@ impl RowLayout {
         }
     }
 
-    /// Number of the methods.
+    /// Number of methods.
     pub fn methods(&self) -> usize {
         self.methods.len()
     }
 
-    /// All columns with their names, in order.
+    /// All columns in order, as name and source.
     fn columns(&self) -> impl Iterator<Item = (String, ColumnSource<'_>)> {
         let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), ColumnSource::Fixed(column)));
         let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
@@ -86,7 +85,7 @@ impl RowLayout {
         self.columns().map(|(name, _)| name)
     }
 
-    /// The schema of the file.
+    /// Parquet schema of the file.
     pub(super) fn schema(&self) -> TypePtr {
         let fields = self.columns().map(|(name, source)| {
             let (physical, repetition, logical) = match source {
@@ -103,7 +102,7 @@ impl RowLayout {
         parquet_table::schema(fields.collect())
     }
 
-    /// Whether the values of a column repeat so often that a dictionary of them pays: estimates hardly ever do.
+    /// `true` if the values of a column repeat often enough for dictionary encoding; estimates do not.
     pub(super) fn repeats(name: &str) -> bool {
         let text = [
             "method",
@@ -122,7 +121,7 @@ impl RowLayout {
         text || ["true_", "own_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
     }
 
-    /// All columns of several rows, in order.
+    /// Columns of rows, in order.
     pub(super) fn take<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
         self.columns().map(move |(_, source)| match source {
             ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
@@ -134,14 +133,14 @@ impl RowLayout {
                 }
             },
             ColumnSource::Axis(_, points) => points.of_cells(rows),
-            ColumnSource::Record(of, records) => names_of_records(of, records, rows),
+            ColumnSource::Record(of, records) => record_names(of, records, rows),
             ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
             }
         })
     }
 
-    /// Rows from the values of all columns, `length` each; the error names a value that no study writes.
+    /// Rows from all columns, each of `length` values. Fails for a value that the design does not allow, and names it.
     pub(super) fn put(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
         let mut rows = vec![StudyRow::default(); length];
         let mut drawn = vec![vec![None; self.draws.len()]; length];
@@ -158,21 +157,21 @@ impl RowLayout {
                 }
                 (ColumnSource::Fixed(RowColumn { access: Access::Method, .. }), Values::Texts(values)) => {
                     for (row, label) in rows.iter_mut().zip(values) {
-                        let known = self.methods.iter().position(|method| Some(method) == label.as_ref());
-                        row.method = known.ok_or_else(|| format!("the study has no method {label:?}"))?;
+                        let index = self.methods.iter().position(|method| Some(method) == label.as_ref());
+                        row.method = index.ok_or_else(|| format!("the study has no method {label:?}"))?;
                     }
                 }
                 (ColumnSource::Draw(index), Values::Numbers(values)) => {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
-                // Axes follow from the cell; other ones belong to another design.
+                // Axes and records follow from cell and replicate; others belong to another design.
                 (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
-                (ColumnSource::Record(of, records), values) if names_of_records(of, records, &rows) == values => {}
-                (ColumnSource::Record(..), _) => return Err("a row has other records than its trial".to_owned()),
+                (ColumnSource::Record(of, records), values) if record_names(of, records, &rows) == values => {}
+                (ColumnSource::Record(..), _) => return Err("a row names other records than its trial has".to_owned()),
                 (ColumnSource::Axis(name, _), _) => {
-                    return Err(format!("a row has another point of the axis {name:?} than its cell"));
+                    return Err(format!("a row has a point of the axis {name:?} that is not that of its cell"));
                 }
-                _ => return Err("a column of it has values of another kind".to_owned()),
+                _ => return Err("a column has values of the wrong type".to_owned()),
             }
         }
         if !self.draws.is_empty() {
@@ -184,19 +183,19 @@ impl RowLayout {
     }
 }
 
-/// What the records of trials are called.
-fn names_of_records(of: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
-    let name = |row: &StudyRow| of(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
+/// Names of the records of trials.
+fn record_names(get: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
+    let name = |row: &StudyRow| get(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
     Values::Texts(rows.iter().map(name).collect())
 }
 
-/// The rows that have a value, with it.
+/// Rows that have a value, each with its value.
 fn present<T>(rows: &mut [StudyRow], values: Vec<Option<T>>) -> impl Iterator<Item = (&mut StudyRow, T)> {
     rows.iter_mut().zip(values).filter_map(|(row, value)| Some((row, value?)))
 }
 
 impl Values {
-    /// Adds the values to bytes, so that other values are other bytes.
+    /// Appends an injective encoding of the values to `bytes`.
     pub(super) fn write_to(&self, bytes: &mut Vec<u8>) {
         fn all<T>(values: &[Option<T>], bytes: &mut Vec<u8>, mut write: impl FnMut(&T, &mut Vec<u8>)) {
             for value in values {
@@ -214,7 +213,7 @@ impl Values {
         }
     }
 
-    /// Of values of cells, that of the cell of every row; none for a cell that is not there.
+    /// Values by row, from values by cell; none for a missing cell.
     fn of_cells(&self, rows: &[StudyRow]) -> Self {
         fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {
             rows.iter().map(|row| values.get(row.cell as usize)?.clone()).collect()

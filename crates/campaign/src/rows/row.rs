@@ -1,36 +1,36 @@
-//! The result of one method on one trial.
+//! Row of a study: the result of one method on one trial.
 
 use std::sync::Arc;
 
 use ::trace::Verdict;
 use document::trace::{Dependence, EffectEntry, ParameterEntry};
 
-/// An effect that a trace named.
+/// Effect named by a trace.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedEffect {
     /// Identifier of the effect.
     pub id: Box<str>,
-    /// Identifiers of those that the trial cannot tell it from.
+    /// Identifiers of its aliases, which the trial cannot distinguish from it.
     pub aliases: Vec<Box<str>>,
-    /// When an effect of time acts, s: the middle of a passing moment, the beginning of a lasting one.
+    /// Time of a time-dependent effect, s: the centre of a transient, the onset of a lasting moment.
     pub time_s: Option<f64>,
     /// Its parameters, in a study of measured records.
     pub sizes: Vec<EffectSize>,
 }
 
-/// A parameter of an effect, without dimension where the length and the speed of the ship are known.
+/// Parameter of an effect, nondimensional where length and speed of the ship are known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectSize {
-    /// Symbol, with a prime where it is without dimension.
+    /// Symbol, with a prime if nondimensional.
     pub symbol: Box<str>,
-    /// Value; SI units and radians where it has a dimension.
+    /// Value, otherwise in SI units and radians.
     pub value: f64,
     /// Standard deviation; `None` of a parameter that is not fitted.
     pub sd: Option<f64>,
 }
 
 impl EffectSize {
-    /// That of a parameter of a trace.
+    /// Size of a parameter of a trace.
     pub fn of(parameter: &ParameterEntry) -> Self {
         let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
         let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
@@ -39,7 +39,7 @@ impl EffectSize {
 }
 
 impl NamedEffect {
-    /// That of a trace.
+    /// Named effect from the entry of a trace.
     pub fn of(effect: &EffectEntry) -> Self {
         let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
         let time = effect.parameters.values().find(|parameter| ["t_c", "t_0"].contains(&parameter.key.as_str()));
@@ -51,33 +51,33 @@ impl NamedEffect {
         }
     }
 
-    /// Whether an effect is this one, or one that cannot be told from it.
+    /// `true` if an effect is this one or one of its aliases.
     pub fn holds(&self, id: &str) -> bool {
         *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)
     }
 }
 
-/// A moment that a trace located.
+/// Moment located by a trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocatedMoment {
-    /// What it depends on.
+    /// Quantity it depends on.
     pub depends_on: Dependence,
-    /// The moment in words.
+    /// Description of the moment.
     pub form: Box<str>,
-    /// Since when, s, where it is a matter of instants.
+    /// Onset, s, for a time-dependent moment.
     pub from_s: Option<f64>,
-    /// Until when, s; `None` for one that lasts to the end of the record.
+    /// End, s; `None` for a moment that lasts to the end of the record.
     pub until_s: Option<f64>,
-    /// Identifiers of the effects of the list that the trial cannot tell from it.
+    /// Identifiers of listed effects that the trial cannot distinguish from it.
     pub alternatives: Vec<Box<str>>,
 }
 
-/// A figure of a manoeuvre that was predicted from an answer, beside what the same ship does.
+/// Predicted figure of a manoeuvre, with that of the true ship.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictedFigure {
     /// Manoeuvre and figure, with the unit: `zig-zag 20/20 first_overshoot_deg`.
     pub name: Box<str>,
-    /// What the ship does.
+    /// True figure.
     pub truth: f64,
     /// Median of the prediction.
     pub median: f64,
@@ -86,22 +86,22 @@ pub struct PredictedFigure {
 }
 
 impl PredictedFigure {
-    /// Whether the interval holds the truth.
+    /// `true` if the interval contains the truth.
     pub fn holds(&self) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&self.truth)
     }
 }
 
-/// What a trace said of one trial.
+/// Result of a trace on one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceAnswer {
-    /// Whether anything is missing, and whether it has a name.
+    /// Verdict.
     pub verdict: Verdict,
     /// The effects named, in the order of discovery.
     pub named: Vec<NamedEffect>,
-    /// Moments that are no effects of the list, the clearest first.
+    /// Located moments outside the list of effects, clearest first.
     pub located: Vec<LocatedMoment>,
-    /// Probability of every effect that is not next to nothing, given the trial.
+    /// Probabilities of effects, of at least 0.005.
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Gain in BIC of the one missing effect over the best other one.
     pub margin: Option<f64>,
@@ -124,17 +124,16 @@ pub struct StudyRow {
     pub method: usize,
     /// Why the method failed; `None` when it did not.
     pub failure: Option<Box<str>>,
-    /// K of the first-order response that comes nearest to the undisturbed trial of the ship, 1/s: its own where it is
-    /// exactly first order. A method that fits such a response should find it.
+    /// K of the first-order response nearest to the undisturbed trial, 1/s; the ship's own K where it is first order.
+    /// It is the true value for methods that fit such a response.
     pub true_k_per_s: Option<f64>,
     /// T of that response, s.
     pub true_t_s: Option<f64>,
-    /// K of the ship's own base, 1/s, where it has effects beside it. A trace should find it.
-    pub own_k_per_s: Option<f64>,
+    /// K of the first-order base of a ship with effects, 1/s: the true value for a trace.
+    pub base_k_per_s: Option<f64>,
     /// T of that base, s.
-    pub own_t_s: Option<f64>,
-    /// Best standard deviations of K (1/s), T (s) and K/T (1/s²) that an unbiased method can have on this trial, for
-    /// its own noise and true K and T (Cramér–Rao).
+    pub base_t_s: Option<f64>,
+    /// Cramér–Rao bounds on the standard deviations of K (1/s), T (s) and K/T (1/s²) of this trial.
     pub bound: Option<[f64; 3]>,
     /// K, 1/s.
     pub k_per_s: Option<f64>,
@@ -158,20 +157,19 @@ pub struct StudyRow {
     pub evaluations: Option<f64>,
     /// Why the method stopped.
     pub stop: Option<&'static str>,
-    /// What a trace said.
+    /// Result of a trace.
     pub traced: Option<Box<TraceAnswer>>,
-    /// Figures of manoeuvres that were predicted from the answer, empty where it has no covariance; `None` where
-    /// nothing is predicted.
+    /// Predicted figures of manoeuvres, empty without a covariance; `None` where nothing is predicted.
     pub predicted: Option<Box<[PredictedFigure]>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }
 
 impl StudyRow {
-    /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else
-    /// those of the first-order response nearest to it.
+    /// True K (1/s) and T (s) for this method: those of the base for a trace, which models the effects, otherwise those
+    /// of the nearest first-order response.
     pub fn truth(&self) -> [Option<f64>; 2] {
-        match (&self.traced, self.own_k_per_s, self.own_t_s) {
+        match (&self.traced, self.base_k_per_s, self.base_t_s) {
             (Some(_), k @ Some(_), t @ Some(_)) => [k, t],
             _ => [self.true_k_per_s, self.true_t_s],
         }
@@ -182,6 +180,6 @@ impl StudyRow {
         let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.truth());
         let over = |k: Option<f64>, t: Option<f64>| Some(k? / t?);
         [(k, true_k), (t, true_t), (over(k, t), over(true_k, true_t))]
-            .map(|(found, truth)| Some(found? / truth? - 1.0).filter(|error| error.is_finite()))
+            .map(|(estimate, truth)| Some(estimate? / truth? - 1.0).filter(|error| error.is_finite()))
     }
 }

@@ -85,14 +85,14 @@ fn sizes_of_effects_belong_to_the_effects_named() {
     for named in [named, Vec::new()] {
         let whole = row(named.clone());
         let text = get(&whole).expect("a trace has sizes").into_owned();
-        let without = named.iter().map(|own| NamedEffect { sizes: Vec::new(), ..own.clone() }).collect();
+        let without = named.iter().map(|effect| NamedEffect { sizes: Vec::new(), ..effect.clone() }).collect();
         let mut read = row(without);
         assert_eq!(set(&mut read, &text), Ok(()));
         assert_eq!(read, whole);
     }
-    let mut one = row(vec![effect("speed_loss", Vec::new())]);
+    let mut unread = row(vec![effect("speed_loss", Vec::new())]);
     for text in ["m_a=1+e=2", "m_a", "m_a=x", "m_a=1±x"] {
-        assert!(set(&mut one, text).is_err(), "{text}");
+        assert!(set(&mut unread, text).is_err(), "{text}");
     }
 }
 
@@ -157,15 +157,15 @@ fn a_block_is_read_as_it_was_written() {
 fn blocks_of_something_else_are_told_from_damaged_ones() {
     let layout = RowLayout::of(&design());
     let bytes = written(&trials(2), &layout);
-    let others = [
+    let labels = [
         BlockLabel { design: "e".into(), ..label() },
         BlockLabel { seed: 2, ..label() },
         BlockLabel { program: "q".into(), ..label() },
         BlockLabel { cell: 0, ..label() },
         BlockLabel { block: 0, ..label() },
     ];
-    for other in others {
-        assert_eq!(decode(bytes.clone(), &other, &layout), Err(Damage::Foreign(label())));
+    for label_of_other in labels {
+        assert_eq!(decode(bytes.clone(), &label_of_other, &layout), Err(Damage::Foreign(label())));
     }
     let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
     let other_method = Design { methods: design().methods.split_off(1), ..design() };
@@ -181,7 +181,7 @@ fn a_damaged_block_never_gives_other_rows() {
     let layout = RowLayout::of(&design());
     let rows = trials(4);
     let bytes = written(&rows, &layout);
-    let mut found = 0;
+    let mut detected = 0;
     for place in 0..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[place] ^= 1 << (place % 8);
@@ -190,10 +190,10 @@ fn a_damaged_block_never_gives_other_rows() {
         match decode(damaged, &label(), &layout) {
             Ok(read) => assert!(read == rows, "byte {place}"),
             Err(Damage::Foreign(other)) => panic!("byte {place}: {other:?}"),
-            Err(Damage::Changed(_)) => found += 1,
+            Err(Damage::Changed(_)) => detected += 1,
         }
     }
-    assert!(3 * found > bytes.len(), "{found} of {}", bytes.len());
+    assert!(3 * detected > bytes.len(), "{detected} of {}", bytes.len());
 }
 
 #[test]
@@ -212,8 +212,8 @@ fn errors_are_relative_to_the_truth() {
         true_t_s: Some(16.3),
         ..StudyRow::default()
     };
-    let near = |found: Option<f64>, expected: f64| (found.expect("a truth") - expected).abs() < 1e-12;
-    assert!(row.errors().into_iter().zip([0.1, -2.0, -2.1]).all(|(found, expected)| near(found, expected)));
+    let near = |error: Option<f64>, expected: f64| (error.expect("a truth") - expected).abs() < 1e-12;
+    assert!(row.errors().into_iter().zip([0.1, -2.0, -2.1]).all(|(error, expected)| near(error, expected)));
     assert_eq!(StudyRow { true_k_per_s: None, ..row.clone() }.errors()[0], None);
     assert_eq!(StudyRow { t_s: Some(0.0), ..row }.errors()[2], None, "an infinite error is none");
 }
@@ -223,7 +223,7 @@ fn every_column_is_documented() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/results.md"))
         .expect("the page is there");
     for RowColumn { name, meaning, .. } in
-        COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&RECORD_COLUMNS).chain(&PREDICT_COLUMNS)
+        COLUMNS.iter().chain(&BASE_COLUMNS).chain(&TRACE_COLUMNS).chain(&RECORD_COLUMNS).chain(&PREDICT_COLUMNS)
     {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");

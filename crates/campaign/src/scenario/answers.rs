@@ -1,16 +1,16 @@
-//! Answers that somebody found elsewhere to the trials of a scenario, as one more method of it.
+//! Answers of an outside estimator to the trials of a scenario, as a further method.
 
 use std::collections::HashMap;
 
 use identify::{Answer, Estimate, IdentifyError};
 
-/// A trial: its cell, and its number there.
+/// Cell and replicate of a trial.
 pub type TrialNumber = (u64, u64);
 
-/// Id of a method whose answers come as a table.
+/// Id of a method whose answers are read from a table.
 pub const ID: &str = "external";
 
-/// Answers by trial. A trial without one has failed.
+/// Answers by trial. A trial without an answer counts as failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
     answers: HashMap<TrialNumber, Result<Answer, String>>,
@@ -18,22 +18,21 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Answers, or reasons why there is none, and the SHA-256 of what they were read from, which tells them from
-    /// others.
+    /// Answers, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
     pub fn new(answers: HashMap<TrialNumber, Result<Answer, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }
 
-    /// What they were read from.
+    /// SHA-256 of their source.
     pub fn sha256(&self) -> &str {
         &self.sha256
     }
 
-    /// The answer to a trial.
+    /// Estimate for a trial; fails with the reason of a missing answer.
     pub fn to(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
-            Some(Err(words)) => Err(IdentifyError::outside(words)),
+            Some(Err(reason)) => Err(IdentifyError::outside(reason)),
             None => Err(IdentifyError::outside("no answer")),
         }
     }

@@ -1,4 +1,4 @@
-//! Cells of a design: everything about a trial but its chance, and how one with drawn values is made.
+//! Cells of a design: the specification of their trials, drawn values included, and their methods.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -17,49 +17,49 @@ use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
 
-/// One cell of the design: everything but chance is fixed.
+/// One cell of the design: the distribution of its trials is fixed.
 pub struct DesignCell {
-    /// Labels of its points, one an axis.
+    /// Labels of its points, one per axis.
     pub labels: Vec<String>,
-    /// Values of its points, where an axis is a number.
+    /// Values of its points, for numeric axes.
     pub values: Vec<Option<f64>>,
     /// The methods, all on the same trial.
     pub methods: Vec<Method>,
-    /// Where its trials come from.
+    /// Source of its trials.
     pub(crate) source: TrialSource,
 }
 
-/// Where the trials of a cell come from.
+/// Source of the trials of a cell.
 pub(crate) enum TrialSource {
-    /// They are simulated.
+    /// Simulation.
     Simulated {
-        /// How a trial is made; drawn values are in the middle of their distributions.
+        /// Specification of a trial, with drawn values at the middle of their distributions.
         specification: Box<Specification>,
-        /// How a trial with drawn values is made.
+        /// Template for trials with drawn values.
         drawn: Option<DrawnSettings>,
     },
-    /// They are records.
+    /// Measured records.
     Measured(RecordSet),
 }
 
-/// What a trial with drawn values is made from.
+/// Template of trials with drawn values.
 pub(crate) struct DrawnSettings {
     draws: Vec<DrawnKey>,
-    /// What the document of the cell says of how a trial is made.
+    /// The part of the document that specifies a trial.
     document: Table,
     name: String,
     folder: PathBuf,
 }
 
-/// How one trial is made.
+/// Specification of one trial, with its drawn values.
 pub struct TrialSpecification<'a> {
-    /// The specification, whole.
+    /// Complete specification.
     pub specification: Cow<'a, Specification>,
     /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::scenario::Scenario::draws).
     pub drawn: Vec<f64>,
 }
 
-/// Drawn values that make no trial.
+/// Refusal of drawn values for which no trial can be specified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct Refusal(String);
@@ -71,12 +71,12 @@ impl DesignCell {
         Self { labels, values, methods, source }
     }
 
-    /// Whether one of its methods is a trace.
+    /// `true` if one of its methods is a trace.
     pub fn traces(&self) -> bool {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
     }
 
-    /// The records of a study of measured ones.
+    /// Records of a cell of measured records.
     pub fn record_set(&self) -> Option<&RecordSet> {
         match &self.source {
             TrialSource::Simulated { .. } => None,
@@ -84,7 +84,7 @@ impl DesignCell {
         }
     }
 
-    /// How its trials are simulated, where they are.
+    /// Specification of simulated trials.
     fn specification(&self) -> Option<&Specification> {
         match &self.source {
             TrialSource::Simulated { specification, .. } => Some(specification),
@@ -92,47 +92,45 @@ impl DesignCell {
         }
     }
 
-    /// Simulated records of each of its trials.
+    /// Number of simulated records per trial.
     pub fn records(&self) -> usize {
-        self.specification().map_or(0, |own| 1 + own.also.len())
+        self.specification().map_or(0, |spec| 1 + spec.also.len())
     }
 
-    /// Manoeuvres of a simulated trial: that of its record, those of further ones, and the one that judges.
+    /// Manoeuvres of a simulated trial: of its record, of further records, and of the validation.
     pub fn manoeuvres(&self) -> Vec<&Manoeuvre> {
         let Some(Specification { simulation, also, validation, .. }) = self.specification() else { return Vec::new() };
         std::iter::once(simulation).chain(also).chain(validation).map(|made| &made.manoeuvre).collect()
     }
 
-    /// Effects a first-order base lacks in its trials, as far as they are known.
+    /// Identifiers of the effects that a first-order base lacks in its trials.
     pub fn missing(&self) -> Vec<String> {
-        self.specification().map_or_else(Vec::new, |own| own.missing.clone())
+        self.specification().map_or_else(Vec::new, |spec| spec.missing.clone())
     }
 
-    /// Whether its ship states what is right to say of it.
+    /// `true` if its ship states the missing physics.
     pub(crate) fn states_physics(&self) -> bool {
-        self.specification().is_some_and(|own| own.stated.is_some())
+        self.specification().is_some_and(|spec| spec.stated.is_some())
     }
 
-    /// The physics that a first-order base lacks in its trials: as the ship states it, or effects of the list.
+    /// Physics that a first-order base lacks in its trials: as stated by the ship, or from its listed effects.
     pub(crate) fn physics(&self) -> Option<MissingPhysics> {
         let Specification { stated, missing, simulation, .. } = self.specification()?;
         let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
         stated.clone().or_else(|| MissingPhysics::of_effects(missing, is_disturbed))
     }
 
-    /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order
-    /// response nearest to it.
+    /// `true` for a first-order base with effects, whose K and T differ from those of the nearest first-order response.
     pub fn has_own_indices(&self) -> bool {
-        self.specification().is_some_and(|own| own.truth.is_none() && own.base.is_some())
+        self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
     }
 
-    /// Whether the ship is simulated and no first-order response, so that K and T of a method are held against those of
-    /// the response nearest to it.
+    /// `true` for a simulated ship that is not first order, so that K and T are compared with the nearest response.
     pub fn is_nearest(&self) -> bool {
-        self.specification().is_some_and(|own| own.truth.is_none())
+        self.specification().is_some_and(|spec| spec.truth.is_none())
     }
 
-    /// Length and approach speed of the ship, where they are known; with drawn values those in the middle.
+    /// Length and approach speed of the ship, where known; for drawn values at the middle of their distributions.
     pub fn particulars(&self) -> Option<Particulars> {
         match &self.source {
             TrialSource::Simulated { specification, .. } => specification.simulation.vessel.particulars(),
@@ -140,24 +138,24 @@ impl DesignCell {
         }
     }
 
-    /// Whether its trials make an assumption.
+    /// `true` if its trials make an assumption.
     pub(crate) fn assumes(&self, assumption: Assumption) -> bool {
-        self.specification().is_some_and(|own| assumption.holds(&own.simulation))
+        self.specification().is_some_and(|spec| assumption.holds(&spec.simulation))
     }
 
-    /// Labels of the points joined, or nothing when there is no axis.
+    /// Labels of its points joined by commas; empty without axes.
     pub fn title(&self) -> String {
         self.labels.join(", ")
     }
 
-    /// Whether all its trials have one specification.
+    /// `true` if all its trials share one specification.
     pub fn is_fixed(&self) -> bool {
         !matches!(self.source, TrialSource::Simulated { drawn: Some(_), .. })
     }
 
-    /// How the trial of `key` is made.
+    /// Specification of the trial of `key`.
     ///
-    /// Fails when drawn values make no trial, which only a distribution without ends can do, and for measured records.
+    /// Fails for measured records, and for drawn values that specify no trial, which needs an unbounded distribution.
     pub fn specimen(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
         let TrialSource::Simulated { specification, drawn } = &self.source else {
             return Err(Refusal("the trials are measured records, and nothing is simulated".to_owned()));
@@ -166,16 +164,16 @@ impl DesignCell {
             return Ok(TrialSpecification { specification: Cow::Borrowed(&**specification), drawn: Vec::new() });
         };
         let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
-        let specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
+        let specification = drawn.specification(&values).map_err(|fault| Refusal(fault.problem))?;
         Ok(TrialSpecification { specification: Cow::Owned(specification), drawn: values })
     }
 }
 
 impl DrawnSettings {
-    /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of
-    /// all; `None` where nothing is drawn.
+    /// Template of a cell with the specification at the middle of all draws; `None` without draws. Each draw is checked
+    /// at the middle and at the ends of its range.
     ///
-    /// Fails with the draw at fault and what is wrong with the trial.
+    /// Fails with the index of the faulty draw and the fault.
     fn new(
         draws: &[DrawnKey],
         document: &Table,
@@ -185,25 +183,25 @@ impl DrawnSettings {
         if draws.is_empty() {
             return Ok(None);
         }
-        let attributed = |index: usize, problem: KeyFault| {
-            let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
-            (of_key.unwrap_or(index), problem)
+        let attributed = |index: usize, fault: KeyFault| {
+            let of_key = draws.iter().position(|draw| draw.key.is_related(&fault.key));
+            (of_key.unwrap_or(index), fault)
         };
         let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
         let document = only(document, &[ScenarioPart::Trial]);
         let drawn = Self { draws: draws.to_vec(), document, name: name.to_owned(), folder: folder.to_owned() };
-        let specification = drawn.specification(&middle).map_err(|problem| attributed(0, problem))?;
+        let specification = drawn.specification(&middle).map_err(|fault| attributed(0, fault))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
                 let mut values = middle.clone();
                 values[index] = value;
-                drawn.specification(&values).map_err(|problem| attributed(index, problem))?;
+                drawn.specification(&values).map_err(|fault| attributed(index, fault))?;
             }
         }
         Ok(Some((drawn, specification)))
     }
 
-    /// The specification with these values.
+    /// Specification with drawn values.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
@@ -214,7 +212,7 @@ impl DrawnSettings {
     }
 }
 
-/// Some parts of a document, and empty ones where a document needs more.
+/// Selected parts of a document, with empty values for other required keys.
 pub(crate) fn only(document: &Table, parts: &[ScenarioPart]) -> Table {
     let empty = [
         ("question", Value::String(String::new())),
@@ -227,19 +225,19 @@ pub(crate) fn only(document: &Table, parts: &[ScenarioPart]) -> Table {
     some
 }
 
-/// What the points of a cell change.
+/// Settings of the points of a cell.
 fn settings<'a>(points: &'a [&sweep::SweepPoint]) -> impl DoubleEndedIterator<Item = &'a sweep::SweepSetting> {
     points.iter().flat_map(|point| &point.set)
 }
 
-/// A document with the keys of points changed.
+/// Document with the settings of points applied.
 fn changed(document: &Table, points: &[&sweep::SweepPoint]) -> Result<Table, KeyFault> {
     let mut changed = document.clone();
     settings(points).try_for_each(|setting| sweep::set(&mut changed, &setting.key, setting.value.clone()))?;
     Ok(changed)
 }
 
-/// The methods of a cell: those of the design, with settings of their own.
+/// Methods of a cell. Fails unless their labels are those of the design.
 fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Method>, KeyFault> {
     let methods = methods(wires)?;
     if methods.iter().map(|method| &method.label).eq(design.iter().map(|method| &method.label)) {
@@ -248,13 +246,12 @@ fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Me
     Err(KeyFault::value(
         KeyPath::dotted("identifier"),
         "the methods are not the same in every cell",
-        "expected settings of methods",
-        "sweep settings only, and name every method once in an [[identifier]] of its own",
+        "expected the same labels in every cell",
+        "sweep only settings of methods, and give every method one [[identifier]]",
     ))
 }
 
-/// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved
-/// like any scenario.
+/// One cell of simulated trials: the document with the settings of its points, resolved like any scenario.
 pub(crate) fn swept(
     document: &Table,
     points: &[&sweep::SweepPoint],
@@ -264,29 +261,28 @@ pub(crate) fn swept(
 ) -> Result<DesignCell, KeyFault> {
     let labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
     let cell = (labels.len() > 1).then(|| labels.join(", "));
-    // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
-    // several.
-    let attribute = |problem: KeyFault| {
-        let of_key = settings(points).rfind(|setting| setting.key.is_related(&problem.key));
+    // The point that sets the faulty key, or a key above or below it; otherwise the last point.
+    let attribute = |fault: KeyFault| {
+        let of_key = settings(points).rfind(|setting| setting.key.is_related(&fault.key));
         match of_key.or_else(|| settings(points).next_back()) {
-            Some(setting) => setting.attributed(problem, cell.as_deref()),
-            None => problem,
+            Some(setting) => setting.attributed(fault, cell.as_deref()),
+            None => fault,
         }
     };
     let changed = changed(document, points).map_err(attribute)?;
     let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
     let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
-    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(attribute)?;
+    limits::entries("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
     let draws: Vec<DrawnKey> = wire
         .draw
         .iter()
         .enumerate()
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
-        .map_err(|problem| if points.is_empty() { problem } else { attribute(problem) })?;
+        .map_err(|fault| if points.is_empty() { fault } else { attribute(fault) })?;
     let drawn = DrawnSettings::new(&draws, &changed, name, folder)
-        .map_err(|(draw, problem)| draws[draw].attributed(problem, cell.as_deref()))?;
+        .map_err(|(draw, fault)| draws[draw].attributed(fault, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),
@@ -295,18 +291,18 @@ pub(crate) fn swept(
     Ok(DesignCell::new(points, methods, source))
 }
 
-/// One cell of a design of measured records: the document with the keys of its points changed.
+/// One cell of measured records: the document with the settings of its points.
 ///
-/// Fails as the document alone would, at the point that is at fault; the document alone need not be whole.
+/// Fails at the faulty point; the document without the points need not be complete.
 pub(crate) fn measured(
     document: &Table,
     points: &[&sweep::SweepPoint],
     design: &[Method],
     folder: &Path,
 ) -> Result<DesignCell, KeyFault> {
-    let attribute = |problem: KeyFault| match settings(points).rfind(|own| own.key.is_related(&problem.key)) {
-        Some(setting) => setting.attributed(problem, None),
-        None => problem,
+    let attribute = |fault: KeyFault| match settings(points).rfind(|setting| setting.key.is_related(&fault.key)) {
+        Some(setting) => setting.attributed(fault, None),
+        None => fault,
     };
     let changed = changed(document, points).map_err(attribute)?;
     let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;

@@ -1,4 +1,4 @@
-//! A scenario that has been checked in every cell, and how it is read.
+//! The checked scenario: reading, resolving and extending it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,16 +25,16 @@ use crate::scenario::wire::ScenarioWire;
 use crate::scenario::words::{Published, Words};
 use crate::scenario::{checks, locate, name, reader, resolve, resolved};
 
-/// The key that stands in the place of ship, manoeuvre and instruments.
+/// Key of a study of measured records, in place of ship, manoeuvre and instruments.
 const RECORDS: &str = "records";
 
-/// A scenario that has been checked in every cell.
+/// A scenario, checked in every cell.
 pub struct Scenario {
     /// Stem of the file.
     pub name: String,
     /// Key of every random draw.
     pub seed: u64,
-    /// Trials per cell.
+    /// Largest number of trials per cell.
     pub replicates: u64,
     /// Axes of the design.
     pub axes: Vec<SweepAxis>,
@@ -42,15 +42,15 @@ pub struct Scenario {
     pub cells: Vec<DesignCell>,
     /// Values of other authors.
     pub published: Published,
-    /// What it says about itself.
+    /// Its prose and presentation.
     pub words: Words,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
-    /// When a cell has had enough trials.
+    /// Stopping rule of the cells.
     pub stop: Option<StopRule>,
-    /// What every answer has to predict.
+    /// Manoeuvres predicted from every estimate.
     pub predictions: Option<Predictions>,
-    /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the records it replays.
+    /// SHA-256 of the design and of the records it replays; a seed from the command line is not included.
     pub design_sha256: String,
     /// The file as it was read.
     pub text: String,
@@ -58,7 +58,7 @@ pub struct Scenario {
     pub sha256: String,
 }
 
-/// What a manifest says of the scenario that was run; it may say more.
+/// The part of a manifest from which its scenario is read.
 #[derive(Deserialize)]
 struct ManifestScenario {
     name: String,
@@ -67,30 +67,30 @@ struct ManifestScenario {
 }
 
 impl Scenario {
-    /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
+    /// Reads and resolves a scenario file, or the scenario of a manifest with the seed of its run.
     ///
-    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name
-    /// of the study, which its folder is called by, has to be one ([`name::file`]).
+    /// Fails with a message that names file, line and key, the value found and what was expected. The name of the study
+    /// must be a valid file name ([`name::file`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::file(&manifest.name).map_err(|unfit| {
-                let KeyFault { key, mark, found, expected, advice } =
+                let KeyFault { key, mark, problem, expected, advice } =
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
-                Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
+                Failure::at(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
         }
         Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
-    /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
+    /// Resolves the text of a scenario; messages and relative paths refer to `path`.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
         let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
-        let scenario = Self::of_document(&document, name, folder).map_err(|problem| {
-            let span = locate::span(&text, &problem.key, problem.mark);
-            Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
+        let scenario = Self::of_document(&document, name, folder).map_err(|fault| {
+            let span = locate::span(&text, &fault.key, fault.mark);
+            Failure::at(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
         let design = identity::design_of(&document);
         let design_sha256 = match document.contains_key(RECORDS) {
@@ -101,7 +101,7 @@ impl Scenario {
         Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
-    /// Resolves a document; its identity and text are for the caller to set.
+    /// Resolves a document; the caller sets identity and text.
     fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         if document.is_empty() {
             return Err(KeyFault::name(
@@ -122,7 +122,7 @@ impl Scenario {
             output: wire.output.clone(),
         };
         words.check()?;
-        // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
+        // The document must be valid without sweeps and draws, which change it but do not complete it.
         resolve::specification(&wire, name, folder)?;
         let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
@@ -161,18 +161,17 @@ impl Scenario {
         checks::titles(&axes)?;
         let cells = combinations.iter().map(|points| cell::measured(document, points, &methods, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
-        let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.questions.len() as u64);
+        let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.splits.len() as u64);
         let replicates = counts.max().unwrap_or(0);
-        // Where all records are absent there is no trial; who runs the study says so.
+        // Without any record there is no trial, which is reported when the study runs.
         checks::size(replicates.max(1), cells.len(), methods.len())?;
         let design = Self::of_design(name, words, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
 
-    /// A design of which nothing is published, drawn, stopped or predicted; number of trials, seed, identity and text
-    /// are for the caller to set.
+    /// Scenario of cells and methods alone; the caller sets trials, seed, identity, text and optional parts.
     ///
-    /// Fails where the words speak of cells, axes or methods that are not there.
+    /// Fails where the presentation names cells, axes or methods that do not exist.
     fn of_design(
         name: &str,
         words: Words,
@@ -200,18 +199,17 @@ impl Scenario {
         })
     }
 
-    /// Trials of a cell, at most: those of a study of measured records are as many as its records make.
+    /// Largest number of trials of a cell; for measured records the number of splits.
     pub fn trials_of(&self, cell: usize) -> u64 {
-        self.cells[cell].record_set().map_or(self.replicates, |set| set.questions.len() as u64)
+        self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
-    /// Trials of all cells, at most.
+    /// Largest number of trials of all cells.
     pub fn trials(&self) -> u64 {
         (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
     }
 
-    /// The same scenario with those of its methods that have one of these labels, all of no label; `None` where none
-    /// is left.
+    /// The scenario with the methods of these labels, or all for an empty list; `None` without any.
     pub fn with_methods(mut self, labels: &[String]) -> Option<Self> {
         if !labels.is_empty() {
             for cell in &mut self.cells {
@@ -222,37 +220,37 @@ impl Scenario {
         (!self.cells[0].methods.is_empty()).then_some(self)
     }
 
-    /// The same scenario with a method of the caller's own behind its methods, on the same trials.
+    /// The scenario with a method of the caller after its methods, on the same trials.
     ///
-    /// Fails when the label cannot be one, or is that of another method.
+    /// Fails for an invalid label, and for that of another method.
     pub fn with_identifier(self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
         let id = identifier.id();
         self.with(label, Procedure::Identify { settings: None, identifier }, id)
     }
 
-    /// The same scenario with answers from elsewhere behind its methods.
+    /// The scenario with answers of an outside estimator after its methods.
     ///
-    /// Fails when the label cannot be one, or is that of another method.
+    /// Fails for an invalid label, and for that of another method.
     pub fn with_answers(self, label: &str, answers: Answers) -> Result<Self, Failure> {
-        let own = format!("answers {}", answers.sha256());
-        self.with(label, Procedure::Answers(Arc::new(answers)), &own)
+        let content = format!("answers {}", answers.sha256());
+        self.with(label, Procedure::Answers(Arc::new(answers)), &content)
     }
 
-    /// One more method; `own` tells it from others in the identity of the study.
-    fn with(mut self, label: &str, procedure: Procedure, own: &str) -> Result<Self, Failure> {
+    /// The scenario with a further method; `identity_text` enters the SHA-256 of the design.
+    fn with(mut self, label: &str, procedure: Procedure, identity_text: &str) -> Result<Self, Failure> {
         name::label(label)
             .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
-        if self.labels().any(|known| known == label) {
+        if self.labels().any(|other| other == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
         }
-        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {own}", self.design_sha256)));
+        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {identity_text}", self.design_sha256)));
         for cell in &mut self.cells {
             cell.methods.push(Method { label: label.to_owned(), procedure: procedure.clone() });
         }
         Ok(self)
     }
 
-    /// The scenario with nothing left out, as TOML: every default that was taken is marked as one.
+    /// The scenario as TOML with all defaults written out and marked.
     pub fn resolved(&self) -> String {
         let document: Table = self.text.parse().expect("it has been read");
         if document.contains_key(RECORDS) {
@@ -261,10 +259,9 @@ impl Scenario {
         resolved::text(&document, &self.cells[0].methods).expect("it has been resolved")
     }
 
-    /// What the scenario leaves to be assumed and can decide what it finds, what does most harm first, each as a
-    /// sentence without its full stop.
+    /// Assumptions that can influence the result, most harmful first, each as a sentence without full stop.
     pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
-        let made = |assumption: Assumption| {
+        let described = |assumption: Assumption| {
             let cells = self.cells.iter().filter(|cell| cell.assumes(assumption)).count();
             let sentence = assumption.sentence();
             match cells {
@@ -273,7 +270,7 @@ impl Scenario {
                 some => Some((assumption, format!("in {some} of {} cells {sentence}", self.cells.len()))),
             }
         };
-        Assumption::ALL.into_iter().filter_map(made).collect()
+        Assumption::ALL.into_iter().filter_map(described).collect()
     }
 
     /// Labels and ids of the methods, in the order of the scenario.
@@ -291,7 +288,7 @@ impl Scenario {
     }
 }
 
-/// A file that is not TOML, at the place where it stops to be.
+/// Failure of a text that is not TOML, at the faulty place.
 fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
     let span = error.span().unwrap_or(0..0);
     let message = match error.message() {
@@ -299,18 +296,18 @@ fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
         message => message.split_whitespace().collect::<Vec<_>>().join(" "),
     };
     let advice = match path.extension().is_some_and(|extension| extension == "toml") {
-        true => "mend the line; a scenario is a TOML file of `key = value` lines under [table] headings",
+        true => "correct the line; a scenario is a TOML file of `key = value` lines under [table] headings",
         false => "give a scenario (a TOML file); a record is identified with `study fit`",
     };
     Failure::at(path, text, span, "this is not valid TOML", &message, advice)
 }
 
-/// Where relative files of a scenario are looked for.
+/// Folder to which relative paths of a scenario refer.
 fn folder_of(path: &Path) -> PathBuf {
     path.parent().map(PathBuf::from).unwrap_or_default()
 }
 
-/// A scenario, alone or in a manifest; the longest published one has a hundredth of this.
+/// Limits of a scenario, alone or in a manifest; the longest published one has a hundredth of this.
 const SCENARIO: Kind = Kind { name: "a scenario", largest: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {

@@ -1,4 +1,4 @@
-//! What has to hold for a scenario as a whole: sizes, titles, draws.
+//! Checks of a scenario as a whole: sizes, titles, draws, marks, highlights.
 
 use std::collections::HashSet;
 
@@ -6,14 +6,15 @@ use crate::scenario::cell::DesignCell;
 use crate::scenario::draw::DrawWire;
 use crate::scenario::limits;
 use crate::scenario::method::Method;
-use crate::scenario::name::{self, LONGEST_NAME};
+use crate::scenario::name::{self, MAX_NAME_BYTES};
 use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
 use crate::scenario::sweep::SweepAxis;
 use crate::scenario::words::{Highlight, MarkedValue};
 
-/// Largest number of trials; more is a slip of the pen.
-const MOST_TRIALS: u64 = 1_000_000_000;
+/// Largest number of trials of a study; more is a typing error.
+const MAX_TRIALS: u64 = 1_000_000_000;
 
+/// Checks the number of trials and of methods times cells.
 pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFault> {
     let key = KeyPath::dotted("replicates");
     if replicates == 0 {
@@ -24,53 +25,53 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFaul
             "give the number of trials in every cell, or leave the key out for one",
         ));
     }
-    if cells * methods > limits::MOST_METHODS_OF_CELLS {
+    if cells * methods > limits::MAX_METHODS_OF_CELLS {
         return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {cells} cells, each with {methods} methods"),
-            format!("expected at most {} methods of cells in all", limits::MOST_METHODS_OF_CELLS),
-            "use fewer points or fewer methods, or make several scenarios of this one",
+            format!("expected at most {} cells times methods", limits::MAX_METHODS_OF_CELLS),
+            "use fewer points or fewer methods, or split the scenario",
         ));
     }
-    if replicates.saturating_mul(cells as u64) > MOST_TRIALS {
+    if replicates.saturating_mul(cells as u64) > MAX_TRIALS {
         return Err(KeyFault::value(
             key,
-            format!("`replicates` is {replicates}, for a design of size {cells}"),
-            format!("expected at most {MOST_TRIALS} trials in all"),
+            format!("`replicates` is {replicates}, for a design of {cells} cells"),
+            format!("expected at most {MAX_TRIALS} trials in all"),
             "use fewer replicates; 200 are enough for a first look",
         ));
     }
     Ok(())
 }
 
-/// Files are named after cells, so their labels are not too long together.
+/// Checks the length of cell titles, after which files are named.
 pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let longest = |axis: &SweepAxis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
-    let found = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
-    if found <= LONGEST_NAME {
+    let characters = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
+    if characters <= MAX_NAME_BYTES {
         return Ok(());
     }
     Err(KeyFault::name(
         KeyPath::dotted("sweep"),
-        format!("the labels of a cell have up to {found} characters together"),
-        format!("expected at most {LONGEST_NAME}"),
+        format!("the labels of a cell have up to {characters} characters together"),
+        format!("expected at most {MAX_NAME_BYTES}"),
         "shorten the longest labels, or sweep along fewer axes",
     ))
 }
 
-/// Draws and sweeps change different keys, and no key twice.
+/// Checks that no key is changed by two draws, or by a draw and a sweep.
 pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
-    limits::entries("draw", draws.len(), limits::MOST_DRAWS)?;
+    limits::entries("draw", draws.len(), limits::MAX_DRAWS)?;
     for (index, draw) in draws.iter().enumerate() {
-        let own = KeyPath::dotted(draw.key());
+        let key = KeyPath::dotted(draw.key());
         let place = KeyPath::dotted("draw").child(index).child("key");
-        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).is_related(&own));
+        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).is_related(&key));
         let by_sweep =
-            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.is_related(&own));
+            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.is_related(&key));
         if by_draw || by_sweep {
             return Err(KeyFault::value(
                 place,
-                format!("`{own}` is drawn, and {} changes it too", if by_draw { "another draw" } else { "a sweep" }),
+                format!("`{key}` is drawn, and {} changes it too", if by_draw { "another draw" } else { "a sweep" }),
                 "expected a key that nothing else changes",
                 "remove one of them; a sweep can change the numbers of a draw, for instance `draw.0.normal.sd`",
             ));
@@ -79,28 +80,28 @@ pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     Ok(())
 }
 
-/// Every title is that of a cell.
+/// Checks that every title of `output.detail` is that of a cell.
 pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
-    let known: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
-    let places: HashSet<&str> = known.iter().map(String::as_str).collect();
+    let cell_titles: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
+    let places: HashSet<&str> = cell_titles.iter().map(String::as_str).collect();
     let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
         return Ok(());
     };
     let key = KeyPath::dotted("output.detail").child(index);
-    let words = ["no cell is called", "expected labels of points, joined by commas"];
-    let fault = place_among(title, &known[..known.len().min(20)], key, words);
-    fault.map(|_| ()).map_err(|fault| match known.is_empty() {
+    let messages = ["no cell is called", "expected labels of points, joined by commas"];
+    let fault = place_among(title, &cell_titles[..cell_titles.len().min(20)], key, messages);
+    fault.map(|_| ()).map_err(|fault| match cell_titles.is_empty() {
         true => KeyFault { advice: "leave the key out: a study without a sweep shows its only cell".into(), ..fault },
         false => fault,
     })
 }
 
-/// Every mark is on an axis, at a number, and has a name.
+/// Checks that every mark has an axis, a finite place and a label.
 pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
-    let known: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
+    let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::dotted("output.marks").child(index);
-        place_among(&mark.axis, &known, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
+        place_among(&mark.axis, &axis_names, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
         if !mark.at.is_finite() {
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
@@ -110,7 +111,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     Ok(())
 }
 
-/// Every highlighted name is that of a method, of a point of a sweep or of a cell.
+/// Checks that every highlighted name is that of a method, of a point of a sweep or of a cell.
 pub fn highlight(
     Highlight { series, rows }: &Highlight,
     methods: &[Method],
@@ -119,12 +120,12 @@ pub fn highlight(
 ) -> Result<(), KeyFault> {
     let points = axes.iter().flat_map(|axis| &axis.points).map(|point| point.label.clone());
     let labels = methods.iter().map(|method| method.label.clone()).chain(points);
-    let known: Vec<String> = labels.chain(cells.iter().map(|cell| cell.labels.join(", "))).collect();
-    let words = ["nothing is called", "expected the label of an [[identifier]], of a point of a sweep or of a cell"];
+    let names_in_figures: Vec<String> = labels.chain(cells.iter().map(|cell| cell.labels.join(", "))).collect();
+    let messages = ["nothing is called", "expected the label of an [[identifier]], of a point of a sweep or of a cell"];
     [("series", series), ("rows", rows)].into_iter().try_for_each(|(part, names)| {
         names.iter().enumerate().try_for_each(|(index, name)| {
             let key = KeyPath::dotted("output.highlight").child(part).child(index);
-            place_among(name, &known, key, words).map(|_| ())
+            place_among(name, &names_in_figures, key, messages).map(|_| ())
         })
     })
 }

@@ -1,6 +1,6 @@
-//! Values drawn anew for every trial: `[[draw]]`. A draw has a stream of its own, keyed by the replicate and its place
-//! in the list and not by the cell, so a replicate has the same drawn ship in every cell and another draw changes
-//! nothing of it.
+//! Values drawn for every trial: `[[draw]]`. Each draw has its own random stream, keyed by the replicate and its index
+//! in the list but not by the cell. So a replicate has the same drawn ship in every cell, and further draws do not
+//! change it.
 
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
@@ -13,7 +13,7 @@ use crate::scenario::limits;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath};
 
-/// A draw as it is written.
+/// A draw as written in the file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DrawWire {
@@ -58,7 +58,7 @@ struct RangeWire {
     to: f64,
 }
 
-/// A key that is drawn, and how.
+/// A drawn key with its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnKey {
     /// The key.
@@ -68,23 +68,23 @@ pub struct DrawnKey {
     between: [f64; 2],
 }
 
-/// A distribution of the value, or of its natural logarithm.
+/// Distribution of a value or of its natural logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct DrawnDistribution {
-    /// Its key.
+    /// Its key in the file.
     name: &'static str,
     of_logarithm: bool,
     law: Distribution,
 }
 
-/// Numbers that have been checked.
+/// A distribution with checked parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Distribution {
     Normal {
         mean: f64,
         sd: f64,
     },
-    /// `ends` are those of the value.
+    /// `ends` are the bounds of the value itself.
     Uniform {
         from: f64,
         to: f64,
@@ -92,16 +92,16 @@ enum Distribution {
     },
 }
 
-/// Least probability of the range that is kept: below it, drawing again and again would take for ever.
-const LEAST_PROBABILITY: f64 = 1e-3;
+/// Smallest probability of the range `between`; below it, rejection sampling takes too long.
+const MIN_PROBABILITY: f64 = 1e-3;
 
 impl DrawWire {
-    /// The key that is drawn, with dots.
+    /// The drawn key, dotted.
     pub fn key(&self) -> &str {
         &self.key
     }
 
-    /// Checks a draw; `index` is its place in the list.
+    /// Checks a draw; `index` is its index in the list.
     pub fn resolve(&self, index: usize) -> Result<DrawnKey, KeyFault> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
@@ -113,7 +113,7 @@ impl DrawWire {
             return Err(KeyFault::value(
                 place.child("key"),
                 format!("the draw changes `{key}`"),
-                "expected a key that says how a trial is made",
+                "expected a key of the trial",
                 "for instance `ship.first-order.T-s` or `sensor.heading-noise-deg`",
             ));
         }
@@ -121,11 +121,11 @@ impl DrawWire {
         let between = self.between.unwrap_or_else(|| shape.support());
         let [low, high] = between;
         let draw = DrawnKey { key, index: index as u32, shape, between };
-        if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
+        if !(low < high && draw.probability() >= MIN_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
                 format!("the draw of `{}` is held between {} and {}", draw.key, ShortNumber(low), ShortNumber(high)),
-                format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
+                format!("expected a range that holds at least {} % of the draws", 100.0 * MIN_PROBABILITY),
                 "widen the range, or change the distribution",
             ));
         }
@@ -135,14 +135,14 @@ impl DrawWire {
     /// The distribution.
     fn shape(&self, place: &KeyPath) -> Result<DrawnDistribution, KeyFault> {
         let (name, numbers) = match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
-            (Some(own), None, None, None) => ("normal", [("mean", own.mean), ("sd", own.sd)]),
-            (None, Some(own), None, None) => ("log-normal", [("median", own.median), ("sigma", own.sigma)]),
-            (None, None, Some(own), None) => ("uniform", [("from", own.from), ("to", own.to)]),
-            (None, None, None, Some(own)) => ("log-uniform", [("from", own.from), ("to", own.to)]),
+            (Some(wire), None, None, None) => ("normal", [("mean", wire.mean), ("sd", wire.sd)]),
+            (None, Some(wire), None, None) => ("log-normal", [("median", wire.median), ("sigma", wire.sigma)]),
+            (None, None, Some(wire), None) => ("uniform", [("from", wire.from), ("to", wire.to)]),
+            (None, None, None, Some(wire)) => ("log-uniform", [("from", wire.from), ("to", wire.to)]),
             _ => {
                 return Err(KeyFault::name(
                     place.clone(),
-                    format!("the draw of `{}` does not say from which distribution", self.key),
+                    format!("the draw of `{}` has no distribution, or several", self.key),
                     "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
                     "for instance `uniform = { from = 0.5, to = 3.0 }`",
                 ));
@@ -154,13 +154,13 @@ impl DrawWire {
         for ((number, value), least) in numbers.into_iter().zip(least) {
             let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
             if !(value.is_finite() && value > least && is_within_reach) {
-                let found =
+                let problem =
                     format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, ShortNumber(value));
                 let expected = match least {
                     f64::NEG_INFINITY => "expected a finite number".to_owned(),
                     _ => format!("expected a finite number above {}", ShortNumber(least)),
                 };
-                return Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"));
+                return Err(KeyFault::value(place.child(name).child(number), problem, expected, "change the number"));
             }
         }
         let of_value = |value: f64| if of_logarithm { value.ln() } else { value };
@@ -173,49 +173,49 @@ impl DrawWire {
 }
 
 impl DrawnKey {
-    /// The value of one trial, in the unit of its key.
+    /// Value for one trial, in the unit of its key.
     pub fn value(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
         let [low, high] = self.between;
         loop {
-            let value = self.shape.one(&mut rng);
+            let value = self.shape.sample(&mut rng);
             if (low..=high).contains(&value) {
                 return value;
             }
         }
     }
 
-    /// The middle of the distribution, within its range.
+    /// Middle of the distribution, clamped to its range.
     pub fn middle(&self) -> f64 {
         let [low, high] = self.between;
         self.shape.middle().clamp(low, high)
     }
 
-    /// The ends of its range, where it has any.
+    /// Finite ends of its range.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
     }
 
-    /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
-    /// `cell` names the cell where it helps.
-    pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
+    /// Fault of a drawn trial, attributed to the key of the draw or to its distribution; `cell` names the cell if there
+    /// are several.
+    pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
-        let (key, mark, what) = match problem.mark {
+        let (key, mark, what) = match fault.mark {
             AtFault::Name => (self.place().child("key"), AtFault::Value, "changes a key that cannot be drawn"),
             AtFault::Value | AtFault::Within(_) => {
-                (self.place().child(self.shape.name), AtFault::Name, "reaches a value that makes no trial")
+                (self.place().child(self.shape.name), AtFault::Name, "reaches a value for which no trial can be made")
             }
         };
-        let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
-        KeyFault { key, mark, found, ..problem }
+        let problem = format!("the draw of `{}` {what}{cell}: {}", self.key, fault.problem);
+        KeyFault { key, mark, problem, ..fault }
     }
 
-    /// Where the file says how.
+    /// Path of the draw in the file.
     fn place(&self) -> KeyPath {
         KeyPath::dotted("draw").child(self.index)
     }
 
-    /// Probability of a value within the range.
+    /// Probability of the range.
     fn probability(&self) -> f64 {
         let [below, above] = self.between.map(|end| self.shape.probability_below(end));
         above - below
@@ -223,7 +223,7 @@ impl DrawnKey {
 }
 
 impl DrawnDistribution {
-    fn one(&self, rng: &mut ChaCha8Rng) -> f64 {
+    fn sample(&self, rng: &mut ChaCha8Rng) -> f64 {
         const CHECKED: &str = "its numbers have been checked";
         self.to_value(match self.law {
             Distribution::Normal { mean, sd } => Normal::new(mean, sd).expect(CHECKED).sample(rng),
@@ -231,7 +231,7 @@ impl DrawnDistribution {
         })
     }
 
-    /// What the law is about: the value, or its logarithm.
+    /// Argument of the distribution: the value or its logarithm.
     fn of_value(&self, value: f64) -> f64 {
         if self.of_logarithm { value.ln() } else { value }
     }
@@ -247,7 +247,7 @@ impl DrawnDistribution {
         })
     }
 
-    /// Where it lives.
+    /// Bounds of the distribution.
     fn support(&self) -> [f64; 2] {
         match self.law {
             Distribution::Normal { .. } => [f64::NEG_INFINITY, f64::INFINITY].map(|end| self.to_value(end)),
@@ -281,9 +281,9 @@ mod tests {
     /// Mean and standard deviation against the closed forms, within four standard errors of 20,000 draws.
     fn moments(values: &[f64], mean: f64, sd: f64) {
         let n = values.len() as f64;
-        let found = values.iter().sum::<f64>() / n;
-        let spread = (values.iter().map(|x| (x - found).powi(2)).sum::<f64>() / n).sqrt();
-        assert!((found - mean).abs() < 4.0 * sd / n.sqrt(), "mean {found}, {mean} expected");
+        let sample_mean = values.iter().sum::<f64>() / n;
+        let spread = (values.iter().map(|x| (x - sample_mean).powi(2)).sum::<f64>() / n).sqrt();
+        assert!((sample_mean - mean).abs() < 4.0 * sd / n.sqrt(), "mean {sample_mean}, {mean} expected");
         assert!((spread / sd - 1.0).abs() < 0.03, "sd {spread}, {sd} expected");
     }
 

@@ -1,5 +1,5 @@
-//! Effects of a scenario: from numbers by the keys that [`ship::effects`] declares their parameters, each checked
-//! against the range its effect declares.
+//! Effects of a scenario, from the parameter keys that [`ship::effects`] declares; every value is checked against the
+//! range that its effect declares.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -18,20 +18,20 @@ use crate::scenario::physics::{self, MissingPhysics, PhysicsWire};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::{limits, reader};
 
-/// The key of a formula in its entry.
+/// Key of a formula.
 const FORMULA: &str = "formula";
 
-/// An entry of `[[effect]]`: an effect of the list with its numbers below, or a formula with values beside it.
+/// Entry of `[[effect]]`: a listed effect with its numbers, or a formula with its constants.
 #[derive(Debug, Clone, Deserialize, Serialize)]
 pub struct EffectWire(Table);
 
-/// An effect in one of the forms in which a scenario adds it, with the keys of its numbers.
+/// One form of an effect, with the keys of its numbers.
 struct EffectForm {
     effect: Arc<dyn Effect>,
     keys: Vec<NumberKey>,
 }
 
-/// The forms in the order of the list of effects, keys in the order of their parameters.
+/// Forms in the order of the list of effects, keys in the order of parameters.
 static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     let form = |effect: Arc<dyn Effect>| {
         let keys = effect.in_file()?.into_iter().map(NumberKey::from).collect();
@@ -40,7 +40,7 @@ static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     ship::effects::all().into_iter().filter_map(form).collect()
 });
 
-/// The effects that a scenario can add.
+/// Identifiers of the effects that a scenario can add.
 static IDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     let mut ids: Vec<&str> = FORMS.iter().map(|form| form.effect.id()).collect();
     ids.dedup();
@@ -53,23 +53,23 @@ impl From<FileNumber> for NumberKey {
     }
 }
 
-/// The forms of an effect; none where there is no such effect.
+/// Forms of an effect; empty for an unknown one.
 fn forms_of(id: &str) -> Vec<&'static EffectForm> {
     FORMS.iter().filter(|form| form.effect.id() == id).collect()
 }
 
-/// The effects with nothing left out.
+/// Writes the defaults of effects out.
 pub fn complete(entries: &mut [EffectWire]) {
     for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.0) {
         let keys = forms_of(id).into_iter().flat_map(|form| &form.keys);
-        for (own, default) in keys.filter_map(|own| Some((own, own.default?))) {
-            let table = numbers.as_table_mut().filter(|table| !table.contains_key(own.key));
-            table.map(|table| table.insert(own.key.to_owned(), default.into()));
+        for (number, default) in keys.filter_map(|number| Some((number, number.default?))) {
+            let table = numbers.as_table_mut().filter(|table| !table.contains_key(number.key));
+            table.map(|table| table.insert(number.key.to_owned(), default.into()));
         }
     }
 }
 
-/// The form that an entry asks for, with the key of it and its numbers.
+/// Form selected by an entry, with its key and numbers.
 fn asked<'a>(
     entry: &'a NamedNumbers,
     place: &KeyPath,
@@ -79,49 +79,49 @@ fn asked<'a>(
     if forms.is_empty() {
         return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &IDS)));
     }
-    let known: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
-    number_table::refuse_unknown(numbers, &known, &key)?;
+    let keys: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
+    number_table::refuse_unknown(numbers, &keys, &key)?;
     if forms.len() > 1 && numbers.len() != 1 {
-        return Err(reader::not_one_name(key, numbers.keys(), &known.iter().map(|own| own.key).collect::<Vec<_>>()));
+        return Err(reader::not_one_name(key, numbers.keys(), &keys.iter().map(|entry| entry.key).collect::<Vec<_>>()));
     }
-    let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|own| own.key == name));
+    let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|number| number.key == name));
     let form = forms.into_iter().find(has_all).expect("every key is known");
     number_table::refuse_incomplete(numbers, &form.keys, &key)?;
     Ok((form, key, numbers))
 }
 
-/// An effect that is written as a formula, with the value of every constant of it.
+/// Effect written as a formula, with the values of its constants.
 fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), KeyFault> {
     let (mut values, key) = (entry.clone(), place.child(FORMULA));
     let line = match values.remove(FORMULA) {
         Some(Value::String(line)) => line,
         other => {
-            let found = other.map_or_else(String::new, |value| value.to_string());
-            return Err(KeyFault::of(key, found, "expected a text in quotes", "write `name = formula` in quotes"));
+            let value = other.map_or_else(String::new, |value| value.to_string());
+            return Err(KeyFault::of(key, value, "expected a text in quotes", "write `name = formula` in quotes"));
         }
     };
     let formula = read(&line, key)?;
     values.retain(|name, _| !physics::KEYS.contains(&name));
     let values: BTreeMap<String, f64> = reader::table(&values, place)?;
     let keys: Vec<NumberKey> =
-        formula.parameters().iter().map(|own| NumberKey::required(own.key, "A constant of the formula.")).collect();
+        formula.parameters().iter().map(|entry| NumberKey::required(entry.key, "A constant of the formula.")).collect();
     number_table::refuse_unknown(&values, &keys, place)?;
     number_table::refuse_incomplete(&values, &keys, place)?;
-    for own in formula.parameters() {
-        let value = values[own.key];
-        if !own.holds(value) {
+    for constant in formula.parameters() {
+        let value = values[constant.key];
+        if !constant.holds(value) {
             let expected =
-                format!("expected a number from {} to {}", ShortNumber(own.lowest), ShortNumber(own.highest));
-            return Err(KeyFault::of(place.child(own.key), ShortNumber(value), expected, "change the value"));
+                format!("expected a number from {} to {}", ShortNumber(constant.lowest), ShortNumber(constant.highest));
+            return Err(KeyFault::of(place.child(constant.key), ShortNumber(value), expected, "change the value"));
         }
     }
-    let values = formula.parameters().iter().map(|own| values[own.key]).collect();
+    let values = formula.parameters().iter().map(|constant| values[constant.key]).collect();
     Ok((formula, values))
 }
 
-/// What the one formula of a ship states to be right to say of it; `None` where it says nothing.
+/// Missing physics that the only formula of a ship states; `None` without such keys.
 ///
-/// Fails where the keys contradict themselves, and beside another effect.
+/// Fails for inconsistent keys, and beside another effect.
 pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
     for (index, EffectWire(entry)) in entries.iter().enumerate() {
         let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
@@ -129,15 +129,20 @@ pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault
         let place = KeyPath::dotted("effect").child(index);
         let Some(first) = keys.keys().next() else { continue };
         if entries.len() > 1 {
-            let found = format!("a ship of {} effects says what is right to say of one", entries.len());
-            return Err(KeyFault::name(place.child(first), found, "expected its only effect", "leave the key out"));
+            let problem = format!("`{first}` is given for a ship with {} effects", entries.len());
+            return Err(KeyFault::name(
+                place.child(first),
+                problem,
+                "expected a ship with this effect alone",
+                "leave the key out",
+            ));
         }
         return reader::table::<PhysicsWire>(&keys, &place)?.checked(&place).map(Some);
     }
     Ok(None)
 }
 
-/// The effect of a line `name = formula` at a key.
+/// Effect from a line `name = formula`; faults refer to `key`.
 pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     ship::effects::formula(line).map_err(|error| {
         let advice = "docs/src/howto/own-effect.md says what a formula may hold";
@@ -145,7 +150,7 @@ pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     })
 }
 
-/// Refuses a formula over a channel that the trials lack: its moment would be zero.
+/// Refuses a formula of a channel that the trials lack, since its moment would be zero.
 fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Result<(), KeyFault> {
     let Some(channel) = lacking.iter().find(|channel| formula.is_idle_without(**channel)) else { return Ok(()) };
     let (signal, advice) = match channel {
@@ -154,19 +159,19 @@ fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Res
         Regressor::Wind => ("relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
         Regressor::Propeller => ("propeller revolutions", "leave the effect out"),
     };
-    let found = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
-    Err(KeyFault::value(key, found, "expected a formula over signals of the ship", advice))
+    let problem = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
+    Err(KeyFault::value(key, problem, "expected a formula over signals of the ship", advice))
 }
 
-/// The ship with effects added to its response.
+/// Ship with effects added to its response.
 ///
-/// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, for a
-/// parameter outside its range, and for a formula over channels that the trials are `lacking`.
+/// Fails for a hull, whose equations contain such effects, for a second-order effect on a second-order ship, for a
+/// parameter outside its range, and for a formula of channels that the trials are `lacking`.
 pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
     }
-    limits::entries("effect", entries.len(), limits::MOST_EFFECTS)?;
+    limits::entries("effect", entries.len(), limits::MAX_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let places = entries.iter().enumerate().map(|(index, entry)| (&entry.0, list.child(index)));
     let (formulas, listed): (Vec<_>, Vec<_>) = places.partition(|(entry, _)| entry.contains_key(FORMULA));
@@ -201,7 +206,7 @@ pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Resul
                 let mut ends =
                     [description.lowest, description.highest].map(|end| ShortNumber::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
-                ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+                ends.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let expected = format!("expected a number from {} to {}", ends[0], ends[1]);
                 let advice = format!("change the value; the effect is {}", effect.equation());
                 return Err(KeyFault::of(key, ShortNumber(setting.written), expected, advice));
@@ -213,26 +218,26 @@ pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Resul
     for (entry, place) in formulas {
         let (formula, values) = formula(entry, &place)?;
         refuse_without(&formula, lacking, place.child(FORMULA))?;
-        effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |own| own.length))));
+        effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |ship| ship.length))));
         parameters.extend(values);
     }
     let model = Model::Response(ResponseModel::new(effects).with(parameters));
     Ok(Ship { model, ..ship })
 }
 
-/// One parameter and the key it comes from.
+/// Parameter of an effect, with its key.
 struct EffectParameter {
     /// Value, SI and rad.
     value: f64,
     /// Key below the effect.
     key: &'static str,
-    /// The number behind the key.
+    /// The number as written.
     written: f64,
-    /// The unit of that number in SI.
+    /// Unit of that number in SI.
     unit: f64,
 }
 
-/// The parameters of an effect on a ship with this 1/T, 1/s.
+/// Parameters of an effect on a ship with 1/T `inverse_time`, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
     let keys = form.effect.in_file().unwrap_or_default();
     let setting = |number: &FileNumber| {
@@ -252,7 +257,7 @@ fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f6
     settings
 }
 
-/// The effects: a list, each with one key, its id.
+/// JSON schema of `[[effect]]`.
 pub fn schema(generator: &mut SchemaGenerator) -> Schema {
     let effects = IDS.iter().map(|&id| {
         let forms: Vec<_> = forms_of(id).iter().map(|form| number_table::schema(&form.keys)).collect();

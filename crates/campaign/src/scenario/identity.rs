@@ -1,5 +1,5 @@
-//! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one
-//! give the same rows; where they differ, the keys say how.
+//! Identity of a study: its design, the document without prose and presentation. Equal designs give equal rows;
+//! differences are reported by key.
 
 use std::path::Path;
 use std::{io, iter};
@@ -13,7 +13,7 @@ use trial::reader::RECORD;
 use crate::failure::{Failure, OnPath};
 use crate::scenario::part::ScenarioPart;
 
-/// The document without prose and presentation; comments and layout are gone by themselves.
+/// Design of a document: its keys without prose and presentation.
 pub fn design_of(document: &Table) -> Table {
     document
         .iter()
@@ -24,7 +24,7 @@ pub fn design_of(document: &Table) -> Table {
 
 /// SHA-256 of a design and of the records it replays, each with the sidecar beside it, if any.
 ///
-/// Fails when such a record is there and cannot be read to its end.
+/// Fails when an existing record cannot be read to its end.
 pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
@@ -38,7 +38,7 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
                     for path in iter::once(record).chain(sidecar) {
                         match file::open(&path, RECORD) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
-                            // It has been refused, or belongs to a point that is never resolved with it.
+                            // Refused elsewhere, or overridden in every cell.
                             Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
                             Err(error) => return Err(error).on("read", &path),
                         }
@@ -57,46 +57,46 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Most letters of a value in a message.
-const LONGEST: usize = 60;
+/// Largest length of a value in a message, characters.
+const MAX_VALUE_CHARACTERS: usize = 60;
 
 fn shortened(value: Option<&Value>) -> String {
     let text = value.map_or_else(|| "nothing".to_owned(), Value::to_string);
-    match text.char_indices().nth(LONGEST) {
+    match text.char_indices().nth(MAX_VALUE_CHARACTERS) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text,
     }
 }
 
-/// Keys in which two documents differ, with dots, entries of lists counted from 0, and both values in words.
+/// Differences between two documents, one sentence per dotted key with both values; list entries count from 0.
 pub fn differences(there: &Table, here: &Table) -> Vec<String> {
     differences_below("", there, here)
 }
 
 fn differences_below(path: &str, there: &Table, here: &Table) -> Vec<String> {
     let only = here.keys().filter(|name| !there.contains_key(*name));
-    let of = |name: &String| differences_at(&format!("{path}{name}"), there.get(name), here.get(name));
-    there.keys().chain(only).flat_map(of).collect()
+    let differences_of = |name: &String| differences_at(&format!("{path}{name}"), there.get(name), here.get(name));
+    there.keys().chain(only).flat_map(differences_of).collect()
 }
 
 fn differences_at(key: &str, there: Option<&Value>, here: Option<&Value>) -> Vec<String> {
     match (there, here) {
         (Some(Value::Table(there)), Some(Value::Table(here))) => differences_below(&format!("{key}."), there, here),
         (Some(Value::Array(there)), Some(Value::Array(here))) => {
-            let of = |index: usize| differences_at(&format!("{key}.{index}"), there.get(index), here.get(index));
-            (0..there.len().max(here.len())).flat_map(of).collect()
+            let entry = |index: usize| differences_at(&format!("{key}.{index}"), there.get(index), here.get(index));
+            (0..there.len().max(here.len())).flat_map(entry).collect()
         }
-        (Some(there), Some(here)) if same(there, here) => Vec::new(),
+        (Some(there), Some(here)) if is_same(there, here) => Vec::new(),
         _ => vec![format!("`{key}`: {} there, {} here", shortened(there), shortened(here))],
     }
 }
 
-/// 1 and 1.0 are the same number.
-fn same(one: &Value, other: &Value) -> bool {
+/// `true` for equal values; 1 equals 1.0.
+fn is_same(there: &Value, here: &Value) -> bool {
     let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
-    match (number(one), number(other)) {
-        (Some(one), Some(other)) => one.to_bits() == other.to_bits(),
-        _ => one == other,
+    match (number(there), number(here)) {
+        (Some(there), Some(here)) => there.to_bits() == here.to_bits(),
+        _ => there == here,
     }
 }
 
@@ -128,9 +128,9 @@ mod tests {
     #[test]
     fn prose_and_presentation_are_not_part_of_a_design() {
         let bare = document("seed = 1\n[ship.yukun]");
-        let told = document(
+        let described = document(
             "# Why?\nquestion = \"?\"\nanalysis = \"!\"\nseed    = 1\n[ship.yukun]\n[output]\nshowcase = true",
         );
-        assert_eq!(design_of(&bare), design_of(&told));
+        assert_eq!(design_of(&bare), design_of(&described));
     }
 }

@@ -1,35 +1,35 @@
-//! The keys of a scenario as a list for a person: made from the schema, and so from the types that read the file.
+//! List of the keys of a scenario, generated from the schema and so from the types that read the file.
 
 use serde_json::{Map, Value};
 
-use crate::scenario::key_words::unit_of;
+use crate::scenario::key_units::unit_of;
 use crate::scenario::schema::of_simulated;
 
-/// A key of a scenario, for a person who looks for it.
+/// A key of a scenario with unit, default and meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioKey {
-    /// With dots, from the root of a scenario; `[]` marks an entry of a list.
+    /// Dotted path from the root; `[]` marks an entry of a list.
     pub key: String,
-    /// Unit of the number, or what stands there instead of one.
+    /// Unit of a number, or type of another value.
     pub unit: String,
-    /// What holds when it is left out.
-    pub default: LeftOut,
-    /// In the words of the field.
+    /// Value when the key is left out.
+    pub default: KeyDefault,
+    /// Meaning, from the documentation of the field.
     pub meaning: String,
 }
 
-/// What holds when a key is left out.
+/// Value of a key that is left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum LeftOut {
-    /// It cannot be left out where the table it stands in is given.
+pub enum KeyDefault {
+    /// Not allowed: the key is required wherever its table is given.
     Required,
-    /// What the meaning of the key says.
+    /// As the meaning of the key says.
     Nothing,
-    /// This value, as TOML writes it.
+    /// A default, as TOML writes it.
     Value(String),
 }
 
-impl std::fmt::Display for LeftOut {
+impl std::fmt::Display for KeyDefault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Required => "required",
@@ -39,7 +39,7 @@ impl std::fmt::Display for LeftOut {
     }
 }
 
-/// Every key of a scenario, in the order of its types.
+/// All keys of a scenario, in the order of its types.
 pub fn keys() -> Vec<ScenarioKey> {
     let schema = of_simulated().to_value();
     let mut keys = Vec::new();
@@ -47,22 +47,23 @@ pub fn keys() -> Vec<ScenarioKey> {
     keys
 }
 
-/// Tables whose keys are those of `manoeuvre` and `recording`.
+/// Tables with the keys of `manoeuvre` or `recording`, which are listed once.
 const AS_BEFORE: [&str; 4] = ["also[].manoeuvre", "also[].recording", "validation.manoeuvre", "validation.recording"];
 
+/// Traversal of the schema with its definitions.
 struct SchemaWalk<'a> {
     definitions: &'a Value,
 }
 
 impl<'a> SchemaWalk<'a> {
-    /// The keys of a table.
+    /// Adds the keys of a table.
     fn below(&self, path: &str, table: &'a Value, keys: &mut Vec<ScenarioKey>) {
         let is_required =
-            |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|known| known == name));
+            |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|key| key == name));
         for (name, value) in fields(table) {
             self.key(&format!("{path}{name}"), value, &Value::Null, is_required(name), keys);
         }
-        // Of a choice the key is described where the choice is.
+        // The key of a choice is described at the choice.
         for variant in table["oneOf"].as_array().into_iter().flatten() {
             for (name, value) in fields(variant) {
                 self.key(&format!("{path}{name}"), value, variant, false, keys);
@@ -70,7 +71,7 @@ impl<'a> SchemaWalk<'a> {
         }
     }
 
-    /// A key with what is written for it in a variant of its table, and those below it.
+    /// Adds a key and the keys below it; `written` is its schema in a `variant` of the table.
     fn key(&self, key: &str, written: &'a Value, variant: &'a Value, is_required: bool, keys: &mut Vec<ScenarioKey>) {
         let mut value = self.resolved(written);
         let kind = |value: &'a Value| value["type"].as_str().or(value["type"][0].as_str());
@@ -88,12 +89,12 @@ impl<'a> SchemaWalk<'a> {
             _ => String::from("table"),
         };
         let meaning =
-            [variant, written, value].into_iter().find_map(|one| one["description"].as_str()).unwrap_or_default();
+            [variant, written, value].into_iter().find_map(|schema| schema["description"].as_str()).unwrap_or_default();
         let default = match &written["default"] {
-            _ if is_required => LeftOut::Required,
-            Value::Null | Value::Array(_) | Value::Object(_) => LeftOut::Nothing,
-            Value::Number(number) => LeftOut::Value(number.as_f64().map_or_else(String::new, |own| own.to_string())),
-            value => LeftOut::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
+            _ if is_required => KeyDefault::Required,
+            Value::Null | Value::Array(_) | Value::Object(_) => KeyDefault::Nothing,
+            Value::Number(number) => KeyDefault::Value(number.as_f64().map_or_else(String::new, |x| x.to_string())),
+            value => KeyDefault::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
         };
         let meaning = meaning.split_whitespace().collect::<Vec<_>>().join(" ");
         keys.push(ScenarioKey { key: key.to_owned(), unit, default, meaning });
@@ -104,10 +105,10 @@ impl<'a> SchemaWalk<'a> {
         }
     }
 
-    /// What a value is: behind references, and without the null of an option.
+    /// Schema of a value after following references and removing the null of an option.
     fn resolved(&self, value: &'a Value) -> &'a Value {
         let inner = match value["anyOf"].as_array().or(value["allOf"].as_array()) {
-            Some(several) => several.iter().find(|one| one["type"] != "null").unwrap_or(value),
+            Some(several) => several.iter().find(|schema| schema["type"] != "null").unwrap_or(value),
             None => value,
         };
         match inner["$ref"].as_str().and_then(|place| place.strip_prefix("#/definitions/")) {
@@ -117,7 +118,7 @@ impl<'a> SchemaWalk<'a> {
     }
 }
 
-/// The keys of a table with what may stand behind them.
+/// Keys of a table with their schemas.
 fn fields(table: &Value) -> impl Iterator<Item = (&str, &Value)> {
     table["properties"].as_object().into_iter().flat_map(Map::iter).map(|(name, value)| (name.as_str(), value))
 }
@@ -126,12 +127,12 @@ fn is_table(value: &Value) -> bool {
     value["properties"].is_object() || (value["oneOf"].is_array() && names(value).is_empty())
 }
 
-/// The names that may stand behind a key.
+/// Names allowed as the value of a key.
 fn names(value: &Value) -> Vec<&str> {
     let several = value["oneOf"].as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
     several
         .iter()
-        .flat_map(|one| one["enum"].as_array().into_iter().flatten().chain(Some(&one["const"])))
+        .flat_map(|schema| schema["enum"].as_array().into_iter().flatten().chain(Some(&schema["const"])))
         .filter_map(Value::as_str)
         .collect()
 }
@@ -155,9 +156,9 @@ mod tests {
         let keys = keys();
         let of = |wanted: &str| keys.iter().find(|key| key.key == wanted).unwrap_or_else(|| panic!("no {wanted}"));
         assert_eq!(of("steering-gear.rate-deg-s").unit, "deg/s");
-        assert_eq!(of("steering-gear.lag-s").default, LeftOut::Value("0".into()));
-        assert_eq!(of("steering-gear.rate-deg-s").default, LeftOut::Nothing);
-        assert_eq!(of("manoeuvre.zig-zag.rudder-deg").default, LeftOut::Required);
+        assert_eq!(of("steering-gear.lag-s").default, KeyDefault::Value("0".into()));
+        assert_eq!(of("steering-gear.rate-deg-s").default, KeyDefault::Nothing);
+        assert_eq!(of("manoeuvre.zig-zag.rudder-deg").default, KeyDefault::Required);
         assert_eq!(of("manoeuvre.zig-zag.first").unit, "starboard or port");
         assert_eq!(of("sweep[].points[].label").unit, "text");
         assert_eq!(of("identifier[].method.output-error.iterations").unit, "whole number");

@@ -1,4 +1,4 @@
-//! Where in a scenario file a key stands, so that an error can point at its line.
+//! Position of a key in a scenario file, so that an error can point at its line.
 
 use std::ops::Range;
 
@@ -6,10 +6,10 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::scenario::problem::{AtFault, KeyPath};
 
-/// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line
-/// that says anything when there is none.
+/// Byte range of the name or value at a path; of the nearest existing key above it otherwise; of the first line with
+/// content without any.
 ///
-/// A table or list is shown by its name, since its own range may be pages long.
+/// A table or list is located by its name, since its range may be pages long.
 pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
     let nowhere = first_line(text);
     let Ok(document) = DeTable::parse(text) else { return nowhere };
@@ -36,21 +36,21 @@ pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
         let by_name = table.is_some() || array.is_some() || (depth == last && mark == AtFault::Name);
         place = match (mark, value.get_ref()) {
             _ if by_name => key_span,
-            (AtFault::Within(at), DeValue::String(said)) if depth == last => within(text, value.span(), said, at),
+            (AtFault::Within(at), DeValue::String(content)) if depth == last => within(text, value.span(), content, at),
             _ => value.span(),
         };
     }
     place
 }
 
-/// The letter of a text in quotes that stands after `at` characters; all of it where escapes make another text of it.
-fn within(text: &str, quoted: Range<usize>, said: &str, at: usize) -> Range<usize> {
-    let Some(start) = text[quoted.clone()].find(said) else { return quoted };
-    let from = quoted.start + start + said.chars().take(at).map(char::len_utf8).sum::<usize>();
+/// Range of the character after `at` characters of a quoted text; the whole text where it contains escapes.
+fn within(text: &str, quoted: Range<usize>, content: &str, at: usize) -> Range<usize> {
+    let Some(start) = text[quoted.clone()].find(content) else { return quoted };
+    let from = quoted.start + start + content.chars().take(at).map(char::len_utf8).sum::<usize>();
     from..from + text[from..].chars().next().map_or(0, char::len_utf8)
 }
 
-/// The first line that is neither empty nor a comment.
+/// Range of the first line that is neither empty nor a comment.
 fn first_line(text: &str) -> Range<usize> {
     let mut start = 0;
     for line in text.split_inclusive('\n') {

@@ -1,4 +1,4 @@
-//! The methods of a scenario: what each is called, and what it does with a trial.
+//! Methods of a scenario: labels, settings and procedures.
 
 use std::sync::Arc;
 
@@ -20,11 +20,11 @@ use crate::scenario::{effect, limits, name};
 pub struct Method {
     /// Label in tables and figures; unique in the scenario.
     pub label: String,
-    /// What it does.
+    /// Its procedure.
     pub procedure: Procedure,
 }
 
-/// What a method does with a trial.
+/// Procedure of a method on a trial.
 #[derive(Clone)]
 pub enum Procedure {
     /// Identifies a first-order response.
@@ -36,9 +36,9 @@ pub enum Procedure {
     },
     /// Traces what a first-order response lacks.
     Trace(::trace::Settings),
-    /// Looks up what somebody found elsewhere.
+    /// Looks up answers of an outside estimator.
     Answers(Arc<Answers>),
-    /// Takes the ship to keep her heading, the best constant one: the floor of an error.
+    /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
 }
 
@@ -53,24 +53,24 @@ impl Procedure {
         }
     }
 
-    /// One line on what it does.
+    /// One-line summary.
     pub fn summary(&self) -> &str {
         match self {
             Self::Identify { identifier, .. } => identifier.summary(),
             Self::Trace(settings) if settings.heading_alone => {
-                "a trace of heading, yaw rate and rudder alone, which is what all others read"
+                "a trace of heading, yaw rate and rudder alone, the signals that all other methods read"
             }
             Self::Trace(_) => {
-                "a first-order response with every effect that is found missing; it reads speed, sway and wind, too, those \
-                 of a measured record that judges among them"
+                "a first-order response with the effects it lacks; it also reads speed, sway and wind, those of a \
+                 measured validation record included"
             }
-            Self::Answers(_) => "answers from elsewhere",
-            Self::StraightOn => "a ship that keeps her heading: the floor",
+            Self::Answers(_) => "answers of an outside estimator",
+            Self::StraightOn => "a ship that keeps her heading: the null model",
         }
     }
 
-    /// The first-order response of all records of one trial together; `None` for what makes none. A method that draws
-    /// at random draws from the stream of this trial.
+    /// First-order estimate from all records of one trial; `None` for procedures without one. A randomised method uses
+    /// the random stream of this trial.
     pub fn identify(&self, trials: &[Trial], key: &StreamKey) -> Option<Result<Estimate, IdentifyError>> {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
@@ -80,19 +80,19 @@ impl Procedure {
     }
 }
 
-/// Identifies all records of one trial together; a method that draws at random draws from the stream of this trial.
+/// First-order estimate from all records of one trial; a randomised method uses the random stream of this trial.
 pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) -> Result<Estimate, IdentifyError> {
-    let own = identifier.with_seed(key.rng(Purpose::Method).random());
-    own.as_deref().unwrap_or(identifier).identify(trials)
+    let seeded = identifier.with_seed(key.rng(Purpose::Method).random());
+    seeded.as_deref().unwrap_or(identifier).identify(trials)
 }
 
-/// Id of a trace among the methods.
+/// Method id of a trace.
 pub const TRACE: &str = "trace";
 
-/// Id of the ship that keeps her heading among the methods.
+/// Method id of the null model, a ship that keeps her heading.
 pub const STRAIGHT_ON: &str = "straight-on";
 
-/// What a method is called, and which it is.
+/// Label and id of a method.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodName {
     /// Label in tables and figures.
@@ -146,9 +146,9 @@ impl Default for TraceWire {
     }
 }
 
-/// The methods, all with names of their own.
+/// Methods with unique labels.
 pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> {
-    limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
+    limits::entries("identifier", wire.len(), limits::MAX_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
@@ -177,7 +177,7 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
     Ok(methods)
 }
 
-/// What one entry asks for.
+/// Procedure of one entry.
 fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFault> {
     match (&entry.method, &entry.trace, &entry.straight_on) {
         (Some(settings), None, None) => {
@@ -208,16 +208,16 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFaul
     }
 }
 
-/// A setting that its owner refuses, at the table in which it stands.
+/// Fault of a refused setting, at its key.
 fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
     KeyFault::of(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
-/// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
+/// Settings of a trace, without restarted replays and proposals, which a study does not use.
 fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Settings, SettingsError> {
     let TraceWire { rule, probability, ref menu, monomials, heading_alone, .. } = *wire;
-    let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
+    let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), selection_from)?;
     let selection = Selection { formulas, ..selection };
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
@@ -228,8 +228,8 @@ fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Set
     Ok(settings)
 }
 
-/// A search among some effects.
-fn among(menu: &[String]) -> Result<Selection, SettingsError> {
+/// Selection of the effects of a menu.
+fn selection_from(menu: &[String]) -> Result<Selection, SettingsError> {
     let id = |name: &String| {
         EffectId::find(name).ok_or_else(|| SettingsError::new("menu", name, "an effect of `study list effects`"))
     };

@@ -4,15 +4,15 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
-//! | what is right to say of a ship | `physics` |
-//! | what is wrong with it, and where | [`problem`], `locate`, [`crate::failure`] |
+//! | the file as written, and its reader | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
+//! | the physics that a ship lacks | `physics` |
+//! | faults and their position | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
-//! | measured records in the place of simulated ships | [`records`] |
-//! | answers that were found elsewhere | [`answers`] |
+//! | measured records in place of simulated ships | [`records`] |
+//! | answers of outside estimators | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
-//! | what an editor knows of a file | [`schema`], [`keys`] |
+//! | schema and keys for editors | [`schema`], [`keys`] |
 //! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 
 pub mod answers;
@@ -22,7 +22,7 @@ mod checks;
 mod draw;
 mod effect;
 pub mod identity;
-mod key_words;
+mod key_units;
 pub mod keys;
 mod limits;
 mod locate;

@@ -1,5 +1,5 @@
-//! Tables that hold numbers alone, such as those of an effect or of a ship of one's own: their keys are data, from
-//! which they are checked, completed and described to an editor.
+//! Tables of numbers, such as those of an effect or of a user's ship. Their keys are data, by which they are checked,
+//! completed and described in the schema.
 
 use std::collections::BTreeMap;
 
@@ -8,83 +8,83 @@ use serde_json::{Map, Value, json};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::reader;
 
-/// One name, and below it numbers by their keys.
+/// A name with a table of numbers below it.
 pub type NamedNumbers = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// A number of such a table.
+/// Key of a number in such a table.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberKey {
-    /// The key, whose end says the unit.
+    /// The key, which ends in the unit.
     pub key: &'static str,
-    /// What it means.
+    /// Meaning, for documentation.
     pub meaning: &'static str,
-    /// Whether it cannot be left out.
+    /// `true` if it is required.
     pub is_required: bool,
-    /// What holds when it is left out.
+    /// Default value.
     pub default: Option<f64>,
 }
 
 impl NumberKey {
-    /// A number that cannot be left out.
+    /// Required number.
     pub const fn required(key: &'static str, meaning: &'static str) -> Self {
         Self { key, meaning, is_required: true, default: None }
     }
 
-    /// A number that may be left out.
+    /// Optional number.
     pub const fn optional(key: &'static str, meaning: &'static str, default: Option<f64>) -> Self {
         Self { key, meaning, is_required: false, default }
     }
 }
 
-/// The one name and its numbers, with the key of the name; else the fault, with the names that are `known`.
+/// The only name of a table, its key and its numbers. Fails for none or several; the message lists the `choices`.
 pub fn only<'a>(
     named: &'a NamedNumbers,
     place: &KeyPath,
-    known: &[&str],
+    choices: &[&str],
 ) -> Result<(&'a str, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
     let mut entries = named.iter();
     match (entries.next(), entries.next()) {
         (Some((name, numbers)), None) => Ok((name, place.child(name), numbers)),
-        _ => Err(reader::not_one_name(place.clone(), named.keys(), known)),
+        _ => Err(reader::not_one_name(place.clone(), named.keys(), choices)),
     }
 }
 
-/// Refuses a key that is not among these.
+/// Refuses a key that is not among `keys`.
 pub fn refuse_unknown(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], table: &KeyPath) -> Result<(), KeyFault> {
-    let known: Vec<&str> = keys.iter().map(|own| own.key).collect();
-    numbers.keys().find(|name| !known.contains(&name.as_str())).map_or(Ok(()), |name| {
-        let found = format!("`{table}` has no key `{name}`");
-        Err(KeyFault::name(table.child(name), found, "no such key here", suggestion(name, &known)))
+    let names: Vec<&str> = keys.iter().map(|number| number.key).collect();
+    numbers.keys().find(|name| !names.contains(&name.as_str())).map_or(Ok(()), |name| {
+        let problem = format!("`{table}` has no key `{name}`");
+        Err(KeyFault::name(table.child(name), problem, "no such key here", suggestion(name, &names)))
     })
 }
 
-/// Refuses a table without a number that it cannot do without.
+/// Refuses a table without a required number.
 pub fn refuse_incomplete(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], table: &KeyPath) -> Result<(), KeyFault> {
-    let missing = keys.iter().find(|own| own.is_required && !numbers.contains_key(own.key));
-    missing.map_or(Ok(()), |own| Err(reader::missing(table, own.key)))
+    let missing = keys.iter().find(|number| number.is_required && !numbers.contains_key(number.key));
+    missing.map_or(Ok(()), |number| Err(reader::missing(table, number.key)))
 }
 
-/// Writes down what holds for keys that are left out.
+/// Writes the defaults of missing keys out.
 pub fn complete(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
-    for (own, default) in keys.iter().filter_map(|own| Some((own, own.default?))) {
-        numbers.entry(own.key.to_owned()).or_insert(default);
+    for (number, default) in keys.iter().filter_map(|number| Some((number, number.default?))) {
+        numbers.entry(number.key.to_owned()).or_insert(default);
     }
 }
 
-/// The schema of such a table.
+/// JSON schema of such a table.
 pub fn schema(keys: &[NumberKey]) -> Value {
-    let number = |own: &NumberKey| {
-        let mut number = json!({ "type": "number", "format": "double", "description": own.meaning });
-        if let Some(default) = own.default {
+    let number = |entry: &NumberKey| {
+        let mut number = json!({ "type": "number", "format": "double", "description": entry.meaning });
+        if let Some(default) = entry.default {
             number["default"] = default.into();
         }
-        (own.key.to_owned(), number)
+        (entry.key.to_owned(), number)
     };
-    let required = keys.iter().filter(|own| own.is_required).map(|own| own.key).collect();
+    let required = keys.iter().filter(|entry| entry.is_required).map(|entry| entry.key).collect();
     closed(keys.iter().map(number).collect(), required)
 }
 
-/// The schema of a table that has no other keys.
+/// JSON schema of a table without further keys.
 pub fn closed(properties: Map<String, Value>, required: Vec<&str>) -> Value {
     json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
 }

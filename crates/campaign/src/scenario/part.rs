@@ -1,20 +1,21 @@
-//! What the keys at the top of a scenario are about. The identity of a study, sweeps and draws go by this.
+//! Parts of a scenario by its top-level keys, which decide the identity of a study and the keys open to sweeps and
+//! draws.
 
-/// What a part of a scenario decides.
+/// Part of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScenarioPart {
-    /// What a person reads, and no row.
+    /// Prose and presentation, which do not affect rows.
     Prose,
-    /// The study as a whole: the same in every cell.
+    /// Settings of the whole study, the same in every cell.
     Study,
-    /// What is done in a cell with its trials.
+    /// Methods and draws of a cell.
     Cell,
-    /// How a trial is made.
+    /// Specification of a trial.
     Trial,
 }
 
 impl ScenarioPart {
-    /// The part below a key; whether there is such a key is seen when it is read.
+    /// Part of a top-level key; unknown keys are refused elsewhere.
     pub fn of(key: &str) -> Self {
         match key {
             "question" | "analysis" | "finding" | "published" | "output" => Self::Prose,

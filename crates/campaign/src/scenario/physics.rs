@@ -1,12 +1,11 @@
-//! The physics that a first-order base lacks in the trials of a cell, as far as a study says what is right to say of
-//! it.
+//! Physics that a first-order base lacks in the trials of a cell: the reference against which a trace is scored.
 
 use document::trace::Dependence;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 
-/// Keys of [`PhysicsWire`], which stand beside the constants of a formula.
+/// Keys of [`PhysicsWire`], beside the constants of a formula.
 pub const KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
 
 /// What is right to say of a formula, as it is written in its entry.
@@ -49,41 +48,45 @@ pub enum MissingPhysics {
 }
 
 impl PhysicsWire {
-    /// The physics that the entry of a formula at a place states.
+    /// Missing physics stated by the entry of a formula.
     ///
-    /// Fails for a name that is on no list, and for keys that do not go together.
+    /// Fails for an unknown effect, and for inconsistent keys.
     pub fn checked(self, place: &KeyPath) -> Result<MissingPhysics, KeyFault> {
         let Self { stands_for: effects, depends_on, changes_s, period_s } = self;
         let ids = effect_ids();
         if let Some(index) = effects.iter().position(|id| !ids.contains(&id.as_str())) {
             let (id, key) = (&effects[index], place.child("stands-for").child(index));
-            let found = format!("no effect is called `{id}`");
-            return Err(KeyFault::value(key, found, "expected an effect of the list", suggestion(id, &ids)));
+            let problem = format!("no effect is called `{id}`");
+            return Err(KeyFault::value(key, problem, "expected an effect of the list", suggestion(id, &ids)));
         }
         let is_timed = !changes_s.is_empty() || period_s.is_some();
         let is_backwards = period_s.is_some_and(|[from, to]| !(from > 0.0 && from <= to));
-        let when = if changes_s.is_empty() { "period-s" } else { "changes-s" };
+        let time = if changes_s.is_empty() { "period-s" } else { "changes-s" };
         let faults = [
             (
                 is_timed && depends_on != Some(Dependence::Time),
                 (
-                    when,
+                    time,
                     "times of a moment that does not depend on time",
                     "expected `depends-on = \"time\"` beside them",
                 ),
             ),
             (
                 !changes_s.is_empty() && period_s.is_some(),
-                (when, "a moment with changes and with a period", "expected `changes-s` or `period-s`"),
+                (time, "a moment with changes and with a period", "expected `changes-s` or `period-s`"),
             ),
-            (is_backwards, (when, "no range of periods", "expected two periods above zero, the shorter first")),
+            (is_backwards, (time, "an invalid range of periods", "expected two periods above 0 s, the shorter first")),
             (
                 effects.is_empty() != depends_on.is_some(),
-                ("depends-on", "a moment on the list and on none", "expected a name in `stands-for`, or `depends-on`"),
+                (
+                    "depends-on",
+                    "both or neither of `stands-for` and `depends-on`",
+                    "expected exactly one of the two keys",
+                ),
             ),
         ];
-        if let Some((_, (key, found, expected))) = faults.into_iter().find(|(is_wrong, _)| *is_wrong) {
-            return Err(KeyFault::name(place.child(key), found, expected, "keep one of the keys, or leave all out"));
+        if let Some((_, (key, problem, expected))) = faults.into_iter().find(|(is_wrong, _)| *is_wrong) {
+            return Err(KeyFault::name(place.child(key), problem, expected, "keep one of the keys, or leave all out"));
         }
         Ok(match depends_on {
             None => MissingPhysics::Listed { effects },
@@ -93,8 +96,8 @@ impl PhysicsWire {
 }
 
 impl MissingPhysics {
-    /// The physics of trials whose ship states nothing: an effect of the list, or none; `None` where several are
-    /// missing, or a name is on no list.
+    /// Missing physics of a ship without a statement: one listed effect, or nothing; `None` for several effects and for
+    /// a name outside the list.
     pub fn of_effects(missing: &[String], disturbed: bool) -> Option<Self> {
         match missing {
             [] => Some(Self::Nothing { disturbed }),
@@ -104,7 +107,7 @@ impl MissingPhysics {
     }
 }
 
-/// Identifiers of the effects of the list.
+/// Identifiers of the listed effects.
 fn effect_ids() -> Vec<&'static str> {
     let mut ids: Vec<&str> = ship::effects::all().iter().map(|effect| effect.id()).collect();
     ids.dedup();

@@ -1,4 +1,4 @@
-//! What every answer of a scenario has to predict: `[predict]`.
+//! Manoeuvres predicted from every estimate of a scenario: `[predict]`.
 
 use serde::{Deserialize, Serialize};
 use trial::Manoeuvre;
@@ -21,10 +21,10 @@ fn draws() -> u64 {
     200
 }
 
-/// Numbers of draws that say something and end.
+/// Allowed numbers of draws: enough for an interval, few enough to finish.
 const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 
-/// Manoeuvres that are predicted, and how.
+/// Manoeuvres to predict, and number of draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predictions {
     /// The manoeuvres.
@@ -49,15 +49,15 @@ impl RecordPredictWire {
     }
 }
 
-/// A number of draws that says something and ends.
+/// Checked number of draws.
 fn checked(draws: u64) -> Result<usize, KeyFault> {
     let key = KeyPath::dotted("predict.draws");
-    let fault = || KeyFault::of(key, draws, "expected 50 to 10000", "200 tell an interval of 90 %");
+    let fault = || KeyFault::of(key, draws, "expected 50 to 10000", "200 draws are enough for a 90 % interval");
     if DRAWS.contains(&draws) { Ok(draws as usize) } else { Err(fault()) }
 }
 
 impl PredictWire {
-    /// Checks every value; fails with the first one that makes no sense.
+    /// Checks every value; fails with the first invalid one.
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         let key = KeyPath::dotted("predict");
         let draws = checked(self.draws)?;
@@ -68,8 +68,8 @@ impl PredictWire {
         let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {
             let refused = |expected: &str| {
-                let found = format!("`predict.manoeuvres` holds {text:?}");
-                KeyFault::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
+                let problem = format!("`predict.manoeuvres` holds {text:?}");
+                KeyFault::value(key.child("manoeuvres"), problem, expected, "correct or remove this entry")
             };
             let kind: Manoeuvre = text.parse().map_err(|error: NoManoeuvre| refused(&error.to_string()))?;
             if matches!(kind, Manoeuvre::Spiral { .. }) {

@@ -1,5 +1,5 @@
-//! What is wrong with a scenario, as data: the key, what was found, what was expected and what to do. Where the key
-//! stands in the file is found in `locate`; the words of a parser never reach the user.
+//! Faults of a scenario as data: the key, the problem, what was expected and what to do. `locate` finds the position of
+//! the key in the file; messages of parsers never reach the user.
 
 use std::fmt;
 
@@ -7,17 +7,17 @@ use simulate::SpecificationError;
 
 use crate::scenario::name::{Unfit, shown};
 
-/// Path of a key from the root of a scenario; entries of a list are counted from 0, as a sweep addresses them.
+/// Path of a key from the root of a scenario; list entries count from 0.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct KeyPath(Vec<String>);
 
 impl KeyPath {
-    /// A path written with dots ("sensor.heading-noise-deg").
+    /// Path from dotted text, such as "sensor.heading-noise-deg".
     pub fn dotted(path: &str) -> Self {
         Self(path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect())
     }
 
-    /// The path of a key below this one; `part` is one name, even when it holds dots.
+    /// Path of a key below this one; `part` is one name, even if it contains dots.
     pub fn child(&self, part: impl ToString) -> Self {
         Self(self.0.iter().cloned().chain([part.to_string()]).collect())
     }
@@ -32,12 +32,12 @@ impl KeyPath {
         self.0.last().map_or("", String::as_str)
     }
 
-    /// The path of the table this key stands in.
+    /// Path of the table that contains the key.
     pub fn above(&self) -> Self {
         Self(self.0[..self.0.len().saturating_sub(1)].to_vec())
     }
 
-    /// Whether one of the two paths leads to the other.
+    /// `true` if one path is a prefix of the other.
     pub fn is_related(&self, other: &Self) -> bool {
         self.0.starts_with(&other.0) || other.0.starts_with(&self.0)
     }
@@ -49,119 +49,119 @@ impl fmt::Display for KeyPath {
     }
 }
 
-/// What is underlined.
+/// Underlined part of a faulty key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AtFault {
     /// The name of the key.
     Name,
     /// Its value.
     Value,
-    /// The text that is its value, after so many characters.
+    /// Its text value, after so many characters.
     Within(usize),
 }
 
-/// Something wrong with a scenario.
+/// A fault of a scenario at a key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeyFault {
-    /// The key at fault.
+    /// The faulty key.
     pub key: KeyPath,
-    /// Whether its name or its value is at fault.
+    /// The underlined part.
     pub mark: AtFault,
-    /// The key and the value found, in one sentence.
-    pub found: String,
-    /// What was expected, to stand below the place.
+    /// The problem, with key and value, in one sentence.
+    pub problem: String,
+    /// What was expected, printed below the underlined part.
     pub expected: String,
     /// What to do.
     pub advice: String,
 }
 
 impl KeyFault {
-    /// A value at fault.
+    /// Fault of a value.
     pub fn value(
         key: KeyPath,
-        found: impl Into<String>,
+        problem: impl Into<String>,
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { key, mark: AtFault::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
+        Self { key, mark: AtFault::Value, problem: problem.into(), expected: expected.into(), advice: advice.into() }
     }
 
-    /// The text that is the value of a key, at fault after `at` characters.
+    /// Fault within a text value, after `at` characters.
     pub fn within(
         at: usize,
         key: KeyPath,
-        found: impl Into<String>,
+        problem: impl Into<String>,
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: AtFault::Within(at), ..Self::value(key, found, expected, advice) }
+        Self { mark: AtFault::Within(at), ..Self::value(key, problem, expected, advice) }
     }
 
-    /// The value of a key, which is at fault.
+    /// Fault of a value, with the problem "`key` is VALUE".
     pub fn of(key: KeyPath, value: impl fmt::Display, expected: impl Into<String>, advice: impl Into<String>) -> Self {
-        let found = format!("`{key}` is {value}");
-        Self::value(key, found, expected, advice)
+        let problem = format!("`{key}` is {value}");
+        Self::value(key, problem, expected, advice)
     }
 
-    /// A key at fault.
+    /// Fault of a key.
     pub fn name(
         key: KeyPath,
-        found: impl Into<String>,
+        problem: impl Into<String>,
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: AtFault::Name, ..Self::value(key, found, expected, advice) }
+        Self { mark: AtFault::Name, ..Self::value(key, problem, expected, advice) }
     }
 }
 
 impl From<SpecificationError> for KeyFault {
     fn from(error: SpecificationError) -> Self {
-        let [found, expected, advice] = error.words();
+        let [problem, expected, advice] = error.words();
         let mark = if error.is_of_name() { AtFault::Name } else { AtFault::Value };
         let key = match error.key {
             "vessel.dead_time" => "effect",
-            // No scenario sets these; only a manoeuvre can make them matter.
+            // No scenario sets these; they matter for some manoeuvres only.
             "longest_wait" | "weather_grid" | "solver.step" => "manoeuvre",
             key => key,
         };
-        Self { key: KeyPath::dotted(key), mark, found, expected, advice }
+        Self { key: KeyPath::dotted(key), mark, problem, expected, advice }
     }
 }
 
-/// The problem of a text that cannot be used.
+/// Fault of a text that cannot be used.
 pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
     KeyFault::of(key, shown(text), unfit.to_string(), "change the text")
 }
 
-/// The place of a name among those that are known; else what was `found` at its key, and what was `expected`.
+/// Index of a name among `choices`; otherwise a fault with `problem`, `expected` and a suggestion.
 pub fn place_among<S: AsRef<str>>(
     name: &str,
-    known: &[S],
+    choices: &[S],
     key: KeyPath,
-    [found, expected]: [&str; 2],
+    [problem, expected]: [&str; 2],
 ) -> Result<usize, KeyFault> {
-    let place = known.iter().position(|own| own.as_ref() == name);
-    place.ok_or_else(|| KeyFault::value(key, format!("{found} {name:?}"), expected, suggestion(name, known)))
+    let place = choices.iter().position(|choice| choice.as_ref() == name);
+    place.ok_or_else(|| KeyFault::value(key, format!("{problem} {name:?}"), expected, suggestion(name, choices)))
 }
 
-/// The names in backquotes, joined by commas.
+/// Names in backquotes, joined by commas.
 pub fn listed<S: AsRef<str>>(names: &[S]) -> String {
     names.iter().map(|name| format!("`{}`", name.as_ref())).collect::<Vec<_>>().join(", ")
 }
 
-/// "did you mean …" for a name that is nearly one of `known`, and else all that are known.
-pub fn suggestion<S: AsRef<str>>(name: &str, known: &[S]) -> String {
-    match nearest(name, known) {
-        Some(meant) if known.len() == 1 => format!("did you mean `{meant}`?"),
-        Some(meant) => format!("did you mean `{meant}`? Known here: {}", listed(known)),
-        None => format!("use one of {}", listed(known)),
+/// Advice for an unknown name: "did you mean …" for a similar choice, and the list of all choices.
+pub fn suggestion<S: AsRef<str>>(name: &str, choices: &[S]) -> String {
+    match nearest(name, choices) {
+        Some(meant) if choices.len() == 1 => format!("did you mean `{meant}`?"),
+        Some(meant) => format!("did you mean `{meant}`? Known here: {}", listed(choices)),
+        None => format!("use one of {}", listed(choices)),
     }
 }
 
-/// The known name that is nearest to a misspelt one, if it is near: two letters of every five may differ, or one is the
-/// beginning of the other (a forgotten unit).
-fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
-    known
+/// Choice nearest to a misspelt name by edit distance (Levenshtein 1966), if at most two of five characters differ or
+/// one is a prefix of the other, as with a forgotten unit.
+fn nearest<'a, S: AsRef<str>>(name: &str, choices: &'a [S]) -> Option<&'a str> {
+    choices
         .iter()
         .map(AsRef::as_ref)
         .map(|candidate| {

@@ -1,6 +1,5 @@
-//! Reads typed values out of a TOML document that is already in memory, and says of every fault which key it belongs
-//! to, what was found there and what was expected. So a scenario as it is written and a scenario that a sweep has
-//! changed, which stands in no file, give the same messages.
+//! Reader of typed values from a TOML document in memory. Every fault names its key, the value and what was expected,
+//! so that a scenario as written and one changed by a sweep give the same messages.
 
 use std::fmt::Display;
 
@@ -13,14 +12,14 @@ use toml::{Table, Value};
 use crate::scenario::name::shown;
 use crate::scenario::problem::{KeyFault, KeyPath, listed, suggestion};
 
-/// Reads a whole document.
+/// Value of a whole document.
 ///
-/// Fails with the key, what was found and what was expected.
+/// Fails with the key, the problem and what was expected.
 pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
     table(document, &KeyPath::default())
 }
 
-/// Reads the table at `key`.
+/// Value of the table at `key`.
 pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
     serde_path_to_error::deserialize(entries(table)).map_err(|error| {
         let mut place = key.clone();
@@ -48,7 +47,7 @@ fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Nod
     MapDeserializer::new(table.iter().map(|(name, value)| (name.as_str(), Node(value))))
 }
 
-/// A value of a document. Unlike the reader of `toml`, it takes no list for a table.
+/// A value of a document. Unlike the deserialiser of `toml`, it does not accept a list as a table.
 struct Node<'de>(&'de Value);
 
 impl<'de> IntoDeserializer<'de, ReadFault> for Node<'de> {
@@ -97,13 +96,13 @@ impl<'de> Deserializer<'de> for Node<'de> {
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _: &'static str,
-        known: &'static [&'static str],
+        names: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, ReadFault> {
         match self.0 {
             Value::String(name) => visitor.visit_enum(name.as_str().into_deserializer()),
             Value::Table(table) if table.len() == 1 => visitor.visit_enum(MapAccessDeserializer::new(entries(table))),
-            Value::Table(_) => Err(ReadFault::NotOneName(known)),
+            Value::Table(_) => Err(ReadFault::NotOneName(names)),
             _ => Err(ReadFault::Kind("a name, with its settings below it".to_owned())),
         }
     }
@@ -114,22 +113,22 @@ impl<'de> Deserializer<'de> for Node<'de> {
     }
 }
 
-/// The problem of a table that lacks a key.
+/// Fault of a table that lacks a key.
 pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
     ReadFault::MissingKey(name).at(table.clone(), None)
 }
 
-/// The fault of a table that should hold one name and holds these.
-pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, known: &[&str]) -> KeyFault {
+/// Fault of a table with `names` where exactly one name is expected.
+pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, choices: &[&str]) -> KeyFault {
     let names: Vec<&String> = names.collect();
-    let (found, advice) = match names.len() {
-        0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(known))),
+    let (problem, advice) = match names.len() {
+        0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(choices))),
         several => (format!("`{table}` names {several} things at once: {}", listed(&names)), "keep one of them".into()),
     };
-    KeyFault::name(table, found, "expected exactly one name below it", advice)
+    KeyFault::name(table, problem, "expected exactly one name below it", advice)
 }
 
-/// What is wrong, before it is known where.
+/// A fault without its position.
 #[derive(Debug, thiserror::Error)]
 #[error("{self:?}")]
 enum ReadFault {
@@ -146,12 +145,12 @@ impl de::Error for ReadFault {
         Self::Other(message.to_string())
     }
 
-    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        Self::UnknownKey(name.to_owned(), known)
+    fn unknown_field(name: &str, names: &'static [&'static str]) -> Self {
+        Self::UnknownKey(name.to_owned(), names)
     }
 
-    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
-        Self::UnknownName(name.to_owned(), known)
+    fn unknown_variant(name: &str, names: &'static [&'static str]) -> Self {
+        Self::UnknownName(name.to_owned(), names)
     }
 
     fn missing_field(name: &'static str) -> Self {
@@ -172,26 +171,26 @@ impl de::Error for ReadFault {
 }
 
 impl ReadFault {
-    /// The fault of the `found` value at a key; of the document when there is none.
-    fn at(self, key: KeyPath, found: Option<&Value>) -> KeyFault {
+    /// The fault at a key with its value; without a value that of the document.
+    fn at(self, key: KeyPath, value: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.parts() {
             [] => "a scenario".to_owned(),
             _ => format!("`{key}`"),
         };
         let place = called(&key);
-        let text = found.and_then(Value::as_str);
+        let text = value.and_then(Value::as_str);
         match self {
-            Self::UnknownKey(name, known) => {
-                let found = format!("{} has no key `{name}`", called(&key.above()));
-                KeyFault::name(key, found, "no such key here", suggestion(&name, known))
+            Self::UnknownKey(name, names) => {
+                let problem = format!("{} has no key `{name}`", called(&key.above()));
+                KeyFault::name(key, problem, "no such key here", suggestion(&name, names))
             }
-            Self::UnknownName(name, known) if text == Some(&name) => {
-                KeyFault::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
+            Self::UnknownName(name, names) if text == Some(&name) => {
+                KeyFault::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, names))
             }
-            Self::UnknownName(name, known) => {
+            Self::UnknownName(name, names) => {
                 let key = key.child(&name);
-                let found = format!("no {} is called `{name}`", kind_of(&key));
-                KeyFault::name(key, found, "no such name", suggestion(&name, known))
+                let problem = format!("no {} is called `{name}`", kind_of(&key));
+                KeyFault::name(key, problem, "no such name", suggestion(&name, names))
             }
             Self::MissingKey(name) => KeyFault::name(
                 key,
@@ -205,19 +204,19 @@ impl ReadFault {
                     _ => format!("add a line `{name} = …`"),
                 },
             ),
-            Self::NotOneName(known) => {
-                not_one_name(key, found.and_then(Value::as_table).into_iter().flat_map(Table::keys), known)
+            Self::NotOneName(names) => {
+                not_one_name(key, value.and_then(Value::as_table).into_iter().flat_map(Table::keys), names)
             }
             Self::Kind(expected) => {
                 let expected = in_toml(&expected);
                 let advice = match (expected, text) {
                     (SETTINGS, Some(name)) => format!("write `{}.{name} = {{}}`", key.last()),
                     (A_TABLE, _) if key.parts() == ["ship"] => "write [ship.yukun] on a line of its own".to_owned(),
-                    (A_LIST, _) if found.is_some_and(Value::is_table) => format!("write [[{key}]] with two brackets"),
+                    (A_LIST, _) if value.is_some_and(Value::is_table) => format!("write [[{key}]] with two brackets"),
                     _ => "change the value".to_owned(),
                 };
-                let found = found.map_or_else(|| "a table".to_owned(), described);
-                KeyFault::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
+                let written = value.map_or_else(|| "a table".to_owned(), described);
+                KeyFault::value(key, format!("{place} is {written}"), format!("expected {expected}"), advice)
             }
             Self::Other(message) => {
                 KeyFault::value(key, format!("{place}: {message}"), "not accepted", "change the value")
@@ -230,7 +229,7 @@ const A_TABLE: &str = "a table: `[name]`, or `{ key = value }`";
 const A_LIST: &str = "a list: `[…]`, or tables under `[[name]]`";
 const SETTINGS: &str = "a name with its settings";
 
-/// What serde expects, in the words of a TOML file.
+/// Expectation of serde in terms of TOML.
 fn in_toml(expected: &str) -> &str {
     match expected {
         "f64" => "a number",
@@ -246,7 +245,7 @@ fn in_toml(expected: &str) -> &str {
     }
 }
 
-/// A value in a message.
+/// Description of a value in a message.
 fn described(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text {}", shown(text)),
@@ -259,7 +258,7 @@ fn described(value: &Value) -> String {
     }
 }
 
-/// What the names at a key stand for.
+/// Kind of thing that the names at a key denote.
 fn kind_of(key: &KeyPath) -> &'static str {
     match key.parts() {
         [manoeuvre, _] if manoeuvre == "manoeuvre" => "manoeuvre",

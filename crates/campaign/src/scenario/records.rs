@@ -1,5 +1,5 @@
-//! Studies of measured records: `[records]` stands in the place of ship, manoeuvre and instruments. Methods are fitted
-//! to some records of a ship and judged on others, which have chosen nothing.
+//! Studies of measured records: `[records]` replaces ship, manoeuvre and instruments. Methods are fitted to some
+//! records of a ship and validated on others, which play no part in the fit (hold-out validation, Ljung 1999).
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
@@ -24,10 +24,10 @@ use crate::scenario::problem::{KeyFault, KeyPath, place_among};
 use crate::scenario::sweep::AxisWire;
 use crate::scenario::words::Presentation;
 
-/// Environment variable that names a folder of records which are not beside the scenario.
+/// Environment variable for the folder of records that are not beside the scenario.
 pub const DATA: &str = "KEMPF_DATA";
 
-/// Most records of a cell.
+/// Largest number of records of a cell.
 const MAX_RECORDS: usize = 1000;
 
 /// A scenario of measured records.
@@ -81,7 +81,7 @@ pub enum FilesWire {
     /// All of them have to be there.
     Patterns(Vec<String>),
     /// Files and their SHA-256, hexadecimal.
-    Known(BTreeMap<String, String>),
+    Checksummed(BTreeMap<String, String>),
 }
 
 /// What describes the columns of records.
@@ -130,45 +130,45 @@ impl Default for JudgeWire {
     }
 }
 
-/// What a trial of a study of records is: some are fitted, one judges. Places are those in the list of records.
+/// Split of records in one trial: indices of the fitted records and of the validation record.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RecordQuestion {
-    /// Records that are fitted together.
+pub struct RecordSplit {
+    /// Indices of the records fitted together.
     pub fitted: Vec<usize>,
-    /// The record that judges.
+    /// Index of the validation record.
     pub judge: Option<usize>,
 }
 
-/// The records of a cell.
+/// Records of a cell, with the splits of its trials.
 pub struct RecordSet {
     /// The records, in the order of their names.
     pub trials: Vec<Trial>,
-    /// The trials of the cell: those with the same fit follow each other.
-    pub questions: Vec<RecordQuestion>,
-    /// Files that are known by their SHA-256 and are not there, with the reason.
+    /// Splits of the trials; equal fits are adjacent.
+    pub splits: Vec<RecordSplit>,
+    /// Absent files of those listed with a SHA-256, with the reason.
     pub absent: Vec<(String, String)>,
-    /// What reading them had to decide, a line each.
+    /// Warnings of the reader, one line each.
     pub warnings: Vec<String>,
     /// SHA-256 of every file and of the sidecar that describes it.
     sha256: String,
-    /// What [`shown`](Self::shown) returns, once somebody has asked.
-    shown: OnceLock<Vec<Trial>>,
+    /// Cache of [`without_spikes`](Self::without_spikes).
+    without_spikes: OnceLock<Vec<Trial>>,
 }
 
 impl RecordSet {
-    /// The name of a record.
+    /// Name of a record.
     pub fn name(&self, place: usize) -> &str {
         self.trials[place].name()
     }
 
-    /// The records without the readings of their compass that belong to no ship: these count for no method.
-    pub(crate) fn shown(&self) -> &[Trial] {
-        self.shown.get_or_init(|| without_spikes(&self.trials).0.into_owned())
+    /// The records without heading spikes, which are excluded from all errors.
+    pub(crate) fn without_spikes(&self) -> &[Trial] {
+        self.without_spikes.get_or_init(|| without_spikes(&self.trials).0.into_owned())
     }
 
-    /// Reads the records of a table.
+    /// Records of a `[records]` table.
     ///
-    /// Fails when a file is missing or is no record, and when nothing is left to be asked.
+    /// Fails when a file is missing or is not a record, and when no split is left.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
         let ListedFiles { paths, absent } = files(wire, folder, &key)?;
@@ -177,8 +177,8 @@ impl RecordSet {
         for (path, sidecar) in &paths {
             let refuse = |problem: &dyn Display| {
                 let advice = "`study fit` says what is wrong with it";
-                let found = format!("{}: {problem}", path.display());
-                KeyFault::value(key.child("files"), found, "expected a record that can be read", advice)
+                let problem = format!("{}: {problem}", path.display());
+                KeyFault::value(key.child("files"), problem, "expected a record that can be read", advice)
             };
             let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
             if let Origin::Measured { sha256, .. } = read.trial.origin() {
@@ -192,44 +192,39 @@ impl RecordSet {
             trials.push(read.trial);
         }
         let names: Vec<&str> = trials.iter().map(Trial::name).collect();
-        let mut known = HashSet::new();
-        let twice = names.iter().find(|name| !known.insert(**name));
+        let mut seen = HashSet::new();
+        let twice = names.iter().find(|name| !seen.insert(**name));
         if twice.is_some() || names.len() > MAX_RECORDS {
-            let found =
-                twice.map_or_else(|| format!("{} records", names.len()), |name| format!("{name} stands there twice"));
+            let problem =
+                twice.map_or_else(|| format!("{} records", names.len()), |name| format!("{name} is listed twice"));
             let expected = format!("expected at most {MAX_RECORDS} records, each with a name of its own");
-            return Err(KeyFault::value(
-                key.child("files"),
-                found,
-                expected,
-                "leave records out, or call one otherwise",
-            ));
+            return Err(KeyFault::value(key.child("files"), problem, expected, "remove or rename a record"));
         }
         let stem = |file: &str| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let absent_names: Vec<String> = absent.iter().map(|(file, _)| stem(file)).collect();
-        let questions = questions(&wire.judge, &names, &absent_names, &key.child("judge"))?;
-        let (sha256, shown) = (identity::hex(&digest.finalize()), OnceLock::new());
-        Ok(Self { trials, questions, absent, warnings, sha256, shown })
+        let splits = splits(&wire.judge, &names, &absent_names, &key.child("judge"))?;
+        let (sha256, without_spikes) = (identity::hex(&digest.finalize()), OnceLock::new());
+        Ok(Self { trials, splits, absent, warnings, sha256, without_spikes })
     }
 }
 
-/// Files of records.
+/// Files of records, present and absent.
 #[derive(Default)]
 struct ListedFiles {
-    /// Those that are there, each with the sidecar that describes it.
+    /// Present files, each with the sidecar that describes it.
     paths: Vec<(PathBuf, Option<PathBuf>)>,
-    /// Those that are not, with the reason.
+    /// Absent files, with the reason.
     absent: Vec<(String, String)>,
 }
 
-/// The files of a table.
+/// Files of a `[records]` table.
 fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedFiles, KeyFault> {
     let key = &records.child("files");
     let entries: Vec<(KeyPath, &String, Option<&String>)> = match &wire.files {
         FilesWire::Patterns(list) => {
             (0..).zip(list).map(|(at, file): (usize, _)| (key.child(at), file, None)).collect()
         }
-        FilesWire::Known(table) => table.iter().map(|(file, hash)| (key.child(file), file, Some(hash))).collect(),
+        FilesWire::Checksummed(table) => table.iter().map(|(file, hash)| (key.child(file), file, Some(hash))).collect(),
     };
     let sidecars: Vec<Option<PathBuf>> = match &wire.sidecar {
         None => vec![None; entries.len()],
@@ -238,11 +233,11 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
             paths.iter().map(|path| Some(folder.join(path))).collect()
         }
         Some(SidecarWire::Each(paths)) => {
-            let found = counted(paths.len() as u64, "sidecar");
+            let problem = counted(paths.len() as u64, "sidecar");
             let expected = format!("expected one for each entry of `files`, which has {}", entries.len());
             return Err(KeyFault::value(
                 records.child("sidecar"),
-                found,
+                problem,
                 expected,
                 "give one path for all, or as many",
             ));
@@ -252,10 +247,10 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
     for ((place, file, sha256), sidecar) in entries.into_iter().zip(sidecars) {
         let paths = match sha256 {
             Some(sha256) if sha256.len() != 64 || !sha256.bytes().all(|digit| digit.is_ascii_hexdigit()) => {
-                let found = format!("the SHA-256 of {file} is {sha256:?}");
-                return Err(KeyFault::value(place, found, "expected 64 hexadecimal digits", "see sha256sum"));
+                let problem = format!("the SHA-256 of {file} is {sha256:?}");
+                return Err(KeyFault::value(place, problem, "expected 64 hexadecimal digits", "see sha256sum"));
             }
-            Some(sha256) => match known(folder, file, &sha256.to_ascii_lowercase()) {
+            Some(sha256) => match verified_path(folder, file, &sha256.to_ascii_lowercase()) {
                 Ok(path) => vec![path],
                 Err(reason) => {
                     files.absent.push((file.clone(), reason));
@@ -266,8 +261,8 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
         };
         if paths.is_empty() {
             let advice = format!("give files beside the scenario, or name their folder in {DATA}");
-            let found = format!("`records.files` holds {file:?}, and there is no such file");
-            return Err(KeyFault::value(place, found, "expected records", advice));
+            let problem = format!("`records.files` holds {file:?}, and there is no such file");
+            return Err(KeyFault::value(place, problem, "expected records", advice));
         }
         files.paths.extend(paths.into_iter().map(|path| {
             let sidecar = Sidecar::describing(&path, sidecar.as_deref());
@@ -277,8 +272,8 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
     Ok(files)
 }
 
-/// Where a file with this SHA-256 is; fails with the reason in words, without its place.
-fn known(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
+/// Path of a file with this SHA-256; fails with the reason, without the path.
+fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
     let bytes = disk::read(&path, RECORD.largest).map_err(|error| format!("it cannot be read: {error}"))?;
     let hash = identity::hex(&Sha256::digest(bytes.unwrap_or_default()));
@@ -288,45 +283,40 @@ fn known(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     Err(format!("it is another file: its SHA-256 begins with {}, expected {}", &hash[..12], &sha256[..12]))
 }
 
-/// The trials of a cell. One that would need a record that is absent is left out.
-fn questions(
-    judge: &JudgeWire,
-    names: &[&str],
-    absent: &[String],
-    key: &KeyPath,
-) -> Result<Vec<RecordQuestion>, KeyFault> {
+/// Splits of a cell, without those that need an absent record.
+fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -> Result<Vec<RecordSplit>, KeyFault> {
     let all = 0..names.len();
-    let without = |one: usize| all.clone().filter(|other| *other != one).collect::<Vec<usize>>();
-    let question = |fitted: Vec<usize>, judge| RecordQuestion { fitted, judge };
-    let questions: Vec<RecordQuestion> = match judge {
-        JudgeWire::Rule(JudgeRule::None) => all.map(|one| question(vec![one], None)).collect(),
+    let without = |excluded: usize| all.clone().filter(|place| *place != excluded).collect::<Vec<usize>>();
+    let split = |fitted: Vec<usize>, judge| RecordSplit { fitted, judge };
+    let splits: Vec<RecordSplit> = match judge {
+        JudgeWire::Rule(JudgeRule::None) => all.map(|record| split(vec![record], None)).collect(),
         JudgeWire::Rule(JudgeRule::Others) => {
-            let of = |one: usize| without(one).into_iter().map(move |other| question(vec![one], Some(other)));
-            all.clone().flat_map(of).collect()
+            let pairs = |fitted: usize| without(fitted).into_iter().map(move |judge| split(vec![fitted], Some(judge)));
+            all.clone().flat_map(pairs).collect()
         }
         JudgeWire::Rule(JudgeRule::LeftOut) if names.len() > 1 => {
-            all.clone().map(|one| question(without(one), Some(one))).collect()
+            all.clone().map(|judge| split(without(judge), Some(judge))).collect()
         }
         JudgeWire::Rule(JudgeRule::LeftOut) => Vec::new(),
         JudgeWire::Lists { fit, judge, each } => {
             let places = |list: &[String], part: &str| -> Result<Vec<usize>, KeyFault> {
                 let place = |name: &String| {
-                    let words = ["no record is called", "expected the name of a file, without its ending"];
+                    let messages = ["no record is called", "expected the name of a file, without its ending"];
                     let key = key.child(part);
-                    place_among(name, names, key, words)
+                    place_among(name, names, key, messages)
                 };
                 list.iter().filter(|name| !absent.contains(name)).map(place).collect()
             };
             let is_whole = *each || !fit.iter().any(|name| absent.contains(name));
             let (fit, judge) = (places(fit, "fit")?, places(judge, "judge")?);
             let fit = if is_whole { fit } else { Vec::new() };
-            if let Some(both) = fit.iter().find(|one| !each && judge.contains(one)) {
-                let found = format!("{} is fitted and judges", names[*both]);
+            if let Some(both) = fit.iter().find(|record| !each && judge.contains(record)) {
+                let problem = format!("{} is in both lists", names[*both]);
                 return Err(KeyFault::value(
                     key.clone(),
-                    found,
+                    problem,
                     "expected each record once",
-                    "take it out of one list",
+                    "remove it from `fit` or from `judge`",
                 ));
             }
             let fits = match each {
@@ -334,21 +324,26 @@ fn questions(
                 false => vec![fit],
             };
             let judged = |fit: Vec<usize>| {
-                let others = judge.iter().filter(|record| !fit.is_empty() && !fit.contains(record)).copied();
-                others.map(|record| question(fit.clone(), Some(record))).collect::<Vec<_>>()
+                let judges = judge.iter().filter(|record| !fit.is_empty() && !fit.contains(record)).copied();
+                judges.map(|record| split(fit.clone(), Some(record))).collect::<Vec<_>>()
             };
             fits.into_iter().flat_map(judged).collect()
         }
     };
-    if questions.is_empty() && absent.is_empty() {
+    if splits.is_empty() && absent.is_empty() {
         let advice = "give more records, or `judge = \"none\"` to fit each alone";
-        let found = format!("{}, none of which judges another", counted(names.len() as u64, "record"));
-        return Err(KeyFault::value(key.clone(), found, "expected one to fit and one to judge at least", advice));
+        let problem = format!("{}, which leaves none to judge another", counted(names.len() as u64, "record"));
+        return Err(KeyFault::value(
+            key.clone(),
+            problem,
+            "expected at least one record to fit and one to judge",
+            advice,
+        ));
     }
-    Ok(questions)
+    Ok(splits)
 }
 
-/// Files that a pattern names, sorted: beside the scenario, or else in the folder of [`DATA`].
+/// Files that match a pattern, sorted: beside the scenario, otherwise in the folder of [`DATA`].
 fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let data = std::env::var_os(DATA).map(PathBuf::from);
     let below = |folder: &Path| -> Vec<PathBuf> {
@@ -364,21 +359,21 @@ fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
         files.sort();
         files
     };
-    let found = below(folder);
-    if found.is_empty() { data.map_or(found, |data| below(&data)) } else { found }
+    let files = below(folder);
+    if files.is_empty() { data.map_or(files, |data| below(&data)) } else { files }
 }
 
-/// Whether a name is of a pattern in which `*` stands for anything.
+/// `true` if a name matches a pattern in which `*` stands for any text.
 fn fits(name: &str, pattern: &str) -> bool {
     let mut parts = pattern.split('*');
-    let Some(mut rest) = parts.next().and_then(|first| name.strip_prefix(first)) else { return false };
+    let Some(mut tail) = parts.next().and_then(|first| name.strip_prefix(first)) else { return false };
     let parts: Vec<&str> = parts.collect();
-    let Some((last, middle)) = parts.split_last() else { return rest.is_empty() };
+    let Some((last, middle)) = parts.split_last() else { return tail.is_empty() };
     for part in middle {
-        let Some(place) = rest.find(part) else { return false };
-        rest = &rest[place + part.len()..];
+        let Some(place) = tail.find(part) else { return false };
+        tail = &tail[place + part.len()..];
     }
-    rest.ends_with(last)
+    tail.ends_with(last)
 }
 
 /// SHA-256 of a design and of the records of its cells.
@@ -412,14 +407,14 @@ mod tests {
         let names = ["a", "b", "c"];
         let key = KeyPath::dotted("records.judge");
         let of = |judge: &JudgeWire| -> Vec<(Vec<usize>, Option<usize>)> {
-            let all = questions(judge, &names, &[], &key).unwrap_or_else(|fault| panic!("{}", fault.found));
-            all.into_iter().map(|own| (own.fitted, own.judge)).collect()
+            let all = splits(judge, &names, &[], &key).unwrap_or_else(|fault| panic!("{}", fault.problem));
+            all.into_iter().map(|split| (split.fitted, split.judge)).collect()
         };
         let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
         assert_eq!(of(&JudgeWire::default()), pairs);
         let left_out = [(vec![1, 2], Some(0)), (vec![0, 2], Some(1)), (vec![0, 1], Some(2))];
         assert_eq!(of(&JudgeWire::Rule(JudgeRule::LeftOut)), left_out);
-        assert_eq!(of(&JudgeWire::Rule(JudgeRule::None)), [0, 1, 2].map(|one| (vec![one], None)));
+        assert_eq!(of(&JudgeWire::Rule(JudgeRule::None)), [0, 1, 2].map(|record| (vec![record], None)));
         let lists = |fit: &[&str], judge: &[&str]| JudgeWire::Lists {
             fit: fit.iter().map(|name| (*name).to_owned()).collect(),
             judge: judge.iter().map(|name| (*name).to_owned()).collect(),
@@ -430,13 +425,13 @@ mod tests {
         assert_eq!(of(&JudgeWire::Lists { fit, judge, each: true }), pairs);
         assert_eq!(of(&lists(&["c", "a"], &["b"])), [(vec![2, 0], Some(1))]);
         for (wrong, part) in [
-            (lists(&["a"], &["a"]), "is fitted and judges"),
+            (lists(&["a"], &["a"]), "is in both lists"),
             (lists(&["a"], &["d"]), "no record is called"),
-            (lists(&[], &["a"]), "none of which judges another"),
+            (lists(&[], &["a"]), "which leaves none to judge another"),
         ] {
-            let fault = questions(&wrong, &names, &[], &key).expect_err("wrong");
-            assert!(fault.found.contains(part), "{}", fault.found);
+            let fault = splits(&wrong, &names, &[], &key).expect_err("wrong");
+            assert!(fault.problem.contains(part), "{}", fault.problem);
         }
-        assert!(questions(&JudgeWire::default(), &["a"], &[], &key).is_err());
+        assert!(splits(&JudgeWire::default(), &["a"], &[], &key).is_err());
     }
 }

@@ -1,4 +1,5 @@
-//! From what a scenario says to what the engine accepts: names to ships, settings to a simulation, every value checked.
+//! Resolution of a scenario into specifications: names into ships, settings into a simulation, with every value
+//! checked.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,7 +14,7 @@ use crate::scenario::specification::{HULL, Specification};
 use crate::scenario::wire::{FurtherWire, ScenarioWire};
 use crate::scenario::{effect, ship};
 
-/// Resolves everything about a trial, which carries the name of its scenario.
+/// Specification of a trial, which carries the name of its scenario.
 pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
@@ -28,21 +29,21 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     };
     simulation.validate()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
-    let also = wire.also.iter().enumerate().map(|(index, own)| {
-        let what = format!("in the further record {}", index + 1);
-        let record = Simulation { recording: own.recording.unwrap_or(wire.recording), ..simulation.clone() };
-        further(own, record, KeyPath::dotted("also").child(index), &what, folder)
+    let also = wire.also.iter().enumerate().map(|(index, entry)| {
+        let context = format!("in the further record {}", index + 1);
+        let record = Simulation { recording: entry.recording.unwrap_or(wire.recording), ..simulation.clone() };
+        further(entry, record, KeyPath::dotted("also").child(index), &context, folder)
     });
     let also = also.collect::<Result<_, _>>()?;
     // A validation is in a calm and perfectly recorded, so that the error of a replay is that of the response.
-    let validation = wire.validation.as_ref().map(|own| {
+    let validation = wire.validation.as_ref().map(|entry| {
         let record = Simulation {
-            recording: own.recording.unwrap_or_else(|| of_validation(&wire.recording)),
+            recording: entry.recording.unwrap_or_else(|| of_validation(&wire.recording)),
             disturbances: Disturbances::default(),
             sensors: Sensors::default(),
             ..simulation.clone()
         };
-        further(own, record, KeyPath::dotted("validation"), "in the validation manoeuvre", folder)
+        further(entry, record, KeyPath::dotted("validation"), "in the validation manoeuvre", folder)
     });
     let validation = validation.transpose()?;
     let base = match &ship.model {
@@ -53,7 +54,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     Ok(Specification { also, validation, truth, base, missing, stated, simulation })
 }
 
-/// Channels that no trial of the scenario has.
+/// Channels that the trials of a scenario lack.
 fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
     let moves = wire.speed_and_sway.is_some();
     let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
@@ -62,7 +63,7 @@ fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
     has.into_iter().filter(|(_, is_there)| !is_there).map(|(channel, _)| channel).collect()
 }
 
-/// What is steered: the ship, with speed and sway beside its yaw response where the scenario says so.
+/// Vessel of the simulation: the ship, with speed and sway added to its yaw response where the scenario has them.
 ///
 /// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
 fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
@@ -84,7 +85,8 @@ fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
     Ok(vessel.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
 }
 
-/// What a first-order base lacks in a trial: effects of the ship, and disturbances that are effects by another name.
+/// Identifiers of the effects that a first-order base lacks in a trial: those of the ship, and those equal to a
+/// disturbance.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
         Model::Response(response) => response.model().effects().iter().map(|effect| effect.id().to_owned()).collect(),
@@ -103,18 +105,18 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     missing
 }
 
-/// The recording of a validation that has none of its own.
+/// Default recording of a validation.
 pub fn of_validation(trial: &Recording) -> Recording {
     Recording { duration: trial.duration, ..Recording::every(trial.period) }
 }
 
-/// Another manoeuvre of the ship, recorded as `record` says. What both share has been checked with the first one, so
-/// what is wrong now is of this one.
+/// Simulation of a further manoeuvre of the ship; `record` holds what it shares with the first one, which is checked
+/// already, so that any fault concerns this manoeuvre.
 fn further(
     wire: &FurtherWire,
     record: Simulation,
     place: KeyPath,
-    what: &str,
+    context: &str,
     folder: &Path,
 ) -> Result<Simulation, KeyFault> {
     let checked = manoeuvre(&wire.manoeuvre, folder).and_then(|manoeuvre| {
@@ -122,28 +124,28 @@ fn further(
         simulation.validate()?;
         Ok(simulation)
     });
-    checked.map_err(|problem| KeyFault {
-        key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
-        found: format!("{what}, {}", problem.found),
-        ..problem
+    checked.map_err(|fault| KeyFault {
+        key: fault.key.parts().iter().fold(place, |key, part| key.child(part)),
+        problem: format!("{what}, {}", fault.problem),
+        ..fault
     })
 }
 
-/// The manoeuvre; a record to replay is in `folder` or near it.
+/// Manoeuvre, with the record to replay, whose path is relative to `folder`.
 fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, KeyFault> {
     let Manoeuvre::Replay { file, .. } = manoeuvre else { return Ok(manoeuvre.clone()) };
     let path = folder.join(file);
-    let refuse = |found: String| {
+    let refuse = |problem: String| {
         let key = KeyPath::dotted("manoeuvre.replay.file");
         let advice =
             "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
-        KeyFault::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+        KeyFault::value(key, format!("the record to replay: {problem}"), "expected a record with a rudder", advice)
     };
-    // It is read for every cell, and what has gone through a pipe is gone.
+    // The file is read for every cell, which a pipe does not allow.
     if path.exists() && !path.is_file() {
-        return Err(refuse(format!("{}: this is a folder, a pipe or a device and no file", path.display())));
+        return Err(refuse(format!("{}: this is a folder, a pipe or a device, not a file", path.display())));
     }
-    // Who runs a scenario need not have named the files in it: what they hold is not shown.
+    // The content is not shown: the user need not be the author of the scenario.
     let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
     Ok(Manoeuvre::Replay { file: file.clone(), rudder: Some(reading.trial.rudder_signal().clone()) })
 }

@@ -1,16 +1,15 @@
-//! A scenario with nothing left out: what was written, and every default that was taken, each marked as one.
+//! Resolved text of a scenario: the keys as written, and all defaults, marked as such.
 
 use toml::{Table, Value};
 
-use crate::scenario::keys::{LeftOut, ScenarioKey, keys};
+use crate::scenario::keys::{KeyDefault, ScenarioKey, keys};
 use crate::scenario::method::Method;
 use crate::scenario::problem::KeyFault;
 use crate::scenario::resolve::of_validation;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{effect, reader, ship};
 
-/// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they
-/// change.
+/// Resolved text of a scenario, as TOML. Sweeps and draws are kept as written.
 ///
 /// Fails as the scenario would.
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
@@ -35,19 +34,20 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     Ok(lines.text.trim_start().to_owned())
 }
 
+/// Writer of the resolved text.
 struct ResolvedText {
-    /// Settings of a trial, for those that have no value when they are left out.
+    /// Keys of a scenario, to comment those without a default.
     keys: Vec<ScenarioKey>,
     text: String,
 }
 
 impl ResolvedText {
-    /// What stands below a path, beside what was `given` there.
+    /// Writes the table at a path; `given` is the table as written.
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
         if path.is_empty() {
             // In the order in which a person reads them, which is that of the types.
-            entries.sort_by_key(|(name, _)| self.keys.iter().position(|own| own.key == **name));
+            entries.sort_by_key(|(name, _)| self.keys.iter().position(|entry| entry.key == **name));
         }
         let (tables, values): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(_, value)| is_of_tables(value));
         for (name, value) in values {
@@ -80,17 +80,17 @@ impl ResolvedText {
         }
     }
 
-    /// Settings that have no value here, with what that means.
+    /// Writes comments for missing keys without a default.
     fn left_out(&mut self, path: &[&str], table: &Table) {
         let path = path
             .split_first()
             .filter(|(first, _)| ["validation", "also"].contains(first))
-            .map_or(path, |(_, rest)| rest)
+            .map_or(path, |(_, below)| below)
             .join(".");
         for ScenarioKey { key, unit, default, meaning } in &self.keys {
-            let name = key.strip_prefix(&path).and_then(|rest| rest.strip_prefix('.'));
+            let name = key.strip_prefix(&path).and_then(|tail| tail.strip_prefix('.'));
             let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };
-            if *default == LeftOut::Nothing && unit != "table" {
+            if *default == KeyDefault::Nothing && unit != "table" {
                 self.text += &format!("# {name} is left out: {meaning}\n");
             }
         }
@@ -160,38 +160,38 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
             "# executes is left out: Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the \
              record is its end.",
         ] {
-            assert!(text.lines().any(|own| own == line), "{line}\n{text}");
+            assert!(text.lines().any(|resolved_line| resolved_line == line), "{line}\n{text}");
         }
         let again = scenario(&text);
-        for (one, other) in bare.cells.iter().zip(&again.cells) {
+        for (left, right) in bare.cells.iter().zip(&again.cells) {
             let key = simulate::StreamKey { seed: 3, cell: 0, replicate: 0 };
-            let [one, other] = [one, other].map(|cell| cell.specimen(&key).expect("nothing is drawn").specification);
+            let [left, right] = [left, right].map(|cell| cell.specimen(&key).expect("nothing is drawn").specification);
             // A rate that is left out and one that is infinite move the rudder alike; only the first is warned of.
             let same = |simulation: &Simulation| {
                 let mut simulation = simulation.clone();
                 simulation.gear.rate = Some(simulation.gear.largest_rate());
                 format!("{simulation:?}")
             };
-            assert_eq!(same(&one.simulation), same(&other.simulation));
-            assert_eq!(one.validation.as_ref().map(same), other.validation.as_ref().map(same));
+            assert_eq!(same(&left.simulation), same(&right.simulation));
+            assert_eq!(left.validation.as_ref().map(same), right.validation.as_ref().map(same));
         }
         assert_eq!(again.resolved().replace("  # default", ""), text.replace("  # default", ""));
     }
 
     #[test]
     fn defaults_that_matter_are_told_for_the_cells_that_have_them() {
-        let told = |text: &str| scenario(text).defaults_that_matter();
-        let bare = told(BARE);
+        let defaults = |text: &str| scenario(text).defaults_that_matter();
+        let bare = defaults(BARE);
         assert_eq!(bare.iter().map(|(assumption, _)| *assumption).collect::<Vec<_>>(), Assumption::ALL);
         assert!(bare[0].1.starts_with("in 1 of 2 cells the rudder moves instantly, because"), "{}", bare[0].1);
         assert!(bare[1].1.starts_with("every order is given"), "{}", bare[1].1);
-        let with = |text: &str| told(&format!("{BARE}{text}"));
+        let with = |text: &str| defaults(&format!("{BARE}{text}"));
         assert_eq!(with("[steering-gear]\nrate-deg-s = inf").len(), 2, "an infinite rate is meant");
         assert_eq!(with("[helmsman]\nreaction-time-s = 0.5\n[sensor]\nheading-quantum-deg = 0.1").len(), 1);
         let hull = |id: &str| BARE.replace("first-order", id).replace("K-per-s = 0.1\nT-s = 16.3\n", "");
         for ship in ship::ships::all().into_iter().filter(|ship| ship.rudder_rate.is_some()) {
-            let own = told(&hull(&ship.id));
-            assert!(own.iter().all(|(assumption, _)| *assumption != Assumption::InstantRudder), "{}", ship.id);
+            let assumptions = defaults(&hull(&ship.id));
+            assert!(assumptions.iter().all(|(assumption, _)| *assumption != Assumption::InstantRudder), "{}", ship.id);
         }
     }
 }

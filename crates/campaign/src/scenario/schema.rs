@@ -1,6 +1,5 @@
-//! The JSON schema of a scenario, by which an editor completes and checks its keys. It comes from the types that read
-//! the file, whose comments therefore hold no links; what it cannot say, such as which values go together, is said when
-//! a scenario is resolved.
+//! JSON schema of a scenario, for completion and checks in editors. It is generated from the types that read the file,
+//! whose comments therefore contain no links. Constraints between values are checked on resolution.
 
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
@@ -17,14 +16,14 @@ enum AnyScenario {
     Measured(Box<RecordStudyWire>),
 }
 
-/// The schema of a scenario, in the draft that editors of TOML understand.
+/// JSON schema of a scenario, in draft 7, which TOML editors support.
 pub fn schema() -> Schema {
     let mut schema = SchemaSettings::draft07().into_generator().into_root_schema_for::<AnyScenario>();
     schema.insert("title".into(), "Scenario of a study".into());
     schema
 }
 
-/// The schema of a scenario of simulated ships.
+/// JSON schema of a scenario of simulated ships.
 pub(crate) fn of_simulated() -> Schema {
     SchemaSettings::draft07().into_generator().into_root_schema_for::<ScenarioWire>()
 }

@@ -1,4 +1,4 @@
-//! The ship of a scenario: one of the registry, or one by numbers of its own.
+//! Ship of a scenario: one of the registry, or a user's ship by its numbers.
 
 #![expect(non_snake_case, reason = "K, T1, T2 and T3 are the symbols of the field")]
 
@@ -20,13 +20,13 @@ use crate::scenario::{reader, sweep};
 
 const FIRST_ORDER: &str = "first-order";
 const SECOND_ORDER: &str = "second-order";
-const OWN_HULL: &str = "hull";
+const USER_HULL: &str = "hull";
 
 const BIAS: NumberKey = NumberKey::optional("rudder-bias-deg", "Rudder bias δ_r.", Some(0.0));
 const LENGTH: NumberKey = NumberKey::optional("length-m", "Length L between perpendiculars; with the speed.", None);
 const SPEED: NumberKey = NumberKey::optional("speed-kn", "Approach speed U; with the length.", None);
 
-/// K and T in SI, or without dimension: K' = K L/U, T' = T U/L.
+/// Keys of K and T in SI units, or nondimensional: K' = K L/U, T' = T U/L.
 const FIRST_ORDER_NUMBERS: [NumberKey; 7] = [
     NumberKey::optional("K-per-s", "Gain K.", None),
     NumberKey::optional("T-s", "Time constant T; below 0 for a ship that is course-unstable.", None),
@@ -47,44 +47,44 @@ const SECOND_ORDER_NUMBERS: [NumberKey; 7] = [
     SPEED,
 ];
 
-/// Particulars of a hull, of which only length and speed are needed.
+/// Keys of the particulars of a hull; only length and speed are required.
 static HULL_NUMBERS: LazyLock<Vec<NumberKey>> = LazyLock::new(|| {
-    let own = |&Particular { key, meaning, .. }: &Particular| match key {
+    let number = |&Particular { key, meaning, .. }: &Particular| match key {
         "length-m" | "speed-m-s" => NumberKey::required(key, meaning),
         _ => NumberKey::optional(key, meaning, None),
     };
-    PARTICULARS.iter().map(own).collect()
+    PARTICULARS.iter().map(number).collect()
 });
 
 /// The ships of the registry.
 static REGISTRY: LazyLock<Vec<Ship>> = LazyLock::new(ships::all);
 
-/// The numbers that a ship of one's own is described by; none of a ship of the registry.
+/// Keys of a user's ship; empty for a ship of the registry.
 fn numbers_of(id: &str) -> &'static [NumberKey] {
     match id {
         FIRST_ORDER => &FIRST_ORDER_NUMBERS,
         SECOND_ORDER => &SECOND_ORDER_NUMBERS,
-        OWN_HULL => &HULL_NUMBERS,
+        USER_HULL => &HULL_NUMBERS,
         _ => &[],
     }
 }
 
-/// The ship that `[ship]` names or describes.
+/// Ship that `[ship]` names or describes.
 ///
-/// Fails with the name or the number that makes none.
+/// Fails with the invalid name or number.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
-    let known: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, OWN_HULL]).collect();
-    let (id, key, numbers) = number_table::only(named, &KeyPath::dotted("ship"), &known)?;
+    let ids: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, USER_HULL]).collect();
+    let (id, key, numbers) = number_table::only(named, &KeyPath::dotted("ship"), &ids)?;
     let keys = numbers_of(id);
     if !keys.is_empty() {
         refuse_unknown(numbers, keys, &key)?;
         refuse_incomplete(numbers, keys, &key)?;
-        return if id == OWN_HULL { hull(key, numbers) } else { OwnShip { key, numbers }.build(id) };
+        return if id == USER_HULL { hull(key, numbers) } else { UserShip { key, numbers }.build(id) };
     }
     match REGISTRY.iter().find(|ship| ship.id == id) {
         None => {
-            let found = format!("no ship is called `{id}`");
-            Err(KeyFault::name(key, found, "no such ship", suggestion(id, &known)))
+            let problem = format!("no ship is called `{id}`");
+            Err(KeyFault::name(key, problem, "no such ship", suggestion(id, &ids)))
         }
         Some(ship) if numbers.is_empty() => Ok(ship.clone()),
         Some(_) => Err(KeyFault::name(
@@ -96,7 +96,7 @@ pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
     }
 }
 
-/// The MMG hull with these particulars.
+/// MMG hull from its particulars.
 fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault> {
     let mut particulars = HullParticulars::default();
     for (name, value) in numbers {
@@ -105,8 +105,8 @@ fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault>
         }
     }
     user::hull(&particulars).map_err(|error| match error {
-        HullError::Particulars(ParticularsError { key: own, what, value, range, cure, .. }) => {
-            let place = if numbers.contains_key(own) { key.child(own) } else { key };
+        HullError::Particulars(ParticularsError { key: particular, what, value, range, cure, .. }) => {
+            let place = if numbers.contains_key(particular) { key.child(particular) } else { key };
             let [value, lowest, highest] = [value, range[0], range[1]].map(|number| ShortNumber::rounded(number, 4));
             KeyFault::name(place, format!("{what} is {value}"), format!("expected {lowest} to {highest}"), cure)
         }
@@ -116,18 +116,18 @@ fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault>
     })
 }
 
-/// The ship with nothing left out.
+/// Writes the defaults of a user's ship out.
 pub fn complete(named: &mut NamedNumbers) {
     named.iter_mut().for_each(|(id, numbers)| number_table::complete(numbers, numbers_of(id)));
 }
 
-/// A ship by numbers of its own.
-struct OwnShip<'a> {
+/// A user's ship with its key and numbers.
+struct UserShip<'a> {
     key: KeyPath,
     numbers: &'a BTreeMap<String, f64>,
 }
 
-impl OwnShip<'_> {
+impl UserShip<'_> {
     fn number(&self, key: &str) -> Option<f64> {
         self.numbers.get(key).copied()
     }
@@ -149,7 +149,7 @@ impl OwnShip<'_> {
         ship.map_err(|error| self.refused(bias_deg, &error))
     }
 
-    /// K (1/s) and T (s), given as they are or without dimension.
+    /// K (1/s) and T (s), given in SI units or nondimensional.
     fn indices(&self, particulars: Option<Particulars>) -> Result<(f64, f64), KeyFault> {
         let key = &self.key;
         let given = ["K-per-s", "T-s", "K-prime", "T-prime"].map(|key| self.number(key));
@@ -177,7 +177,7 @@ impl OwnShip<'_> {
         }
     }
 
-    /// Numbers that make no ship, at the key of the one at fault; of all other faults that is the rudder bias.
+    /// Fault of invalid numbers, at the faulty key; faults without a key are attributed to the rudder bias.
     fn refused(&self, bias_deg: f64, error: &ShipError) -> KeyFault {
         let (symbol, expected) = match *error {
             ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
@@ -187,17 +187,17 @@ impl OwnShip<'_> {
                 (symbol, format!("expected {of} {range}, and this makes it {}", ShortNumber(value)))
             }
         };
-        let own = self.numbers.iter().find(|(key, _)| key.split('-').next() == Some(symbol));
-        let (name, value) = own.map_or((BIAS.key, bias_deg), |(key, value)| (key, *value));
+        let written = self.numbers.iter().find(|(key, _)| key.split('-').next() == Some(symbol));
+        let (name, value) = written.map_or((BIAS.key, bias_deg), |(key, value)| (key, *value));
         KeyFault::of(self.key.child(name), sweep::written(&toml::Value::Float(value)), expected, "change the number")
     }
 
     fn particulars(&self) -> Result<Option<Particulars>, KeyFault> {
         let key = &self.key;
         let half = |given: &str, missing: &str| {
-            let found = format!("`{key}` has `{given}` without `{missing}`");
+            let problem = format!("`{key}` has `{given}` without `{missing}`");
             let advice = format!("add `{missing}`, or leave both out");
-            KeyFault::name(key.child(given), found, "length and speed belong together", advice)
+            KeyFault::name(key.child(given), problem, "length and speed belong together", advice)
         };
         let checked = |name: &str, value: f64| match value.is_finite() && value > 0.0 {
             true => Ok(value),
@@ -218,19 +218,19 @@ impl OwnShip<'_> {
     }
 }
 
-/// The ship: one key, the id of a ship of the registry or one with numbers of its own.
+/// JSON schema of `[ship]`: one key, the id of a registered ship or of a user's ship with its numbers.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
-    let own = [
+    let user_ships = [
         (FIRST_ORDER, "A ship of your own by K and T"),
         (SECOND_ORDER, "A ship of your own by K, T1, T2, T3"),
-        (OWN_HULL, "A hull of your own by her particulars"),
+        (USER_HULL, "A hull of your own by her particulars"),
     ];
-    let own = own.map(|(id, what)| (id, what, number_table::schema(numbers_of(id))));
+    let user_ships = user_ships.map(|(id, what)| (id, what, number_table::schema(numbers_of(id))));
     let registry =
         REGISTRY.iter().map(|ship| (&*ship.id, &*ship.name, json!({ "type": "object", "maxProperties": 0 })));
-    let described = own.into_iter().chain(registry).map(|(id, what, mut one)| {
-        one["description"] = what.into();
-        (id.to_owned(), one)
+    let described = user_ships.into_iter().chain(registry).map(|(id, what, mut schema)| {
+        schema["description"] = what.into();
+        (id.to_owned(), schema)
     });
     let ships: Map<String, Value> = described.collect();
     json_schema!({

@@ -1,39 +1,38 @@
-//! What the engine accepts: everything about a trial but its chance.
+//! Specification of a trial: everything but its random draws.
 
 use ship::FirstOrder;
 use simulate::{Simulation, StreamKey};
 
 use crate::scenario::physics::MissingPhysics;
 
-/// Everything about a trial but its chance.
+/// Specification of a trial: everything but its random draws.
 #[derive(Debug, Clone)]
 pub struct Specification {
-    /// How a trial is made.
+    /// Simulation of the record.
     pub simulation: Simulation,
-    /// Further records of the same ship, which methods identify together with that of the trial.
+    /// Further records of the same ship, which are identified together with the first.
     pub also: Vec<Simulation>,
-    /// A second manoeuvre of the same ship, in a calm and perfectly recorded.
+    /// Validation manoeuvre of the same ship, undisturbed and without measurement noise.
     pub validation: Option<Simulation>,
-    /// The truth, where the ship is exactly first order.
+    /// True response, where the ship is first order.
     pub truth: Option<FirstOrder>,
-    /// The base of a response ship, whatever effects it has.
+    /// First-order base of a response ship, with or without effects.
     pub base: Option<FirstOrder>,
-    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its
-    /// own.
+    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a hull.
     pub missing: Vec<String>,
-    /// What its formula states to be right to say of it.
+    /// Missing physics stated by its formula.
     pub stated: Option<MissingPhysics>,
 }
 
-/// What a hull has that no list of effects names.
+/// Identifier for the unlisted physics of a hull.
 pub const HULL: &str = "hull";
 
 impl Specification {
-    /// How every record of a trial is made, with the key of its own chance.
+    /// Simulation of every record of a trial, each with its random key.
     pub fn records(&self, key: &StreamKey) -> impl Iterator<Item = (&Simulation, StreamKey)> {
         /// Odd, so that no two of 2⁶⁴ records share a seed.
         const NEXT: u64 = 0x9E37_79B9_7F4A_7C15;
-        let own = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
-        std::iter::once(&self.simulation).chain(&self.also).enumerate().map(move |(number, one)| (one, own(number)))
+        let key = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
+        std::iter::once(&self.simulation).chain(&self.also).enumerate().map(move |(number, run)| (run, key(number)))
     }
 }

@@ -1,4 +1,4 @@
-//! The stopping rule of a scenario: `[stop]`. What it sees, and when it is met, is for those who run the study.
+//! Stopping rule of a scenario: `[stop]`, a standard error at which a cell ends. [`crate::stopping`] evaluates it.
 
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
@@ -76,8 +76,8 @@ impl StopRule {
             return Err(KeyFault::of(key.child("standard-error"), ShortNumber(self.standard_error), expected, advice));
         }
         let labels: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
-        let words = ["`stop.method` is", "no such method in this scenario"];
-        let own = self.method.as_ref().map(|label| place_among(label, &labels, key.child("method"), words));
-        own.transpose().map(|_| ())
+        let messages = ["`stop.method` is", "no such method in this scenario"];
+        let place = self.method.as_ref().map(|label| place_among(label, &labels, key.child("method"), messages));
+        place.transpose().map(|_| ())
     }
 }

@@ -1,7 +1,7 @@
-//! The design of a study: axes over any keys of the scenario, and their product as cells.
+//! Design of a study: axes over keys of the scenario, and their product as cells (full factorial design).
 //!
-//! A point of an axis sets one key or several; the changed document is resolved like any scenario, so a swept value is
-//! checked as strictly as one that is written down.
+//! A point of an axis sets one or several keys. The changed document is resolved like any scenario, so swept values are
+//! checked as strictly as written ones.
 
 use std::collections::HashSet;
 
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use toml::{Table, Value};
 
-use crate::scenario::key_words::in_words;
+use crate::scenario::key_units::axis_title;
 use crate::scenario::limits;
 use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath, of_text};
 
-/// Largest number of cells; more is a mistake in a range.
-const MOST_CELLS: usize = 100_000;
+/// Largest number of cells; more is an error in a range.
+const MAX_CELLS: usize = 100_000;
 
 /// An axis as it is written: `[[sweep]]`.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -74,9 +74,9 @@ pub struct SweepAxis {
 /// One point of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepPoint {
-    /// What it is called.
+    /// Label of the point.
     pub label: String,
-    /// Its value, where the axis is a number.
+    /// Its value, on a numeric axis.
     pub value: Option<f64>,
     /// The keys it sets.
     pub set: Vec<SweepSetting>,
@@ -87,21 +87,21 @@ pub struct SweepPoint {
 pub struct SweepSetting {
     /// The key that is changed.
     pub key: KeyPath,
-    /// The value it gets.
+    /// The value that is set.
     pub value: Value,
-    /// Where the file names the key.
+    /// Path in the file that names the key.
     pub key_place: KeyPath,
-    /// Where the file says the value.
+    /// Path in the file that holds the value.
     pub value_place: KeyPath,
 }
 
 impl SweepSetting {
-    /// Whether its key is one that a sweep may change.
+    /// Checks that a sweep may change the key.
     fn check(&self) -> Result<(), KeyFault> {
         limits::depth(&self.key, &self.key_place)?;
         let first = self.key.parts().first().map_or("", String::as_str);
         if first.is_empty() || matches!(ScenarioPart::of(first), ScenarioPart::Prose | ScenarioPart::Study) {
-            let found = match first {
+            let problem = match first {
                 "" => "the sweep names no key".to_owned(),
                 _ => format!("the sweep changes `{}`, which is the same for the whole study", self.key),
             };
@@ -109,7 +109,7 @@ impl SweepSetting {
                 mark: if self.key_place == self.value_place { AtFault::Name } else { AtFault::Value },
                 ..KeyFault::value(
                     self.key_place.clone(),
-                    found,
+                    problem,
                     "expected a key of the trial or of a method",
                     "for instance `sensor.heading-noise-deg`, `ship.first-order.T-s`, `identifier.0.method.srivc.max-iterations`",
                 )
@@ -118,30 +118,30 @@ impl SweepSetting {
         Ok(())
     }
 
-    /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
-    pub fn attributed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
-        let (place, mark) = match problem.mark {
-            // Where the point itself names the key, its name is underlined and not its value.
+    /// Fault of a changed scenario, attributed to the sweep; `cell` names the cell if there are several axes.
+    pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
+        let (place, mark) = match fault.mark {
+            // Where the point itself names the key, its name is underlined.
             AtFault::Name if self.key_place == self.value_place => (self.key_place.clone(), AtFault::Name),
             AtFault::Name => (self.key_place.clone(), AtFault::Value),
             AtFault::Value => (self.value_place.clone(), AtFault::Value),
             AtFault::Within(_) => {
-                let below = problem.key.parts().strip_prefix(self.key.parts()).unwrap_or_default();
-                (below.iter().fold(self.value_place.clone(), |key, part| key.child(part)), problem.mark)
+                let below = fault.key.parts().strip_prefix(self.key.parts()).unwrap_or_default();
+                (below.iter().fold(self.value_place.clone(), |key, part| key.child(part)), fault.mark)
             }
         };
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
-        let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
-        // "to −1: `key` is −1" would say it twice.
-        if !problem.found.starts_with(&format!("`{}` is", self.key)) {
-            found = format!("{found}: {}", problem.found);
+        let mut problem = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
+        // Avoids "to −1: `key` is −1".
+        if !fault.problem.starts_with(&format!("`{}` is", self.key)) {
+            problem = format!("{problem}: {}", fault.problem);
         }
-        KeyFault { key: place, mark, found, ..problem }
+        KeyFault { key: place, mark, problem, ..fault }
     }
 }
 
 impl AxisWire {
-    /// Checks an axis; `index` is its place in the `sweep` array.
+    /// Checks an axis; `index` is its index in `[[sweep]]`.
     pub fn resolve(&self, index: usize) -> Result<SweepAxis, KeyFault> {
         let place = KeyPath::dotted("sweep").child(index);
         let mut points = self.points(&place)?;
@@ -169,12 +169,12 @@ impl AxisWire {
         }
         distinguish(&mut points);
         let name =
-            self.name.clone().or_else(|| self.key.as_deref().map(in_words)).unwrap_or_else(|| "point".to_owned());
+            self.name.clone().or_else(|| self.key.as_deref().map(axis_title)).unwrap_or_else(|| "point".to_owned());
         self.check_names(&place, &name, &points)?;
         Ok(SweepAxis { name, points })
     }
 
-    /// The points, as they are written or spread over a range.
+    /// Points as listed, or spread over a range.
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single =
             |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
@@ -195,7 +195,7 @@ impl AxisWire {
             _ => {
                 return Err(KeyFault::name(
                     place.clone(),
-                    "this sweep does not say what it changes and how",
+                    "this sweep needs a key with values, or points",
                     "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
                     "for instance `key = \"sensor.heading-noise-deg\"` and `values = [0.01, 0.1, 1.0]`",
                 ));
@@ -203,7 +203,7 @@ impl AxisWire {
         })
     }
 
-    /// Whether the axis and its points have names that can be printed, each point one of its own.
+    /// Checks that axis and points have printable labels, unique within the axis.
     fn check_names(&self, place: &KeyPath, name: &str, points: &[SweepPoint]) -> Result<(), KeyFault> {
         for (i, point) in points.iter().enumerate() {
             name::label(&point.label).map_err(|unfit| {
@@ -250,7 +250,7 @@ impl PointWire {
 impl RangeWire {
     fn linear(&self, place: &KeyPath) -> Result<Vec<f64>, KeyFault> {
         if !(self.from.is_finite() && self.to.is_finite()) {
-            return Err(self.problem(place, "expected finite ends"));
+            return Err(self.range_fault(place, "expected finite ends"));
         }
         let step = (self.to - self.from) / (self.points.max(2) - 1) as f64;
         self.spread(place, |k| self.from + k as f64 * step)
@@ -258,29 +258,29 @@ impl RangeWire {
 
     fn log(&self, place: &KeyPath) -> Result<Vec<f64>, KeyFault> {
         if !(self.from > 0.0 && self.to > 0.0) {
-            return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
+            return Err(self.range_fault(place, "expected both ends of a logarithmic range to be above 0"));
         }
         if !(self.from.is_finite() && self.to.is_finite()) {
-            return Err(self.problem(place, "expected finite ends"));
+            return Err(self.range_fault(place, "expected finite ends"));
         }
-        // Evenly spaced shares of the range of the logarithm.
+        // Evenly spaced in the logarithm.
         let ratio = (self.to / self.from).ln();
         self.spread(place, |k| self.from * (ratio * k as f64 / (self.points - 1) as f64).exp())
     }
 
-    /// The values: between the ends, which are exact, those at a place.
+    /// Values of the range: exact ends, and `between` for the inner points.
     fn spread(&self, place: &KeyPath, between: impl Fn(usize) -> f64) -> Result<Vec<f64>, KeyFault> {
         let Self { from, to, points } = *self;
-        if !(2..=MOST_CELLS).contains(&points) {
-            return Err(self.problem(place, &format!("expected 2 to {MOST_CELLS} points")));
+        if !(2..=MAX_CELLS).contains(&points) {
+            return Err(self.range_fault(place, &format!("expected 2 to {MAX_CELLS} points")));
         }
         Ok(std::iter::once(from).chain((1..points - 1).map(between)).chain([to]).collect())
     }
 
-    fn problem(&self, place: &KeyPath, expected: &str) -> KeyFault {
-        let found =
+    fn range_fault(&self, place: &KeyPath, expected: &str) -> KeyFault {
+        let problem =
             format!("a range of {} points from {} to {}", self.points, ShortNumber(self.from), ShortNumber(self.to));
-        KeyFault::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
+        KeyFault::name(place.clone(), problem, expected, "change the range, or write the `values` one by one")
     }
 }
 
@@ -297,7 +297,7 @@ impl SweepPoint {
     }
 }
 
-/// Gives numbers all their digits where four are too few to tell points apart.
+/// Writes labels with all digits where four significant digits are not unique.
 fn distinguish(points: &mut [SweepPoint]) {
     let mut labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     labels.sort_unstable();
@@ -312,7 +312,7 @@ fn distinguish(points: &mut [SweepPoint]) {
     }
 }
 
-/// A value as a person would write it.
+/// A value as TOML, with short notation for very large or small numbers.
 pub fn written(value: &Value) -> String {
     match value {
         Value::Float(number) if !ShortNumber(*number).is_plain() => ShortNumber(*number).to_string(),
@@ -320,7 +320,7 @@ pub fn written(value: &Value) -> String {
     }
 }
 
-/// A number with four significant digits, more where they stand before the point, and no trailing zeros.
+/// A number with four significant digits, at least all digits before the point, without trailing zeros.
 fn trim(number: f64) -> String {
     let rounded = ShortNumber::rounded(number, 4);
     if !rounded.is_plain() {
@@ -331,23 +331,23 @@ fn trim(number: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// The axes of a design.
+/// Axes of a design.
 pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
     wires.iter().enumerate().map(|(index, axis)| axis.resolve(index)).collect()
 }
 
-/// Every combination of points, the first axis slowest; one empty combination when there is no axis.
+/// All combinations of points, first axis slowest; one empty combination without axes.
 ///
-/// Fails when there are too many, and when two axes change the same key.
+/// Fails for too many combinations, and when two axes change the same key.
 pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
-    limits::entries("sweep", axes.len(), limits::MOST_SWEEPS)?;
+    limits::entries("sweep", axes.len(), limits::MAX_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
-    if count > MOST_CELLS {
+    if count > MAX_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
         return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
-            format!("expected at most {MOST_CELLS} cells"),
+            format!("expected at most {MAX_CELLS} cells"),
             "use fewer points, or fewer sweeps",
         ));
     }
@@ -374,9 +374,9 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
     Ok(cells)
 }
 
-/// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
+/// Sets a key in a document and creates missing tables; numbers in the path are list indices from 0.
 ///
-/// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
+/// Fails when the path passes through a value, or beyond the end of a list.
 pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
     let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;

@@ -1,6 +1,5 @@
-//! A scenario file as it is written: what serde reads, with degrees, knots and units in the names. Nothing here is
-//! believed yet; [`crate::scenario::resolve`] turns it into specifications the engine accepts. How a trial is made is
-//! declared in [`simulate`] itself.
+//! A scenario file as written and read by serde, with degrees, knots and units in the names. Values are unchecked;
+//! [`crate::scenario::resolve`] turns them into specifications. The tables of a trial are declared in [`simulate`].
 
 use serde::{Deserialize, Serialize};
 use simulate::motion::PlanarCoefficients;
@@ -31,7 +30,7 @@ pub struct ScenarioWire {
     /// Key of every random draw.
     pub seed: u64,
     /// Trials per cell.
-    #[serde(default = "one")]
+    #[serde(default = "one_replicate")]
     pub replicates: u64,
     /// When a cell has had enough trials.
     pub stop: Option<StopRule>,
@@ -87,7 +86,7 @@ pub struct ScenarioWire {
     pub output: Presentation,
 }
 
-fn one() -> u64 {
+fn one_replicate() -> u64 {
     1
 }
 

@@ -1,4 +1,4 @@
-//! What a scenario says about itself: question, findings, and which figures stand for it. None of it decides a row.
+//! Prose and presentation of a scenario: question, analysis, finding, figures. They do not affect rows.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use schemars::JsonSchema;
@@ -8,16 +8,16 @@ use toml::{Table, Value};
 use crate::scenario::name;
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 
-/// The words of a scenario.
+/// Prose and presentation of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Words {
     /// The question.
     pub question: String,
-    /// What was seen.
+    /// Analysis, in paragraphs.
     pub analysis: String,
     /// The answer in one sentence.
     pub finding: String,
-    /// Which figures are made, and which stands for the study.
+    /// Selection of figures, and the key figure.
     pub output: Presentation,
 }
 
@@ -76,7 +76,7 @@ pub struct Published {
 }
 
 impl Words {
-    /// The words in the text of a scenario; a text that is none has no words.
+    /// Prose of the text of a scenario; empty for an invalid text.
     pub fn of(scenario: &str) -> Self {
         let document: Table = scenario.parse().unwrap_or_default();
         let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
@@ -84,7 +84,7 @@ impl Words {
         Self { question: text("question"), analysis: text("analysis"), finding: text("finding"), output }
     }
 
-    /// Whether all of them can be printed, and what is to be a name of a file can be one.
+    /// Checks that texts are printable and that figure names are valid file names.
     pub(crate) fn check(&self) -> Result<(), KeyFault> {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
@@ -102,7 +102,7 @@ impl Words {
 }
 
 impl Published {
-    /// Whether both are numbers.
+    /// Checks that both values are finite.
     pub(crate) fn check(&self) -> Result<(), KeyFault> {
         for (name, value) in [("K-per-s", self.K_per_s), ("T-s", self.T_s)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {

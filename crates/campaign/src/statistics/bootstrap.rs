@@ -1,5 +1,5 @@
-//! The bootstrap over batches (Efron 1979): which batches a resample holds is drawn once and used for every figure, so
-//! that figures of two methods are resampled together.
+//! Bootstrap over batches (Efron 1979). The resamples are drawn once and used for all statistics, so that statistics of
+//! two methods are paired.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -7,13 +7,13 @@ use rand::{RngExt, SeedableRng};
 use super::statistic::{FEWEST, Statistic};
 use super::sums::BatchSums;
 
-/// Resamples: enough for the 2.5 and 97.5 % points to two digits.
+/// Number of resamples: enough for the 2.5 and 97.5 % points to two digits.
 pub const RESAMPLES: usize = 1000;
 
-/// A fixed seed: the same rows or cases give the same interval.
+/// Fixed seed, so that equal rows give equal intervals.
 pub const SEED: u64 = 1979;
 
-/// How often each batch is in each resample.
+/// Multiplicity of each batch in each resample.
 #[derive(Debug, Clone)]
 pub struct Resamples {
     batches: usize,
@@ -22,7 +22,7 @@ pub struct Resamples {
 }
 
 impl Resamples {
-    /// Resamples of so many batches.
+    /// Resamples of `batches` batches.
     pub fn new(batches: usize) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);
         let mut counts = vec![0u8; RESAMPLES * batches];
@@ -41,8 +41,8 @@ impl Resamples {
         self.batches
     }
 
-    /// Several statistics of the same sums, each with a percentile interval; none for what is undefined, and no
-    /// interval for fewer than six values.
+    /// Statistics of the same sums, each with a percentile interval. `None` where undefined; no interval below six
+    /// values.
     pub fn figures<const N: usize>(
         &self,
         batches: &[BatchSums],
@@ -62,7 +62,7 @@ impl Resamples {
         std::array::from_fn(|k| {
             let value = values[k]?;
             let all = &mut resampled[k];
-            // A statistic that most resamples do not have is not known.
+            // No interval for a statistic that is undefined in most resamples.
             let ci95 = (all.len() > RESAMPLES / 2).then(|| {
                 let rank = |p: f64| ((all.len() - 1) as f64 * p).round() as usize;
                 let (low, high) = (rank(0.025), rank(0.975));
@@ -74,7 +74,7 @@ impl Resamples {
         })
     }
 
-    /// The sums of every resample. Batch by batch, so that many resamples go through the processor together.
+    /// Sums of every resample, accumulated batch by batch so that the inner loop vectorises over resamples.
     fn totals(&self, batches: &[BatchSums]) -> impl Iterator<Item = BatchSums> {
         let [mut counts, mut firsts, mut seconds] = [const { [0.0; RESAMPLES] }; 3];
         for (batch, times) in batches.iter().zip(self.counts.chunks_exact(RESAMPLES)) {
@@ -96,8 +96,8 @@ mod tests {
     use crate::statistics::{BATCHES, ErrorSums};
     use rand_distr::StandardNormal;
 
-    /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a
-    /// batch is one value or several.
+    /// Intervals of the sd of normal samples cover 95 % within the error of 400 samples, for batches of one value and
+    /// of several.
     #[test]
     fn intervals_cover_what_they_say() {
         for (size, fewest) in [(200, 0.91), (2000, 0.92)] {

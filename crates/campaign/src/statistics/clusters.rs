@@ -1,4 +1,4 @@
-//! Intervals by drawing clusters with replacement (Efron 1979; Field and Welsh 2007 for clusters).
+//! Cluster bootstrap: intervals by resampling clusters with replacement (Efron 1979; Field and Welsh 2007).
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -6,12 +6,12 @@ use rand::{RngExt, SeedableRng};
 use super::bootstrap::{RESAMPLES, SEED};
 use super::statistic::FEWEST;
 
-/// What is computed from the cases of many draws of clusters, in the order of the draws.
+/// Values of `compute` on the cases of each resample of clusters.
 pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
 }
 
-/// The same where sets are drawn, and from every set that was drawn its clusters.
+/// Values of `compute` on resamples in two stages: sets, and clusters within each drawn set.
 pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
         (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));
@@ -19,7 +19,7 @@ pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) 
     draws(draw, compute)
 }
 
-/// The ends of a 95 % interval among values of draws, in any order; none of fewer than six clusters.
+/// Percentile 95 % interval of resampled values, in any order; `None` below six clusters.
 pub fn interval(clusters: usize, mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let end = |p: f64| values[((values.len() - 1) as f64 * p).round() as usize];
@@ -33,19 +33,19 @@ fn draw_clusters(clusters: &[Vec<usize>], rng: &mut ChaCha8Rng, cases: &mut Vec<
 fn draws<T>(draw: impl Fn(&mut ChaCha8Rng, &mut Vec<usize>), compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let mut cases = Vec::new();
-    let one = |_| {
+    let value = |_| {
         cases.clear();
         draw(&mut rng, &mut cases);
         compute(&cases)
     };
-    (0..RESAMPLES).map(one).collect()
+    (0..RESAMPLES).map(value).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Sets of very different size: where one is drawn, all its clusters are.
+    /// A drawn set contributes all its clusters, for sets of very different size.
     #[test]
     fn sets_are_drawn_whole() {
         let sets = vec![vec![vec![0]; 30], vec![vec![1]; 2]];

@@ -1,25 +1,25 @@
-//! Things of one kind together.
+//! Grouping and deduplication that keep the order of first occurrence.
 
-/// Groups in the order of their first members.
+/// Groups of items with equal keys, in the order of first members.
 pub fn grouped<K: PartialEq, T>(all: impl IntoIterator<Item = T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
-    let mut found: Vec<(K, Vec<T>)> = Vec::new();
-    for one in all {
-        let own = key(&one);
-        match found.iter_mut().find(|(known, _)| *known == own) {
-            Some((_, group)) => group.push(one),
-            None => found.push((own, vec![one])),
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    for item in all {
+        let item_key = key(&item);
+        match groups.iter_mut().find(|(group_key, _)| *group_key == item_key) {
+            Some((_, group)) => group.push(item),
+            None => groups.push((item_key, vec![item])),
         }
     }
-    found
+    groups
 }
 
-/// Every one once, in the order in which they came.
+/// Distinct items, in the order of first occurrence.
 pub fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut found: Vec<T> = Vec::new();
-    for one in all {
-        if !found.contains(&one) {
-            found.push(one);
+    let mut kept: Vec<T> = Vec::new();
+    for item in all {
+        if !kept.contains(&item) {
+            kept.push(item);
         }
     }
-    found
+    kept
 }

@@ -1,52 +1,55 @@
-//! The size from which on something is seen in a share of trials: a logistic regression on the logarithm of the size.
+//! Detection size: the size at which an effect is detected in a given share of trials, by logistic regression on the
+//! logarithm of the size with a ridge on the slope (le Cessie and van Houwelingen 1992). The interval is that of the
+//! profile likelihood (Venzon and Moolgavkar 1988).
 
 use super::statistic::Statistic;
 
-/// Trials of one size.
+/// Detections among the trials of one size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeTrials {
     /// The size, above zero.
     pub size: f64,
-    /// How many there were.
+    /// Number of trials.
     pub trials: u64,
-    /// In how many it was seen.
+    /// Number of trials with a detection.
     pub seen: u64,
 }
 
-/// Standard deviation of the slope about zero, per unit of the logarithm: the ridge, by which sizes that part the seen
-/// from the unseen have a finite slope. A test of a likelihood ratio near its threshold has a slope of 5 to 8.
-const SLOPE: f64 = 10.0;
+/// Prior standard deviation of the slope per unit of the logarithm: the ridge, which keeps the slope finite where sizes
+/// separate detections from misses. A likelihood-ratio test near its threshold has a slope of 5 to 8.
+const SLOPE_SD: f64 = 10.0;
 
-/// Half the 95 % quantile of χ² with one degree of freedom.
-const DROP: f64 = 1.920_729_410_347_062;
+/// Drop of the log likelihood at the ends of the interval: half the 95 % quantile of χ² with one degree of freedom.
+const LIKELIHOOD_DROP: f64 = 1.920_729_410_347_062;
 
-/// How far beyond the sizes the size of a share is looked for, as a logarithm.
-const REACH: f64 = 7.0;
+/// Range beyond the tried sizes in which the size is searched, as a logarithm.
+const SEARCH_RANGE: f64 = 7.0;
 
-/// Halvings of a range.
+/// Number of bisections of a range.
 const HALVINGS: usize = 60;
 
-/// The size at which a share of the trials is seen, with its 95 % interval by profile likelihood.
+/// Size at which `share` of the trials have a detection, with its 95 % interval by profile likelihood.
 ///
-/// The logit of the share is a straight line over the logarithm of the size that does not fall. Its likelihood, with a
-/// ridge on the slope, is maximised; all that lies beyond the sizes tried is extrapolated. `None` of fewer than two
-/// sizes.
+/// logit p = slope (ln size − ln size₀) + logit share, slope ≥ 0
+///
+/// The likelihood is maximised with a ridge on the slope. Values beyond the tried sizes are extrapolated. `None` for
+/// fewer than two sizes.
 pub fn size_of_share(tried: &[SizeTrials], share: f64) -> Option<Statistic> {
-    let logs = || tried.iter().filter(|own| own.trials > 0).map(|own| own.size.ln());
+    let logs = || tried.iter().filter(|level| level.trials > 0).map(|level| level.size.ln());
     let ends = [logs().fold(f64::INFINITY, f64::min), logs().fold(f64::NEG_INFINITY, f64::max)];
     if ends[0] >= ends[1] {
         return None;
     }
     let line = ShareLine { tried, logit: (share / (1.0 - share)).ln() };
-    let [low, high] = [ends[0] - REACH, ends[1] + REACH];
+    let [low, high] = [ends[0] - SEARCH_RANGE, ends[1] + SEARCH_RANGE];
     let best = crossing(low, high, |place| line.surplus(place, line.slope(place)) >= 0.0);
-    let least = line.height(best) - DROP;
+    let least = line.height(best) - LIKELIHOOD_DROP;
     let lower = crossing(low, best, |place| line.height(place) >= least);
     let upper = crossing(best, high, |place| line.height(place) < least);
     Some(Statistic { value: best.exp(), ci95: Some([lower, upper].map(f64::exp)) })
 }
 
-/// Where a condition that is false below and true above begins to hold: between the ends, or one of them.
+/// Point between two ends at which a monotone condition becomes true, by bisection.
 fn crossing(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let halved = |[low, high]: [f64; 2], _| {
         let middle = 0.5 * (low + high);
@@ -56,37 +59,36 @@ fn crossing(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     0.5 * (low + high)
 }
 
-/// A line of the logit over the logarithm of the size, through the logit of the share wanted.
+/// Line of the logit over the logarithm of the size, through the logit of the requested share.
 struct ShareLine<'a> {
     tried: &'a [SizeTrials],
     logit: f64,
 }
 
 impl ShareLine<'_> {
-    /// Every size: its logarithm after a place, its trials, those seen, and the logit of a line through that place.
+    /// For every size: its logarithm relative to a place, trials, detections, and logit of the line through that place.
     fn points(&self, place: f64, slope: f64) -> impl Iterator<Item = [f64; 4]> {
-        self.tried.iter().map(move |own| {
-            let after = own.size.ln() - place;
-            [after, own.trials as f64, own.seen as f64, self.logit + slope * after]
+        self.tried.iter().map(move |level| {
+            let after = level.size.ln() - place;
+            [after, level.trials as f64, level.seen as f64, self.logit + slope * after]
         })
     }
 
-    /// The best slope of a line that reaches the share at a place: where the derivative of the likelihood ends to be
-    /// above zero.
+    /// Most likely slope of a line that reaches the share at a place: the zero of the derivative of the likelihood.
     fn slope(&self, place: f64) -> f64 {
         let falls = |slope: f64| {
             let derivative = |[after, trials, seen, logit]: [f64; 4]| after * (seen - trials * chance(logit));
-            self.points(place, slope).map(derivative).sum::<f64>() < slope / (SLOPE * SLOPE)
+            self.points(place, slope).map(derivative).sum::<f64>() < slope / (SLOPE_SD * SLOPE_SD)
         };
         crossing(0.0, 1000.0, falls)
     }
 
-    /// Trials that were seen less those that the line expects: above zero where the share is reached at a smaller size.
+    /// Detections less their expectation: above zero where the share is reached at a smaller size.
     fn surplus(&self, place: f64, slope: f64) -> f64 {
         self.points(place, slope).map(|[_, trials, seen, logit]| seen - trials * chance(logit)).sum()
     }
 
-    /// Logarithm of the penalised likelihood of the best line through a place.
+    /// Penalised profile log likelihood of a place.
     fn height(&self, place: f64) -> f64 {
         let slope = self.slope(place);
         // ln p = −ln(1 + e^−logit), without overflow.
@@ -95,11 +97,11 @@ impl ShareLine<'_> {
             let [seen_by, unseen_by] = [log_chance(logit), log_chance(-logit)];
             seen * seen_by + (trials - seen) * unseen_by
         };
-        self.points(place, slope).map(height).sum::<f64>() - 0.5 * (slope / SLOPE).powi(2)
+        self.points(place, slope).map(height).sum::<f64>() - 0.5 * (slope / SLOPE_SD).powi(2)
     }
 }
 
-/// The share of a logit.
+/// Probability of a logit.
 fn chance(logit: f64) -> f64 {
     1.0 / (1.0 + (-logit).exp())
 }
@@ -118,8 +120,8 @@ mod tests {
         [low, size.value, high]
     }
 
-    /// Shares of a line whose logit is 2 + 3 ln size: it is ln 9 at e^((ln 9 − 2)/3). With so many trials the interval
-    /// is that of the information matrix.
+    /// Shares with logit 2 + 3 ln size, which is ln 9 at e^((ln 9 − 2)/3). With many trials the interval is that of the
+    /// information matrix.
     #[test]
     fn shares_of_a_line_give_its_size() {
         let trials = 1_000_000;
@@ -129,9 +131,9 @@ mod tests {
         let expected = ((9f64.ln() - 2.0) / 3.0).exp();
         assert!((size / expected - 1.0).abs() < 1e-4, "{size}, {expected} expected");
         let [mut whole, mut first, mut second] = [0.0; 3];
-        for own in [0.25, 0.5, 1.0, 2.0, 4.0] {
-            let weight = trials as f64 * share(own) * (1.0 - share(own));
-            let after = own.ln() - expected.ln();
+        for size in [0.25, 0.5, 1.0, 2.0, 4.0] {
+            let weight = trials as f64 * share(size) * (1.0 - share(size));
+            let after = size.ln() - expected.ln();
             (whole, first, second) = (whole + weight, first + weight * after, second + weight * after * after);
         }
         let sd = (second / (whole * second - first * first)).sqrt() / 3.0;
@@ -139,18 +141,19 @@ mod tests {
         assert!(((high / size).ln() / half - 1.0).abs() < 0.02 && ((size / low).ln() / half - 1.0).abs() < 0.02);
     }
 
-    /// Sizes that part the seen from the unseen: the size lies between them, in an interval that is a little wider.
+    /// Sizes that separate detections from misses: the size lies between them, in a slightly wider interval.
     #[test]
     fn parted_sizes_have_a_finite_answer() {
         let [low, size, high] = sizes([0, 0, 0, 20, 20], 20);
         assert!((1.0..2.0).contains(&size), "{size}");
         assert!((0.9..size).contains(&low) && (size..2.5).contains(&high), "{low} to {high}");
-        // More trials say more.
+        // More trials narrow the interval.
         let [lower, _, higher] = sizes([0, 0, 0, 200, 200], 200);
         assert!(lower > low && higher < high);
     }
 
-    /// Never seen it is beyond the largest, always seen below the smallest size; of half of all trials nobody knows.
+    /// Without detections the size is beyond the largest, with all detections below the smallest, with half of them
+    /// open.
     #[test]
     fn beyond_the_sizes_there_is_a_bound() {
         let [low, size, _] = sizes([0, 0, 0, 0, 0], 10);

@@ -1,6 +1,6 @@
-//! Figures over replicates, each with its own Monte-Carlo uncertainty, in memory that does not grow with the number of
-//! replicates: [`ErrorSample`] for everything that depends on order, [`ErrorSums`] for everything that depends on
-//! moments, [`Moments`] for the running moments of one quantity.
+//! Statistics over replicates with their Monte-Carlo uncertainty, in memory independent of the number of replicates:
+//! [`ErrorSample`] for quantiles, [`ErrorSums`] for functions of moments, [`Moments`] for running moments of one
+//! quantity.
 
 mod bootstrap;
 mod clusters;
@@ -16,6 +16,6 @@ pub use clusters::{interval, resampled, resampled_by_set};
 pub use groups::{distinct, grouped};
 pub use logistic::{SizeTrials, size_of_share};
 pub use moments::Moments;
-pub use sample::{ErrorSample, Ordered};
+pub use sample::{ErrorSample, OrderedSample};
 pub use statistic::{FEWEST, MIN_SUMMARISED, Statistic, Z95, share};
 pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};

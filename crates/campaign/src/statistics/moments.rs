@@ -13,7 +13,7 @@ pub struct Moments {
     pub third: f64,
     /// Σ (x − mean)⁴.
     pub fourth: f64,
-    /// The smallest value; infinite of nothing.
+    /// Smallest value; infinite without values.
     pub smallest: f64,
 }
 
@@ -32,7 +32,7 @@ impl FromIterator<f64> for Moments {
 }
 
 impl Moments {
-    /// Takes note of a value.
+    /// Adds a value.
     pub fn add(&mut self, x: f64) {
         let before = self.count;
         self.count += 1.0;
@@ -93,9 +93,9 @@ mod tests {
         joined.join(&of(&values[2..]));
         let central = |p: i32| values.iter().map(|value| (value - 6.0).powi(p)).sum::<f64>();
         for moments in [joined, of(&values)] {
-            let found = [moments.mean, moments.second, moments.third, moments.fourth, moments.smallest];
+            let actual = [moments.mean, moments.second, moments.third, moments.fourth, moments.smallest];
             let expected = [6.0, central(2), central(3), central(4), 3.0];
-            assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-10), "{found:?}");
+            assert!(actual.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-10), "{actual:?}");
             assert!((moments.sd() - 8.5_f64.sqrt()).abs() < 1e-12);
         }
     }

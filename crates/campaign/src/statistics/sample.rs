@@ -1,23 +1,23 @@
-//! A sample of any size in bounded memory: every value up to some thousands, and beyond that counts in bins whose width
-//! is a fixed share of the value (Masson, Rim and Lee 2019, "DDSketch").
+//! Sample of any size in bounded memory: exact values up to some thousands, then counts in bins of constant relative
+//! width (Masson, Rim and Lee 2019, "DDSketch").
 
 use std::collections::BTreeMap;
 
 use super::statistic::{FEWEST, Statistic, Z95};
 
-/// Values kept exactly.
-const EXACT: usize = 8192;
+/// Largest number of exact values.
+const MAX_EXACT_VALUES: usize = 8192;
 
 /// Relative accuracy of a binned value.
 const ACCURACY: f64 = 1e-3;
 
-/// Below this a value is zero.
+/// Size below which a value counts as zero.
 const ZERO: f64 = 1e-12;
 
-/// Quartile distances beyond the quartiles where a density ends at the latest.
+/// Largest extent of a density beyond the quartiles, in quartile distances.
 const TAILS: f64 = 3.0;
 
-/// A sample that is being taken.
+/// Accumulating sample.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSample {
     exact: Vec<f64>,
@@ -26,12 +26,12 @@ pub struct ErrorSample {
 }
 
 impl ErrorSample {
-    /// Adds a finite value; others are left out.
+    /// Adds a value unless it is not finite.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;
         }
-        if self.bins.is_empty() && self.exact.len() < EXACT {
+        if self.bins.is_empty() && self.exact.len() < MAX_EXACT_VALUES {
             self.exact.push(value);
             return;
         }
@@ -41,11 +41,11 @@ impl ErrorSample {
     }
 
     /// The values in order.
-    pub fn ordered(&self) -> Ordered {
+    pub fn ordered(&self) -> OrderedSample {
         if self.bins.is_empty() {
-            return Ordered::of(self.exact.iter().map(|&value| (value, 1)).collect());
+            return OrderedSample::of(self.exact.iter().map(|&value| (value, 1)).collect());
         }
-        Ordered::of(self.bins.iter().map(|(&bin, &count)| (value_of(bin), count)).collect())
+        OrderedSample::of(self.bins.iter().map(|(&bin, &count)| (value_of(bin), count)).collect())
     }
 }
 
@@ -73,17 +73,17 @@ fn value_of(bin: i32) -> f64 {
     if bin < 0 { -size } else { size }
 }
 
-/// Values in ascending order with their counts.
+/// Sample in ascending order, as values with cumulative counts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ordered {
+pub struct OrderedSample {
     values: Vec<f64>,
-    /// Values up to and with each.
+    /// Cumulative counts.
     up_to: Vec<u64>,
 }
 
-impl Ordered {
+impl OrderedSample {
     fn of(mut counted: Vec<(f64, u64)>) -> Self {
-        counted.sort_by(|one, other| one.0.total_cmp(&other.0));
+        counted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut total = 0;
         let up_to = counted.iter().map(|&(_, count)| {
             total += count;
@@ -98,7 +98,7 @@ impl Ordered {
         self.up_to.last().copied().unwrap_or(0)
     }
 
-    /// Whether there is no value.
+    /// `true` without values.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -108,12 +108,12 @@ impl Ordered {
         self.values.iter().copied().zip(self.up_to.iter().zip(before).map(|(up_to, before)| up_to - before))
     }
 
-    /// The value of a rank, from 0.
+    /// Value of a rank, from 0.
     fn at(&self, rank: u64) -> f64 {
         self.values[self.up_to.partition_point(|&up_to| up_to <= rank)]
     }
 
-    /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7); `None` of nothing.
+    /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7); `None` without values.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let last = self.len().checked_sub(1)?;
         let place = p * last as f64;
@@ -134,7 +134,7 @@ impl Ordered {
         Some(Statistic { value, ci95 })
     }
 
-    /// The distances of all values from a centre.
+    /// Absolute deviations from a centre.
     pub fn distances(&self, centre: f64) -> Self {
         Self::of(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
     }
@@ -144,9 +144,9 @@ impl Ordered {
         self.distances(self.quantile(0.5)?).figure(0.5)
     }
 
-    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, or three quartile
-    /// distances beyond the quartiles where heavy tails reach further: places would be too far apart for the kernel.
-    /// Bandwidth of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
+    /// Gaussian kernel density at `points` places over the middle 98 %, at most three quartile distances beyond the
+    /// quartiles, so that heavy tails do not spread the places too far for the kernel. Bandwidth of Silverman (1986,
+    /// eq. 3.31); empty for fewer than ten values and for constant values.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;
@@ -175,13 +175,13 @@ mod tests {
     use super::*;
     use statrs::distribution::{ContinuousCDF, Normal};
 
-    fn sample(values: impl IntoIterator<Item = f64>) -> Ordered {
+    fn sample(values: impl IntoIterator<Item = f64>) -> OrderedSample {
         let mut sample = ErrorSample::default();
         values.into_iter().for_each(|value| sample.add(value));
         sample.ordered()
     }
 
-    /// Quantiles of a normal distribution: a sample without chance.
+    /// Quantiles of a normal distribution: a deterministic sample.
     fn normal(n: usize) -> impl Iterator<Item = f64> {
         let law = Normal::standard();
         (0..n).map(move |k| law.inverse_cdf((k as f64 + 0.5) / n as f64))
@@ -206,8 +206,8 @@ mod tests {
         assert_eq!(ordered.len(), n as u64);
         assert!(ordered.values.len() < 20_000, "{} bins", ordered.values.len());
         for p in [0.001, 0.025, 0.25, 0.75, 0.975, 0.999] {
-            let (found, expected) = (ordered.quantile(p).expect("not empty"), 3.0 * law.inverse_cdf(p) - 0.5);
-            assert!((found / expected - 1.0).abs() < 2.0 * ACCURACY, "{p}: {found} for {expected}");
+            let (actual, expected) = (ordered.quantile(p).expect("not empty"), 3.0 * law.inverse_cdf(p) - 0.5);
+            assert!((actual / expected - 1.0).abs() < 2.0 * ACCURACY, "{p}: {actual} for {expected}");
         }
         // Φ⁻¹(0.75) standard deviations.
         assert!((ordered.mad().expect("not empty").value / (3.0 * 0.674_489_75) - 1.0).abs() < 2.0 * ACCURACY);

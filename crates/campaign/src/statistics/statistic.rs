@@ -1,25 +1,25 @@
-//! A figure over replicates with its interval, and the interval of a share.
+//! Statistic over replicates with its interval, and shares with intervals.
 
 use estimation::statistics::wilson;
 use serde::{Deserialize, Serialize};
 
-/// A figure with a 95 % interval.
+/// A statistic with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
-    /// The figure.
+    /// The value.
     pub value: f64,
     /// Its 95 % interval, where the sample is large enough for one.
     pub ci95: Option<[f64; 2]>,
 }
 
 impl Statistic {
-    /// The figure and the ends of its interval, as far as there are any.
+    /// Value and ends of the interval, as far as they are defined.
     pub fn flat(figure: Option<Self>) -> [Option<f64>; 3] {
         let ends = figure.and_then(|figure| figure.ci95);
         [figure.map(|figure| figure.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
     }
 
-    /// The figure in another unit; `factor` is above zero.
+    /// The statistic in another unit; `factor` is above zero.
     pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, ci95: self.ci95.map(|ends| ends.map(|end| end * factor)) }
     }
@@ -28,19 +28,19 @@ impl Statistic {
 /// Two-sided 95 % quantile of the standard normal distribution.
 pub const Z95: f64 = 1.959_963_984_540_054;
 
-/// Fewest values of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
+/// Smallest number of values with an interval: below it no pair of order statistics covers the median with 95 %.
 pub const FEWEST: u64 = 6;
 
-/// Values from which a median or a range stands for them; fewer are shown one by one.
+/// Smallest number of values that are summarised by a median and a range; fewer are shown individually.
 pub const MIN_SUMMARISED: usize = 5;
 
-/// A share with Wilson's interval (1927); `None` of nothing.
-pub fn share(count: u64, of: u64) -> Option<Statistic> {
-    if of == 0 {
+/// Share of `count` in `of` with its interval (Wilson 1927); `None` without cases.
+pub fn share(count: u64, cases: u64) -> Option<Statistic> {
+    if cases == 0 {
         return None;
     }
-    let value = count as f64 / of as f64;
-    Some(Statistic { value, ci95: Some(wilson(value, of as f64, Z95)) })
+    let value = count as f64 / cases as f64;
+    Some(Statistic { value, ci95: Some(wilson(value, cases as f64, Z95)) })
 }
 
 #[cfg(test)]

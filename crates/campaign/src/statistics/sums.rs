@@ -1,20 +1,19 @@
-//! ErrorSums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives
-//! intervals for every function of moments; with no more than 256 replicates each batch is one trial, and it is the
-//! ordinary bootstrap.
+//! Batch sums over replicates: replicate r belongs to batch r mod 256. A bootstrap over batches (Efron 1979) gives
+//! intervals for all functions of moments; up to 256 replicates each batch is one trial, as in the ordinary bootstrap.
 
 use std::iter::Sum;
 
 /// Number of batches.
 pub const BATCHES: usize = 256;
 
-/// Number, sum and sum of squares.
+/// Count, sum and sum of squares of a batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BatchSums {
     /// Number of values.
     pub count: f64,
     /// Sum of values less the shift.
     pub first: f64,
-    /// Sum of squares of the same.
+    /// Sum of squares of the same differences.
     pub second: f64,
 }
 
@@ -28,7 +27,7 @@ impl Sum for BatchSums {
     }
 }
 
-/// The batch of a replicate.
+/// Batch of a replicate.
 fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     let place = (replicate % BATCHES as u64) as usize;
     if batches.len() <= place {
@@ -37,10 +36,11 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     &mut batches[place]
 }
 
-/// ErrorSums of one quantity.
+/// Batch sums of one quantity.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorSums {
-    /// First value: taken off every value, so that a large common error does not drown a small scatter.
+    /// First value, which is subtracted from every value so that a large bias does not cancel the digits of a small
+    /// scatter.
     shift: f64,
     batches: Vec<BatchSums>,
 }
@@ -63,7 +63,7 @@ impl ErrorSums {
         &self.batches
     }
 
-    /// Mean of a total; `None` of nothing.
+    /// Mean of a total; `None` without values.
     pub fn mean(&self, total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| self.shift + total.first / total.count)
     }
@@ -74,30 +74,30 @@ impl ErrorSums {
         (n > 1.0).then(|| ((total.second - total.first * total.first / n).max(0.0) / (n - 1.0)).sqrt())
     }
 
-    /// Root mean square of a total; `None` of nothing.
+    /// Root mean square of a total; `None` without values.
     pub fn rms(&self, total: &BatchSums) -> Option<f64> {
         let (n, c) = (total.count, self.shift);
         (n > 0.0).then(|| ((total.second + 2.0 * c * total.first) / n + c * c).max(0.0).sqrt())
     }
 }
 
-/// ErrorSums of the squares of two quantities on trials where both are known: [`BatchSums::first`] belongs to the one,
-/// [`BatchSums::second`] to the other.
+/// Batch sums of squared errors of a method and of the reference, on trials with both: [`BatchSums::first`] is that of
+/// the method, [`BatchSums::second`] that of the reference.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairSums {
     batches: Vec<BatchSums>,
-    /// Trials in which the one is the smaller, counting a tie half.
+    /// Number of trials in which the error of the method is smaller; ties count half.
     pub smaller: f64,
 }
 
 impl PairSums {
     /// Adds a replicate.
-    pub fn add(&mut self, replicate: u64, one: f64, other: f64) {
+    pub fn add(&mut self, replicate: u64, error: f64, reference: f64) {
         let batch = batch_of(&mut self.batches, replicate);
         batch.count += 1.0;
-        batch.first += one * one;
-        batch.second += other * other;
-        self.smaller += match one.abs().total_cmp(&other.abs()) {
+        batch.first += error * error;
+        batch.second += reference * reference;
+        self.smaller += match error.abs().total_cmp(&reference.abs()) {
             std::cmp::Ordering::Less => 1.0,
             std::cmp::Ordering::Equal => 0.5,
             std::cmp::Ordering::Greater => 0.0,
@@ -109,17 +109,17 @@ impl PairSums {
         &self.batches
     }
 
-    /// Trials in which both are known.
+    /// Number of trials with both errors.
     pub fn trials(&self) -> u64 {
         self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
     }
 
-    /// Difference of the root mean squares of a total.
+    /// Difference of the root mean square errors of a total.
     pub fn difference(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Their ratio; `None` where the other is zero.
+    /// Ratio of the root mean square errors of a total; `None` where that of the reference is zero.
     pub fn ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn pairs_compare_root_mean_squares() {
         let mut pairs = PairSums::default();
-        [(3.0, 1.0), (-3.0, 1.0), (3.0, -3.0)].iter().zip(0..).for_each(|(&(one, other), r)| pairs.add(r, one, other));
+        [(3.0, 1.0), (-3.0, 1.0), (3.0, -3.0)].iter().zip(0..).for_each(|(&(a, b), r)| pairs.add(r, a, b));
         let total = total(pairs.batches());
         let rms = (11.0_f64 / 3.0).sqrt();
         assert!((PairSums::difference(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);

@@ -1,16 +1,16 @@
-//! The size from which on a missing effect is named, where a study has sizes of it.
+//! Blind spots of a trace: the size from which a missing effect is named, in studies that vary the size.
 
 use super::tracing::TraceSummary;
 use crate::design::Design;
 use crate::statistics::{SizeTrials, Statistic, grouped, size_of_share};
 
-/// Share of the trials in which an effect has to be named.
-pub const NAMED: f64 = 0.9;
+/// Share of the trials in which the effect has to be named.
+pub const MIN_NAMED_SHARE: f64 = 0.9;
 
-/// The size from which on a trace names an effect, under one set of conditions.
+/// Size from which a trace names an effect, under one set of conditions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlindSpot {
-    /// What the labels call the effect.
+    /// Name of the effect in the labels.
     pub effect: String,
     /// Unit of its sizes.
     pub unit: String,
@@ -18,21 +18,21 @@ pub struct BlindSpot {
     pub place: Vec<String>,
     /// Index of the method that is the trace.
     pub method: usize,
-    /// Every size with its trials and those that name the effect, as the power figure counts them.
+    /// Trials by size, with the number that name the effect.
     pub tried: Vec<SizeTrials>,
-    /// The size named in 90 % of the trials; what lies beyond the sizes tried is extrapolated.
+    /// Size at which 90 % of the trials name the effect; extrapolated beyond the tried sizes.
     pub size: Statistic,
 }
 
 impl BlindSpot {
-    /// The smallest and the largest size that was tried.
+    /// Smallest and largest tried size.
     pub fn ends(&self) -> [f64; 2] {
-        let sizes = || self.tried.iter().map(|own| own.size);
+        let sizes = || self.tried.iter().map(|level| level.size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
     }
 }
 
-/// The axis of effects and their sizes: the first that has a label with its value and words before it.
+/// Axis of effect sizes: the first with a label that consists of a name and its value.
 pub fn axis_of_sizes(design: &Design) -> Option<usize> {
     let has_size = |axis: &usize| {
         design
@@ -43,7 +43,7 @@ pub fn axis_of_sizes(design: &Design) -> Option<usize> {
     (0..design.axes.len()).find(has_size)
 }
 
-/// The sizes from which on effects are named, in the order of the cells; empty where a study has no sizes.
+/// Blind spots in the order of the cells; empty for a study without sizes.
 pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
     let Some(axis) = axis_of_sizes(design) else { return Vec::new() };
     let sized = lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull()).filter_map(|line| {
@@ -51,19 +51,19 @@ pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
         let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
         let mut place = cell.labels.clone();
         place.remove(axis);
-        let own = SizeTrials { size, trials: line.trials, seen: line.complete };
-        Some(((effect, unit, place, line.method, &line.missing), own))
+        let level = SizeTrials { size, trials: line.trials, seen: line.complete };
+        Some(((effect, unit, place, line.method, &line.missing), level))
     });
     let groups = grouped(sized, |(kind, _)| kind.clone());
-    let spot = |((effect, unit, place, method, _), own): (_, Vec<(_, SizeTrials)>)| {
-        let tried: Vec<SizeTrials> = own.into_iter().map(|(_, own)| own).collect();
-        let size = size_of_share(&tried, NAMED)?;
+    let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, SizeTrials)>)| {
+        let tried: Vec<SizeTrials> = levels.into_iter().map(|(_, level)| level).collect();
+        let size = size_of_share(&tried, MIN_NAMED_SHARE)?;
         Some(BlindSpot { effect, unit, place, method, tried, size })
     };
     groups.into_iter().filter_map(spot).collect()
 }
 
-/// The effect, its size and the unit in a label such as `wind 0.7°` of a point with the value 0.7.
+/// Effect, size and unit in a label such as `wind 0.7°` of a point with the value 0.7.
 fn parts(label: &str, value: Option<f64>) -> Option<(String, f64, String)> {
     let size = value.filter(|size| *size > 0.0)?;
     let (effect, unit) = label.split_once(&format!(" {size}"))?;
@@ -121,9 +121,9 @@ mod tests {
         };
         let lines: Vec<TraceSummary> = (0..design.cells.len()).map(line).collect();
         let spots = blind_spots(&lines, &design);
-        let names: Vec<String> = spots.iter().map(|own| format!("{} {}", own.effect, own.place.join(", "))).collect();
+        let names: Vec<_> = spots.iter().map(|spot| format!("{} {}", spot.effect, spot.place.join(", "))).collect();
         assert_eq!(names, ["wind tanker", "wind ferry", "waves tanker", "waves ferry"]);
-        assert!(spots.iter().all(|own| own.ends() == [0.25, 2.0] && own.unit == "°"));
+        assert!(spots.iter().all(|spot| spot.ends() == [0.25, 2.0] && spot.unit == "°"));
         assert!((0.5..1.0).contains(&spots[0].size.value) && spots[2].size.value > 2.0, "{spots:?}");
         assert_eq!(axis_of_sizes(&Design::default()), None);
     }

@@ -1,4 +1,4 @@
-//! Whether what a trace said of a ship is right, where a study states what is.
+//! Judgement of a trace against the physics that a study states.
 
 use std::fmt;
 
@@ -8,39 +8,39 @@ use serde::{Deserialize, Serialize};
 use crate::rows::{LocatedMoment, NamedEffect, TraceAnswer};
 use crate::scenario::MissingPhysics;
 
-/// How far, s, the time of an effect or of a located moment may be from a change to be right.
+/// Tolerance of the time of an effect or of a located moment, s.
 pub const NEAR_S: f64 = 20.0;
 
-/// By which share a located period may miss those of the ship.
+/// Relative tolerance of a located period.
 pub const NEAR_PERIOD: f64 = 0.15;
 
-/// Effects that are a matter of time and not of the ship.
-const OF_TIME: [&str; 2] = ["moment_drift", "transient_disturbance"];
+/// Time-dependent effects, which are no property of the ship.
+const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
 
-/// The worth of what a trace said.
+/// Judgement of a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Judgement {
-    /// Effects that are right were named, and no other.
+    /// Only correct effects were named.
     Right,
-    /// A moment with the right dependence was located, at the right time where there is one; or nothing but effects of
-    /// time was named, all near a change.
+    /// A moment with the correct dependence was located, at the correct time if any; or only time-dependent effects
+    /// were named, all near a change.
     Located,
-    /// Called unexplained, and nothing named or located.
+    /// Verdict unexplained, with nothing named or located.
     Unexplained,
-    /// Nothing but a random moment.
+    /// Verdict disturbed: a random moment only.
     Disturbed,
-    /// Called clean.
+    /// Verdict clean.
     Clean,
-    /// What was named or located is not right, but the trace says that it cannot tell it from what is.
+    /// A wrong effect or moment that the trace reports as an alias of the correct one.
     Alias,
-    /// A moment was located, or an effect of time named, that is not right.
+    /// A wrong moment was located, or a wrong time-dependent effect named.
     Elsewhere,
-    /// Something else was named, or anything said to be missing where nothing is.
+    /// A wrong effect was named, or anything where nothing is missing.
     Wrong,
 }
 
 impl Judgement {
-    /// All of them: first those that may be right.
+    /// All judgements, first those that may be correct.
     pub const ALL: [Self; 8] = [
         Self::Right,
         Self::Located,
@@ -52,7 +52,7 @@ impl Judgement {
         Self::Wrong,
     ];
 
-    /// The judgement of an answer about a ship that lacks this.
+    /// Judgement of a trace of a ship with this missing physics.
     pub fn of(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
         if answer.named.is_empty() && answer.located.is_empty() {
             return match answer.verdict {
@@ -63,12 +63,12 @@ impl Judgement {
         }
         match physics {
             MissingPhysics::Nothing { .. } => Self::Wrong,
-            MissingPhysics::Listed { effects } => Self::of_names(answer, effects),
-            MissingPhysics::Unlisted { .. } => Self::of_shapes(answer, physics),
+            MissingPhysics::Listed { effects } => Self::from_names(answer, effects),
+            MissingPhysics::Unlisted { .. } => Self::from_moments(answer, physics),
         }
     }
 
-    /// Whether that is right to say of a ship that lacks this.
+    /// `true` if the judgement is correct for a ship with this missing physics.
     pub fn is_right(self, physics: &MissingPhysics) -> bool {
         match physics {
             MissingPhysics::Listed { .. } => self == Self::Right,
@@ -77,9 +77,9 @@ impl Judgement {
         }
     }
 
-    /// The judgement where effects of the list are right.
-    fn of_names(answer: &TraceAnswer, right: &[String]) -> Self {
-        let is_right = |id: &str| right.iter().any(|known| known == id);
+    /// Judgement where listed effects are correct.
+    fn from_names(answer: &TraceAnswer, right: &[String]) -> Self {
+        let is_right = |id: &str| right.iter().any(|effect| effect == id);
         let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.holds(id));
         let TraceAnswer { named, located, .. } = answer;
         let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
@@ -92,16 +92,16 @@ impl Judgement {
         }
     }
 
-    /// The judgement where a dependence is right, and times where there are any.
-    fn of_shapes(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
-        let mut of_ship = answer.named.iter().filter(|effect| !is_of_time(&effect.id)).peekable();
+    /// Judgement where a dependence is correct, and times if any.
+    fn from_moments(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
+        let mut of_ship = answer.named.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
         if of_ship.peek().is_some() {
-            let is_alias = of_ship.all(|effect| effect.aliases.iter().any(|id| is_of_time(id)));
+            let is_alias = of_ship.all(|effect| effect.aliases.iter().any(|id| is_time_effect(id)));
             return if is_alias { Self::Alias } else { Self::Wrong };
         }
         let is_placed = match answer.located.is_empty() {
             true => answer.named.iter().all(|effect| effect.time_s.is_some_and(|time| is_near(time, physics))),
-            false => answer.located.iter().any(|moment| is_of(moment, physics)),
+            false => answer.located.iter().any(|moment| agrees_with(moment, physics)),
         };
         if is_placed { Self::Located } else { Self::Elsewhere }
     }
@@ -122,18 +122,18 @@ impl fmt::Display for Judgement {
     }
 }
 
-fn is_of_time(id: &str) -> bool {
-    OF_TIME.contains(&id)
+fn is_time_effect(id: &str) -> bool {
+    TIME_EFFECTS.contains(&id)
 }
 
-/// Whether a time, s, is near a change.
+/// `true` if a time, s, is within the tolerance of a change.
 fn is_near(time: f64, physics: &MissingPhysics) -> bool {
     let MissingPhysics::Unlisted { changes_s, .. } = physics else { return false };
     changes_s.iter().any(|change| (change - time).abs() <= NEAR_S)
 }
 
-/// Whether a located moment has the dependence and the times of the ship.
-fn is_of(moment: &LocatedMoment, physics: &MissingPhysics) -> bool {
+/// `true` if a located moment has the dependence and the times of the missing physics.
+fn agrees_with(moment: &LocatedMoment, physics: &MissingPhysics) -> bool {
     let MissingPhysics::Unlisted { depends_on, changes_s, period_s } = physics else { return false };
     let is_timed = match period_s {
         Some([from, to]) => {
@@ -174,7 +174,7 @@ mod tests {
         Judgement::of(&TraceAnswer { verdict: Verdict::Traced, named, located, ..TraceAnswer::default() }, physics)
     }
 
-    fn of_time(changes_s: &[f64], period_s: Option<[f64; 2]>) -> MissingPhysics {
+    fn timed(changes_s: &[f64], period_s: Option<[f64; 2]>) -> MissingPhysics {
         MissingPhysics::Unlisted { depends_on: Time, changes_s: changes_s.to_vec(), period_s }
     }
 
@@ -199,10 +199,10 @@ mod tests {
 
     #[test]
     fn what_changes_is_located_by_an_instant_near_it() {
-        let physics = of_time(&[100.0, 200.0], None);
+        let physics = timed(&[100.0, 200.0], None);
         let [squall, wind] = ["transient_disturbance", "wind_moment"];
         let from = |from, until| Some(located(Time, "moment", Some(from), until));
-        // A moment that stays has no middle.
+        // A lasting moment has no middle.
         for (names, moment, judgement) in [
             (&[(squall, "", 119.0), (squall, "", 181.0)][..], None, Located),
             (&[(squall, "", 119.0), (squall, "", 150.0)], None, Elsewhere),
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn a_dependence_or_a_period_is_enough_where_nothing_changes() {
-        let (period, always) = (of_time(&[], Some([90.0; 2])), of_time(&[], None));
+        let (period, always) = (timed(&[], Some([90.0; 2])), timed(&[], None));
         for (form, physics, judgement) in [
             ("moment with a period of 100 s", &period, Located),
             ("moment with a period of 45 s", &period, Elsewhere),

@@ -1,8 +1,8 @@
-//! What the rows say: bias, spread, failures, coverage and predictive error of every method in every cell and over all
-//! of them, each with its own uncertainty, and every method against a reference on the same trials.
+//! Summary of rows: bias, spread, failures, coverage and predictive error of every method, by cell and over all cells,
+//! with their uncertainty; and the comparison of every method with a reference on the same trials.
 //!
-//! Rows are seen once, in their order. Only the sums of the present cell and those over all cells are kept, so memory
-//! does not grow with the number of replicates.
+//! Rows are read once, in order. Only sums of the current cell and of all cells are kept, so memory does not grow with
+//! the number of replicates.
 
 mod blind_spots;
 mod detail;

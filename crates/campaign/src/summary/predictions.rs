@@ -1,4 +1,4 @@
-//! Whether the intervals of predictions hold, figure by figure.
+//! Coverage of the intervals of predictions, by figure of merit.
 
 use predict::imo::limit_of;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::rows::{PredictedFigure, StudyRow};
 use crate::statistics::{Statistic, share};
 
-/// One figure of a manoeuvre in one cell, predicted from the answers of one method.
+/// Predictions of one figure of a manoeuvre by one method in one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PredictionSummary {
     /// Index of the cell.
@@ -17,27 +17,27 @@ pub struct PredictionSummary {
     pub name: Box<str>,
     /// Trials with the figure.
     pub trials: u64,
-    /// Trials whose 90 % interval holds what the ship does.
+    /// Trials whose 90 % interval contains the true figure.
     pub inside: u64,
-    /// The criterion of IMO that limits the figure, and what was told of it.
+    /// IMO criterion of the figure, with the decisions on it.
     pub criterion: Option<CriterionTally>,
-    /// Sums of the median less what the ship does, of its square, of the width of the interval, and of what the
-    /// ship does.
+    /// Sums over trials: error of the median, its square, width of the interval, true figure.
     sums: [f64; 4],
 }
 
-/// What predictions tell of a limit: an interval of 90 % on one side of it gives a probability of 95 % or more.
+/// Decisions on an IMO criterion: an interval of 90 % on one side of the limit decides with a probability of at least
+/// 95 %.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CriterionTally {
-    /// What it is called.
+    /// Name of the criterion.
     pub name: Box<str>,
-    /// Largest value.
+    /// Largest allowed value.
     pub limit: f64,
-    /// Trials whose ship keeps within it.
+    /// Trials whose ship meets it.
     pub kept: u64,
-    /// Trials of which it was told on which side the ship is, and that was so.
+    /// Trials with a correct decision.
     pub right: u64,
-    /// Trials of which the other side was told.
+    /// Trials with a wrong decision.
     pub wrong: u64,
 }
 
@@ -52,7 +52,7 @@ impl CriterionTally {
 }
 
 impl PredictionSummary {
-    /// Share of the trials whose interval holds what the ship does.
+    /// Coverage of the 90 % intervals.
     pub fn coverage(&self) -> Option<Statistic> {
         share(self.inside, self.trials)
     }
@@ -61,12 +61,12 @@ impl PredictionSummary {
         self.sums[place] / self.trials as f64
     }
 
-    /// Mean of the median less what the ship does.
+    /// Mean error of the median.
     pub fn bias(&self) -> f64 {
         self.mean(0)
     }
 
-    /// Root mean square of that.
+    /// Root mean square error of the median.
     pub fn rms(&self) -> f64 {
         self.mean(1).sqrt()
     }
@@ -76,13 +76,13 @@ impl PredictionSummary {
         self.mean(2)
     }
 
-    /// Mean of what the ships do.
+    /// Mean true figure.
     pub fn truth(&self) -> f64 {
         self.mean(3)
     }
 }
 
-/// Takes note of a row of one method in one cell, whose ship has this L/V, s.
+/// Adds the predictions of a row; `length_over_speed` is L/V of the ship, s.
 pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow, length_over_speed: Option<f64>) {
     for figure in row.predicted.iter().flatten() {
         let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
@@ -96,7 +96,7 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
         let line = &mut lines[at];
         line.trials += 1;
         line.inside += u64::from(figure.holds());
-        line.criterion.iter_mut().for_each(|own| own.add(figure));
+        line.criterion.iter_mut().for_each(|tally| tally.add(figure));
         let error = figure.median - figure.truth;
         let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
         line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
@@ -126,7 +126,7 @@ mod tests {
 
     /// The limit is 5 + L/(2V) = 15°.
     #[test]
-    fn what_is_told_of_a_criterion_is_counted() {
+    fn decisions_on_a_criterion_are_counted() {
         let mut lines = Vec::new();
         for (truth, low, high) in [(12.0, 10.0, 14.0), (12.0, 10.0, 16.0), (18.0, 10.0, 14.0), (18.0, 16.0, 20.0)] {
             let (name, ci90) = ("zig-zag 10/10 first_overshoot_deg".into(), [low, high]);
@@ -137,7 +137,7 @@ mod tests {
                 Some(20.0),
             );
         }
-        let told = lines[0].criterion.as_ref().expect("it is limited");
-        assert_eq!((told.limit, told.kept, told.right, told.wrong), (15.0, 2, 2, 1));
+        let tally = lines[0].criterion.as_ref().expect("it is limited");
+        assert_eq!((tally.limit, tally.kept, tally.right, tally.wrong), (15.0, 2, 2, 1));
     }
 }

@@ -1,4 +1,4 @@
-//! What is said of methods: in one cell, against one another, and over all cells.
+//! Summaries of methods: by cell, against the reference, and over all cells.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,10 +9,10 @@ use super::predictions::PredictionSummary;
 use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
-/// Errors of one index over trials, relative to the truth. All but shares are in per cent.
+/// Relative errors of one index over trials, in % except for shares.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct IndexErrors {
-    /// Mean of the answers themselves, SI, with its normal interval.
+    /// Mean estimate, SI units, with its normal interval.
     pub answer: Option<Statistic>,
     /// Mean error.
     pub mean: Option<Statistic>,
@@ -26,17 +26,17 @@ pub struct IndexErrors {
     pub mad: Option<Statistic>,
     /// Quantiles of the error: 2.5, 25, 75 and 97.5 %.
     pub quantiles: [Option<Statistic>; 4],
-    /// Median of the size of the error.
+    /// Median absolute error.
     pub median_size: Option<Statistic>,
-    /// The size that 90 % of the errors do not exceed.
+    /// 90 % quantile of the absolute error.
     pub high_size: Option<Statistic>,
-    /// Share of quoted 95 % intervals that hold the truth.
+    /// Coverage of the quoted 95 % intervals.
     pub coverage: Option<Statistic>,
     /// Median width of the quoted 95 % intervals.
     pub width: Option<Statistic>,
-    /// Share of answers that quote an interval.
+    /// Share of estimates with an interval.
     pub quoting: Option<Statistic>,
-    /// Standard deviation over the Cramér–Rao bound: the root mean square of the bounds of the trials.
+    /// Ratio of the standard deviation to the Cramér–Rao bound, the root mean square over trials.
     pub sd_over_bound: Option<Statistic>,
 }
 
@@ -45,7 +45,7 @@ pub struct IndexErrors {
 pub struct Performance {
     /// Trials run.
     pub trials: u64,
-    /// Reasons of trials without an estimate, with their counts, in the order in which they came.
+    /// Reasons for missing estimates, with counts, in order of first occurrence.
     pub failures: Vec<(String, u64)>,
     /// Share of trials without an estimate.
     pub failure_rate: Option<Statistic>,
@@ -57,9 +57,9 @@ pub struct Performance {
     pub k_over_t: IndexErrors,
     /// Median over trials of the heading error of the replay on the trial itself, deg.
     pub heading_rmse_deg: Option<Statistic>,
-    /// The same on the validation manoeuvre, deg.
+    /// Median heading error on the validation manoeuvre, deg.
     pub validation_rmse_deg: Option<Statistic>,
-    /// The validation error that 90 % of the trials do not exceed, deg.
+    /// 90 % quantile of the heading error on the validation manoeuvre, deg.
     pub high_validation_rmse_deg: Option<Statistic>,
     /// Mean number of model evaluations.
     pub evaluations: Option<f64>,
@@ -79,7 +79,7 @@ pub struct MethodSummary {
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
-    /// What it did there.
+    /// Its performance.
     pub record: Performance,
 }
 
@@ -90,7 +90,7 @@ pub struct Comparison {
     pub rms_difference: Option<Statistic>,
     /// Ratio of the rms errors.
     pub rms_ratio: Option<Statistic>,
-    /// Share of trials in which the method is closer to the truth.
+    /// Share of trials in which the error of the method is smaller.
     pub closer: Option<Statistic>,
 }
 
@@ -109,29 +109,29 @@ pub struct PairSummary {
     pub t: Comparison,
 }
 
-/// All that is said of a study.
+/// Summary of a study.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
     /// Per cell and method other than the reference.
     pub pairs: Vec<PairSummary>,
-    /// Index of the method that others are compared with.
+    /// Index of the reference method.
     pub reference: usize,
     /// Per method, over all cells.
     pub overall: Vec<Performance>,
-    /// Distributions in the cells whose detail was asked for.
+    /// Error distributions of the cells shown in detail.
     pub details: Vec<CellDetail>,
-    /// What traces said, in the cells that have them.
+    /// Summaries of traces, by cell and method.
     pub tracing: Vec<TraceSummary>,
-    /// Whether intervals of predictions hold, in studies that predict manoeuvres.
+    /// Coverage of predictions, in studies that predict manoeuvres.
     pub predictions: Vec<PredictionSummary>,
-    /// What methods make of measured records, in studies of such.
+    /// Replay errors, in studies of measured records.
     pub records: Vec<RecordSummary>,
 }
 
 impl Summary {
-    /// The record of a method in a cell.
+    /// Performance of a method in a cell.
     pub fn record(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;

@@ -1,7 +1,7 @@
-//! What methods make of measured records: how near they come to those that were fitted, and to those that judge.
+//! Summary of a study of measured records: replay errors on fitted records and on validation records.
 //!
-//! Trials that share a fit are not independent, nor are those with one judge: an interval of a median is a percentile
-//! bootstrap (Efron 1979) over fits, or over judging records where there is one fit alone.
+//! Trials that share a fit or a validation record are not independent. Intervals of medians are percentile bootstraps
+//! over fits (Efron 1979), or over validation records where there is only one fit.
 
 use std::collections::BTreeMap;
 
@@ -12,52 +12,52 @@ use crate::design::Design;
 use crate::rows::StudyRow;
 use crate::statistics::{Statistic, interval, resampled};
 
-/// One method on the records of a cell.
+/// Replay errors of one method on the records of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
-    /// Fits that were tried.
+    /// Number of fits.
     pub fits: usize,
-    /// Fits that failed.
+    /// Number of failed fits.
     pub failed: usize,
-    /// Median over fits of the heading error on the records that were fitted, deg.
+    /// Median over fits of the heading error on the fitted records, deg.
     pub fitted_deg: Option<Statistic>,
-    /// Median over trials of the heading error on the record that judges, deg.
+    /// Median over trials of the heading error on the validation record, deg.
     pub judged_deg: Option<Statistic>,
-    /// Median over trials of that error over the one of the first method on the same trial; none of the first method.
+    /// Median over trials of the ratio of that error to the one of the first method; none for the first method.
     pub ratio: Option<Statistic>,
-    /// The same where the replay is restarted every 60 s.
+    /// The same ratio with replays restarted every 60 s.
     pub window_ratio: Option<Statistic>,
-    /// Effects that a trace named, with the number of fits that did.
+    /// Number of fits that named each effect.
     pub named: BTreeMap<String, usize>,
 }
 
-/// Summarises the rows of a study of measured records, cell by cell and method by method.
+/// Summaries of a study of measured records, by cell and method.
 pub fn record_summaries(rows: &[StudyRow], design: &Design) -> Vec<RecordSummary> {
     let cells = (0..design.cells.len()).flat_map(|cell| (0..design.methods.len()).map(move |method| (cell, method)));
     cells.map(|(cell, method)| summary(rows, design, cell, method)).collect()
 }
 
 fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> RecordSummary {
-    let of = |method: usize| {
+    let rows_of = |method: usize| {
         let is_own = move |row: &&StudyRow| row.cell == cell as u64 && row.method == method;
         rows.iter().filter(is_own).collect::<Vec<&StudyRow>>()
     };
-    let (own, first) = (of(method), of(0));
+    let (method_rows, first) = (rows_of(method), rows_of(0));
     let records = &design.cells[cell].records;
     let fit = |row: &StudyRow| records[row.replicate as usize].fitted.as_str();
     let mut fits: Vec<&StudyRow> = Vec::new();
-    for row in &own {
+    for row in &method_rows {
         if fits.last().is_none_or(|last| fit(last) != fit(row)) {
             fits.push(row);
         }
     }
     let group = |row: &StudyRow| match fits.len() {
         1 => row.replicate as usize,
-        _ => fits.iter().position(|one| fit(one) == fit(row)).unwrap_or(0),
+        _ => fits.iter().position(|fitted| fit(fitted) == fit(row)).unwrap_or(0),
     };
     let grouped = |values: &mut dyn Iterator<Item = (usize, Option<f64>)>| {
         let mut groups: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -66,7 +66,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
     };
     let ratio = |error: fn(&StudyRow) -> Option<f64>| {
         let over = |(row, other): (&&StudyRow, &&StudyRow)| Some(error(row)? / error(other)?);
-        let mut pairs = own.iter().zip(&first).map(|pair| (group(pair.0), over(pair)));
+        let mut pairs = method_rows.iter().zip(&first).map(|pair| (group(pair.0), over(pair)));
         (method > 0).then(|| grouped(&mut pairs)).flatten()
     };
     let mut named: BTreeMap<String, usize> = BTreeMap::new();
@@ -79,17 +79,17 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         fits: fits.len(),
         failed: fits.iter().filter(|row| row.failure.is_some()).count(),
         fitted_deg: grouped(&mut fits.iter().map(|row| (group(row), row.heading_rmse_deg))),
-        judged_deg: grouped(&mut own.iter().map(|row| (group(row), row.validation_rmse_deg))),
+        judged_deg: grouped(&mut method_rows.iter().map(|row| (group(row), row.validation_rmse_deg))),
         ratio: ratio(|row| row.validation_rmse_deg),
         window_ratio: ratio(|row| row.validation_windows_deg),
         named,
     }
 }
 
-/// The median of all values, with an interval where there are enough groups.
+/// Median of all values, with an interval from six groups on.
 fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
     let values = groups.concat();
-    let of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());
+    let median_of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());
     let mut end = 0;
     let clusters: Vec<Vec<usize>> = groups
         .iter()
@@ -98,8 +98,8 @@ fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
             (end - group.len()..end).collect()
         })
         .collect();
-    let value = of(&clusters.concat())?;
-    let drawn = resampled(&clusters, of).into_iter().flatten().collect();
+    let value = median_of(&clusters.concat())?;
+    let drawn = resampled(&clusters, median_of).into_iter().flatten().collect();
     Some(Statistic { value, ci95: interval(groups.len(), drawn) })
 }
 
@@ -110,7 +110,7 @@ mod tests {
     use crate::rows::{NamedEffect, TraceAnswer};
     use crate::scenario::MethodName;
 
-    /// Seven records, each fitted alone and judged by the six others.
+    /// Seven records, each fitted alone and validated on the six others.
     fn design() -> Design {
         let name = |number: usize| format!("r{number}");
         let pairs = (0..7).flat_map(|fit| (0..7).filter(move |judge| *judge != fit).map(move |judge| (fit, judge)));
@@ -142,10 +142,10 @@ mod tests {
         let rows: Vec<StudyRow> = rows.collect();
         let [first, trace] = &record_summaries(&rows, &design())[..] else { panic!("two methods") };
         assert_eq!((first.fits, first.failed, first.ratio), (7, 0, None));
-        assert_eq!(first.judged_deg.map(|own| own.value), Some(21.5));
+        assert_eq!(first.judged_deg.map(|figure| figure.value), Some(21.5));
         assert!((first.fitted_deg.expect("fitted").value - 0.4).abs() < 1e-12);
         assert_eq!(trace.ratio, Some(Statistic { value: 0.25, ci95: Some([0.25, 0.25]) }));
-        let [low, high] = first.judged_deg.and_then(|own| own.ci95).expect("seven fits");
+        let [low, high] = first.judged_deg.and_then(|figure| figure.ci95).expect("seven fits");
         assert!(low < 15.0 && high > 28.0, "fits are drawn and not trials: {low} {high}");
         assert_eq!(trace.named, BTreeMap::from([("speed_loss".to_owned(), 7)]));
     }

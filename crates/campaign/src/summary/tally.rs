@@ -1,10 +1,10 @@
-//! Running sums over rows, and the summary they end in.
+//! Tally of rows: running sums, and the summary computed from them.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
+use super::detail::{CellDetail, Cloud, ErrorDensity, MAX_PAIRS, MethodDetail};
 use super::predictions::{PredictionSummary, add_predictions};
 use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::tracing::TraceTally;
@@ -13,40 +13,40 @@ use crate::rows::StudyRow;
 use crate::scenario::MethodName;
 use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
-/// The method that others are compared with, where a study has it.
+/// Reference method, where a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
 
-/// Takes rows in their order, cell by cell, and summarises them.
+/// Tally of rows, which are added in order, cell by cell.
 pub struct Tally<'a> {
     design: &'a Design,
     detailed: Vec<usize>,
     cell: usize,
     replicate: u64,
-    present: Vec<Running>,
-    overall: Vec<Running>,
+    present: Vec<MethodTally>,
+    overall: Vec<MethodTally>,
     resamples: Option<Arc<Resamples>>,
-    /// Cells that have ended and are not yet summarised.
+    /// Complete cells that are not yet summarised.
     waiting: Vec<ClosedCell>,
     summary: Summary,
 }
 
-/// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough
-/// that memory does not grow with the design.
-const WAITING: u64 = 1 << 15;
+/// Largest number of rows of cells that wait to be summarised in parallel: enough to be efficient, few enough to bound
+/// memory.
+const MAX_WAITING_ROWS: u64 = 1 << 15;
 
-/// The sums of a cell whose rows have all been seen.
+/// Sums of a complete cell.
 struct ClosedCell {
     cell: usize,
-    present: Vec<Running>,
+    present: Vec<MethodTally>,
     resamples: Arc<Resamples>,
 }
 
 impl<'a> Tally<'a> {
-    /// A tally of the rows of a design.
+    /// Tally of the rows of a design.
     pub fn new(design: &'a Design) -> Self {
-        let of = |is_it: fn(&MethodName) -> bool| design.methods.iter().position(is_it);
-        let reference = of(|method| method.label == REFERENCE).or_else(|| of(|method| method.id == REFERENCE));
-        let running = vec![Running::default(); design.methods.len()];
+        let find = |is_reference: fn(&MethodName) -> bool| design.methods.iter().position(is_reference);
+        let reference = find(|method| method.label == REFERENCE).or_else(|| find(|method| method.id == REFERENCE));
+        let running = vec![MethodTally::default(); design.methods.len()];
         Self {
             design,
             detailed: design.detail(),
@@ -60,7 +60,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Takes note of a row.
+    /// Adds a row.
     pub fn add(&mut self, row: &StudyRow) {
         let cell = row.cell as usize;
         if (cell, row.replicate) != (self.cell, self.replicate) {
@@ -72,14 +72,14 @@ impl<'a> Tally<'a> {
             self.cell = cell;
         }
         let errors = row.errors().map(|error| error.map(|error| 100.0 * error));
-        let own = &mut self.present[row.method];
-        own.add(row, &errors);
-        own.add_details(row, &self.design.cells[cell], self.detailed.contains(&cell));
-        // Batches over all cells: a replicate of one cell goes with the same of another, since they may share a ship.
+        let running = &mut self.present[row.method];
+        running.add(row, &errors);
+        running.add_details(row, &self.design.cells[cell], self.detailed.contains(&cell));
+        // Batches span all cells: equal replicates of different cells may share a ship.
         self.overall[row.method].add(row, &errors);
     }
 
-    /// Compares all methods with the reference on the trial that has just been seen.
+    /// Adds the errors of the finished trial to the comparisons with the reference.
     fn end_trial(&mut self) {
         let reference = self.present[self.summary.reference].latest;
         for running in &mut self.present {
@@ -95,15 +95,15 @@ impl<'a> Tally<'a> {
             return;
         }
         let resamples = self.resamples(most_batches(&self.present));
-        let present = std::mem::replace(&mut self.present, vec![Running::default(); self.overall.len()]);
+        let present = std::mem::replace(&mut self.present, vec![MethodTally::default(); self.overall.len()]);
         self.waiting.push(ClosedCell { cell: self.cell, present, resamples });
         let rows = self.waiting.iter().flat_map(|closed| &closed.present).map(|running| running.trials);
-        if rows.sum::<u64>() >= WAITING {
+        if rows.sum::<u64>() >= MAX_WAITING_ROWS {
             self.summarise();
         }
     }
 
-    /// Summarises the cells that wait, in parallel; what is said of each goes down in their order.
+    /// Summarises the waiting cells in parallel; results are appended in order.
     fn summarise(&mut self) {
         let (reference, detailed) = (self.summary.reference, &self.detailed);
         let waiting = std::mem::take(&mut self.waiting).into_par_iter();
@@ -117,15 +117,15 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Resamples of so many batches; the same for all cells of one size.
+    /// Resamples of `batches` batches, shared by all cells of one size.
     fn resamples(&mut self, batches: usize) -> Arc<Resamples> {
         match &self.resamples {
-            Some(known) if known.batches() == batches => Arc::clone(known),
+            Some(resamples) if resamples.batches() == batches => Arc::clone(resamples),
             _ => Arc::clone(self.resamples.insert(Arc::new(Resamples::new(batches)))),
         }
     }
 
-    /// Ends the tally.
+    /// Summary of all rows.
     pub fn finish(mut self) -> Summary {
         self.end_trial();
         self.end_cell();
@@ -136,7 +136,7 @@ impl<'a> Tally<'a> {
     }
 }
 
-/// Summarises rows that are in memory.
+/// Summary of rows in memory.
 pub fn summarise(rows: &[StudyRow], design: &Design) -> Summary {
     let mut tally = Tally::new(design);
     rows.iter().for_each(|row| tally.add(row));
@@ -144,17 +144,16 @@ pub fn summarise(rows: &[StudyRow], design: &Design) -> Summary {
 }
 
 impl ClosedCell {
-    /// What is said of the cell: every method, every method against the reference, and the distributions where asked
-    /// for.
+    /// Summary of the cell: methods, comparisons with the reference, and distributions if requested.
     fn summarised(self, reference: usize, detailed: &[usize]) -> Summary {
         let Self { cell, present, resamples } = self;
         let methods = present.par_iter().enumerate();
-        let others = methods.clone().filter(|(method, _)| *method != reference);
-        let compared = others.map(|(method, running)| {
+        let compared_methods = methods.clone().filter(|(method, _)| *method != reference);
+        let compared = compared_methods.map(|(method, running)| {
             let [k, t] = running.pairs.each_ref().map(|pair| comparison(pair, &resamples));
             PairSummary { cell, method, trials: running.pairs[0].trials(), k, t }
         });
-        let detail = || CellDetail { cell, methods: present.par_iter().map(Running::detail).collect() };
+        let detail = || CellDetail { cell, methods: present.par_iter().map(MethodTally::detail).collect() };
         Summary {
             pairs: compared.collect(),
             methods: methods
@@ -168,7 +167,7 @@ impl ClosedCell {
     }
 }
 
-fn most_batches(methods: &[Running]) -> usize {
+fn most_batches(methods: &[MethodTally]) -> usize {
     methods.iter().map(|running| running.batches).max().unwrap_or(0)
 }
 
@@ -180,16 +179,16 @@ fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
 
 /// Running sums of one method.
 #[derive(Debug, Clone, Default)]
-struct Running {
+struct MethodTally {
     trials: u64,
-    /// Batches that hold a trial, whether it was answered or not.
+    /// Number of batches with a trial, failed ones included.
     batches: usize,
     failures: Vec<(String, u64)>,
-    /// Of K, T and K/T.
+    /// Error sums of K, T and K/T.
     indices: [IndexSums; 3],
-    /// Errors of K and T on the present trial.
+    /// Errors of K and T on the current trial, %.
     latest: [Option<f64>; 2],
-    /// Errors of K and T beside those of the reference.
+    /// Sums of the errors of K and T with those of the reference.
     pairs: [PairSums; 2],
     heading: ErrorSample,
     validation: ErrorSample,
@@ -199,10 +198,10 @@ struct Running {
     predictions: Vec<PredictionSummary>,
 }
 
-/// Reasons that are told apart; a reason may hold numbers of its trial.
-const MOST_REASONS: usize = 50;
+/// Largest number of distinct reasons; a reason may contain numbers of its trial.
+const MAX_REASONS: usize = 50;
 
-impl Running {
+impl MethodTally {
     fn add(&mut self, row: &StudyRow, errors: &[Option<f64>; 3]) {
         self.trials += 1;
         self.batches = self.batches.max((row.replicate as usize % BATCHES) + 1);
@@ -213,8 +212,8 @@ impl Running {
         let truths = [k, t, k.zip(t).map(|(k, t)| k / t)];
         let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
         let answers = [row.k_per_s, row.t_s, None];
-        // There is no Cramér–Rao bound for a base with effects.
-        let bound = row.bound.filter(|_| row.traced.is_none() || row.own_k_per_s.is_none());
+        // The Cramér–Rao bound is not defined for a base with effects.
+        let bound = row.bound.filter(|_| row.traced.is_none() || row.base_k_per_s.is_none());
         for (place, index) in self.indices.iter_mut().enumerate() {
             let truth = truths[place];
             let bound = bound.zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
@@ -228,7 +227,7 @@ impl Running {
         self.latest = [errors[0], errors[1]];
     }
 
-    /// What is not summed over all cells.
+    /// Adds what is not summed over all cells.
     fn add_details(&mut self, row: &StudyRow, cell: &CellFacts, detailed: bool) {
         if let Some(answer) = &row.traced {
             self.trace.get_or_insert_with(|| TraceTally::new(row, cell)).add(answer);
@@ -236,7 +235,7 @@ impl Running {
         add_predictions(&mut self.predictions, row, cell.length_over_speed_s);
         if let [Some(k), Some(t)] = self.latest
             && detailed
-            && self.cloud.len() < MOST_PAIRS
+            && self.cloud.len() < MAX_PAIRS
         {
             self.cloud.push((k, t));
         }
@@ -245,9 +244,9 @@ impl Running {
     fn failed(&mut self, reason: &str) {
         let failures = &mut self.failures;
         let last = failures.len().saturating_sub(1);
-        match failures.iter().position(|(known, _)| known == reason) {
-            Some(known) => failures[known].1 += 1,
-            None if failures.len() < MOST_REASONS => failures.push((reason.to_owned(), 1)),
+        match failures.iter().position(|(counted, _)| counted == reason) {
+            Some(place) => failures[place].1 += 1,
+            None if failures.len() < MAX_REASONS => failures.push((reason.to_owned(), 1)),
             None => failures[last] = ("other reasons".to_owned(), failures[last].1 + 1),
         }
     }
@@ -282,19 +281,19 @@ impl Running {
 struct IndexSums {
     sample: ErrorSample,
     sums: ErrorSums,
-    /// Sums of the answers less the first of them, and of their squares, after that first one.
+    /// First estimate, and sums of the differences from it and of their squares.
     answers: Option<(f64, [f64; 2])>,
-    /// Sum of the squared bounds, per cent, and their number.
+    /// Sum of the squared bounds, %², and their number.
     bounds: (f64, f64),
     answered: u64,
-    /// Widths of the quoted intervals, per cent.
+    /// Widths of the quoted intervals, %.
     widths: ErrorSample,
     quoted: u64,
     held: u64,
 }
 
 impl IndexSums {
-    /// Adds the error of a trial, the bound and the errors of the ends of the interval, all per cent, and the answer.
+    /// Adds the error of a trial, its bound and the errors of the interval ends, all in %, and the estimate itself.
     fn add(
         &mut self,
         replicate: u64,
@@ -324,7 +323,7 @@ impl IndexSums {
         }
     }
 
-    /// The mean of the answers; its interval from two of them on.
+    /// Mean estimate; with an interval from two estimates on.
     fn answer(&self) -> Option<Statistic> {
         let (first, [sum, square]) = self.answers?;
         let count = self.answered as f64;

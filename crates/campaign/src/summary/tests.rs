@@ -19,7 +19,7 @@ fn design(methods: &[&str], cells: usize) -> Design {
     }
 }
 
-/// An answer with relative errors in per cent and intervals of ± 2 %.
+/// Row with relative errors of K and T, %, and intervals of ± 2 %.
 fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> StudyRow {
     let (true_k, true_t) = (0.1, 20.0);
     let about = |value: f64, truth: f64| [value - 0.02 * truth, value + 0.02 * truth];
@@ -42,8 +42,8 @@ fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> StudyRow 
 }
 
 fn near(figure: Option<Statistic>, value: f64) {
-    let found = figure.expect("defined").value;
-    assert!((found - value).abs() < 1e-9 * value.abs().max(1.0), "{found}, {value} expected");
+    let computed = figure.expect("defined").value;
+    assert!((computed - value).abs() < 1e-9 * value.abs().max(1.0), "{computed}, {value} expected");
 }
 
 /// Errors of −3, −2, … 3 % of K and a tenth of that of T.

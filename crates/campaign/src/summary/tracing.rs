@@ -1,4 +1,4 @@
-//! What traces said, cell by cell: was everything named that was missing, and anything that was not.
+//! Summary of traces by cell: missing effects that were named, and effects named wrongly.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
@@ -13,59 +13,58 @@ use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{HULL, MissingPhysics};
 use crate::statistics::{Statistic, share};
 
-/// Margin in log evidence beyond which the right effect has to be named: below, a rival explains the trial nearly as
+/// Margin in log evidence above which the missing effect has to be named; below it a rival explains the trial nearly as
 /// well.
 pub const CLEAR: f64 = 10.0;
 
-/// What traces said in one cell.
+/// Counts over the traces of one method in one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method that is the trace.
     pub method: usize,
-    /// Identifiers of what was missing.
+    /// Identifiers of the missing effects.
     pub missing: Vec<String>,
-    /// Trials by what their answer is worth, in a study that states what is right to say.
+    /// Trials by judgement, in a study that states the missing physics.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub judged: BTreeMap<Judgement, u64>,
-    /// Trials traced.
+    /// Number of trials.
     pub trials: u64,
-    /// Trials with every verdict.
+    /// Trials by verdict.
     pub verdicts: [u64; Verdict::ALL.len()],
-    /// How often every identifier was named.
+    /// Trials by effect named.
     pub named: BTreeMap<String, u64>,
-    /// How often every identifier was named for a missing effect that the trial could not tell from it.
+    /// Trials by effect named as an alias of a missing one.
     pub aliases: BTreeMap<String, u64>,
-    /// Trials in which nothing was named.
+    /// Trials without any named effect.
     pub silent: u64,
-    /// Trials in which every missing effect is in one of the groups named.
+    /// Trials whose named groups contain every missing effect.
     pub complete: u64,
-    /// Trials in which a group was named that holds no missing effect; of a hull, of which nobody knows what it lacks,
-    /// one of nothing but weather that there is not.
+    /// Trials with a named group that contains no missing effect; for a hull, whose missing effects are not defined, a
+    /// group of weather effects alone.
     pub wrong: u64,
-    /// Trials in which exactly what is missing was named: all of it and nothing else, or nothing where nothing is.
+    /// Trials in which exactly the missing effects were named, or rightly none.
     pub exact: u64,
-    /// Trials in which far more speaks for the one missing effect than for any other, and those of them in which it was
-    /// named.
+    /// Trials with a clear margin for the one missing effect, and those of them that name it.
     pub clear: [u64; 2],
     /// Mean expected likelihood ratio.
     pub expected: Option<f64>,
-    /// Mean share of the headings inside the band: of the trial, and of the validation manoeuvre.
+    /// Mean coverage of the heading band: on the trial, and on the validation manoeuvre.
     pub band: [Option<f64>; 2],
-    /// Effects by the probability that was given to them; empty for a hull, of which nobody knows what it lacks.
+    /// Calibration of the probabilities of effects; empty for a hull.
     pub calibration: [CalibrationBin; CALIBRATION.len() - 1],
 }
 
-/// Ends of the bins of probability.
+/// Edges of the probability bins.
 pub const CALIBRATION: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
-/// Effects whose probabilities are in one bin.
+/// Bin of a calibration table.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct CalibrationBin {
-    /// Effects on the list, one for every trial.
+    /// Number of effects times trials in the bin.
     pub effects: u64,
-    /// Those of them that were there.
+    /// Number of them with the effect present.
     pub present: u64,
     /// Sum of the probabilities.
     pub sum: f64,
@@ -92,52 +91,52 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 }
 
 impl TraceSummary {
-    /// Share of trials in which all that is missing was named.
+    /// Share of trials in which all missing effects were named; `None` where nothing is missing, and for a hull.
     pub fn complete_share(&self) -> Option<Statistic> {
         if self.missing.is_empty() { None } else { self.share_of(self.complete) }
     }
 
-    /// Share of trials in which exactly what is missing was named; `None` for a hull.
+    /// Share of trials in which exactly the missing effects were named; `None` for a hull.
     pub fn exact_share(&self) -> Option<Statistic> {
         self.share_of(self.exact)
     }
 
-    /// Share of trials in which something was named that is not missing; for a hull an effect of weather.
+    /// Share of trials with a wrongly named group.
     pub fn wrong_share(&self) -> Option<Statistic> {
         share(self.wrong, self.trials)
     }
 
-    /// A share of the trials; `None` for a hull, of which nobody knows what it lacks.
+    /// Share of the trials; `None` for a hull.
     fn share_of(&self, count: u64) -> Option<Statistic> {
         if self.is_hull() { None } else { share(count, self.trials) }
     }
 
-    /// Share of clear trials in which the right effect was named.
+    /// Share of trials with a clear margin in which the missing effect was named.
     pub fn clear_share(&self) -> Option<Statistic> {
         share(self.clear[1], self.clear[0])
     }
 
-    /// Whether the ship is a hull: nobody knows what it lacks.
+    /// `true` for a hull, whose missing effects are not defined.
     pub fn is_hull(&self) -> bool {
         self.missing.iter().any(|id| id == HULL)
     }
 }
 
-/// Counts over the traces of one method in one cell.
+/// Running counts over the traces of one method in one cell.
 #[derive(Debug, Clone)]
 pub(super) struct TraceTally {
     summary: TraceSummary,
     physics: Option<MissingPhysics>,
-    /// Means of the expected likelihood ratio, and of the coverage of the two bands.
+    /// Running means of the expected likelihood ratio and of the coverage of the two bands.
     means: [RunningMean; 3],
 }
 
-/// Sum and number of the numbers that there are.
+/// Running mean: sum and count of the defined values.
 #[derive(Debug, Default, Clone, Copy)]
 struct RunningMean(f64, u64);
 
 impl RunningMean {
-    /// The mean with one more.
+    /// Adds a value and returns the mean.
     fn add(&mut self, value: Option<f64>) -> Option<f64> {
         *self = Self(self.0 + value.unwrap_or(0.0), self.1 + u64::from(value.is_some()));
         (self.1 > 0).then(|| self.0 / self.1 as f64)
@@ -145,14 +144,14 @@ impl RunningMean {
 }
 
 impl TraceTally {
-    /// Before any trace, for the cell and the method of a row.
+    /// Empty tally for the cell and the method of a row.
     pub(super) fn new(row: &StudyRow, facts: &CellFacts) -> Self {
         let (cell, method, missing) = (row.cell as usize, row.method, facts.missing.clone());
         let summary = TraceSummary { cell, method, missing, ..TraceSummary::default() };
         Self { summary, physics: facts.physics.clone(), means: Default::default() }
     }
 
-    /// Takes note of an answer.
+    /// Adds the result of a trace.
     pub(super) fn add(&mut self, answer: &TraceAnswer) {
         let Self { summary, physics, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
@@ -164,7 +163,7 @@ impl TraceTally {
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let missing = &summary.missing;
-        // Another formula of an effect is that effect.
+        // A formula that stands for listed effects is matched by them.
         let accepted = match physics {
             Some(MissingPhysics::Listed { effects }) => effects,
             _ => missing,
@@ -189,10 +188,10 @@ impl TraceTally {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }
-        let known = !summary.is_hull();
-        for id in effect_ids().filter(|_| known) {
-            let own = answer.probabilities.iter().find(|(other, _)| **other == *id);
-            let sum = own.map_or(0.0, |(_, probability)| *probability);
+        let has_truth = !summary.is_hull();
+        for id in effect_ids().filter(|_| has_truth) {
+            let entry = answer.probabilities.iter().find(|(other, _)| **other == *id);
+            let sum = entry.map_or(0.0, |(_, probability)| *probability);
             let bin = CALIBRATION[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
             summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
@@ -201,7 +200,7 @@ impl TraceTally {
         summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
     }
 
-    /// The counts so far.
+    /// Summary of the counts.
     pub(super) fn summary(&self) -> TraceSummary {
         self.summary.clone()
     }
@@ -211,7 +210,7 @@ impl TraceTally {
 mod tests {
     use super::*;
 
-    /// The summary of traces that name effects, each with its aliases, where some are missing.
+    /// Summary of traces that name groups of effects where `missing` are missing.
     fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
         let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
         let mut tally = TraceTally::new(&StudyRow::default(), &CellFacts { missing, ..CellFacts::default() });
@@ -245,17 +244,17 @@ mod tests {
         assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
     }
 
-    /// Of the effects on the list one is there and was given 97 %, the others are not and were given nothing.
+    /// One effect is present with probability 97 %, the others are absent with probability 0.
     #[test]
     fn effects_are_counted_by_their_probability() {
         let summary = summary(&["wind_moment"], &[&[]]);
-        let others = effect_ids().count() as u64 - 1;
-        assert_eq!(summary.calibration[0], CalibrationBin { effects: others, present: 0, sum: 0.0 });
+        let absent = effect_ids().count() as u64 - 1;
+        assert_eq!(summary.calibration[0], CalibrationBin { effects: absent, present: 0, sum: 0.0 });
         assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
-        assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), others + 1);
+        assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), absent + 1);
     }
 
-    /// What a hull lacks nobody knows, but in a calm it is no weather.
+    /// The missing effects of a hull are not defined, but in a calm a weather effect is wrong.
     #[test]
     fn weather_is_wrong_of_a_hull_in_a_calm() {
         let trials: [&[&[&str]]; 4] =

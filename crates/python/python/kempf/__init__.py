@@ -3,13 +3,13 @@
 T r' + r = K (δ + δ_r): yaw rate r, rudder δ, rudder bias δ_r. The numbers are those of the program ``study``.
 
 =====================  ==============================================================================
-``kempf.read``         a record from a file; ``kempf.Record`` one from arrays or a table
+``kempf.read``         a record from a file; ``kempf.Record``: from arrays or a table
 ``kempf.find``         the manoeuvres inside a long log
-``kempf.simulate``     trials of a scenario, with what is true of them
+``kempf.simulate``     trials of a scenario, with their truth
 ``kempf.fit``          K, T and δ_r by every method, with intervals
-``kempf.trace``        the effect that a first-order ship lacks, and what it is worth
-``kempf.predict``      what an identified ship will do in other manoeuvres
-``kempf.bench``        every method, and one of your own, on records that are the same for everybody
+``kempf.trace``        the effects that a first-order model lacks, and the errors before and after
+``kempf.predict``      manoeuvres of an identified ship, with intervals
+``kempf.bench``        every method, and your own, on the records of the benchmark
 ``kempf.run``          a whole study: many trials, every method, tables and figures in a folder
 =====================  ==============================================================================
 

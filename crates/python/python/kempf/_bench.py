@@ -1,4 +1,4 @@
-"""The benchmark: every method on records that are the same for everybody."""
+"""The benchmark: every method on the same records."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _kempf, _table
-from ._options import strings, warn, whole, words
-from ._own import Estimator, natives_of
+from ._options import options, strings, warn, whole
+from ._functions import Estimator, natives_of
 from ._quantity import number
 from ._record import PathLike
 from ._result import Result
@@ -19,20 +19,20 @@ from ._study import shown
 
 @dataclass(frozen=True)
 class Standing:
-    """A method on the records of one task."""
+    """Scores of a method on one task."""
 
-    #: Such as ``"circle"``; what is scored depends on it.
+    #: Task, such as ``"circle"``, which determines the score.
     task: str
     #: The scenario of its records.
     field: str
     method: str
-    #: Number of questions.
+    #: Number of cases.
     cases: int
-    #: Questions without an answer, which are worse than any.
+    #: Cases without an answer, which rank below any answer.
     failed: int
-    #: Median of the score: error of the heading, deg, or the larger error of K and T, %. ``None`` is worse than any.
+    #: Median of the score: heading error, deg, or the larger error of K and T, %. ``None`` for failed answers.
     median: Optional[float]
-    #: What the score does not exceed in nine of ten questions.
+    #: 90 % quantile of the score.
     high: Optional[float]
     #: Mean rank among all methods.
     rank: float
@@ -44,22 +44,22 @@ class BenchResult(Result):
 
     #: Task by task, the best method first.
     standings: tuple[Standing, ...]
-    #: Records that were left out, and why.
+    #: Skipped records, with reasons.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
     def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
         header = ["task", "records", "method", "cases", "failed", "median", "90 %", "rank"]
         rows = [
-            [one.task, one.field, one.method, str(one.cases), str(one.failed), number(one.median), number(one.high)]
-            + [number(one.rank, 1.0)]
-            for one in self.standings
+            [row.task, row.field, row.method, str(row.cases), str(row.failed), number(row.median), number(row.high)]
+            + [number(row.rank, 1.0)]
+            for row in self.standings
         ]
         return "Benchmark", header, rows, self.warnings
 
     def to_frame(self, kind: str = "pandas") -> Any:
         """One row for every task and method, as a table of ``"pandas"`` or ``"polars"``."""
-        return _table.frame_of([vars(one) for one in self.standings], kind)
+        return _table.frame_of([vars(row) for row in self.standings], kind)
 
 
 def bench(
@@ -84,18 +84,18 @@ def bench(
 
     Raises :class:`kempf.KempfError` for a scenario that cannot be read, and where there is nothing to ask.
     """
-    asked = words(method=strings(methods), task=strings(tasks), set=strings(sets))
+    arguments = options(method=strings(methods), task=strings(tasks), set=strings(sets))
     show = shown("trials") if progress is True else progress or None
     named = [os.fspath(scenario) for scenario in scenarios]
-    text, warnings = _kempf.bench(named, asked, natives_of(own), whole("seed", seed), show)
+    text, warnings = _kempf.bench(named, arguments, natives_of(own), whole("seed", seed), show)
     if progress is True:
         sys.stderr.write("\n")
     warn(warnings)
 
     def standing(board: Mapping[str, Any], entry: Mapping[str, Any]) -> Standing:
         place = {name: board[name] for name in ("task", "field", "cases")}
-        own = {name: entry[name] for name in ("method", "failed", "rank")}
-        return Standing(**place, **own, median=entry["median"]["value"], high=entry["high"]["value"])
+        figures = {name: entry[name] for name in ("method", "failed", "rank")}
+        return Standing(**place, **figures, median=entry["median"]["value"], high=entry["high"]["value"])
 
     boards = json.loads(text)["boards"]
     standings = tuple(standing(board, entry) for board in boards for entry in board["standings"])

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Iterable, Optional, Sequence, Union
 
 from . import _kempf, _table
-from ._options import warn, words
+from ._options import options, warn
 from ._quantity import number
 from ._record import PathLike
 from ._result import Result
@@ -17,7 +17,7 @@ from ._result import Result
 
 @dataclass(frozen=True)
 class Found:
-    """A manoeuvre inside a log."""
+    """A manoeuvre in a log."""
 
     #: The log.
     file: str
@@ -27,24 +27,24 @@ class Found:
     kind: str
     from_s: float
     until_s: float
-    #: What the clock shows at both ends, where the log has one.
+    #: Clock times of both ends, where the log has a clock.
     clock: Optional[tuple[str, str]]
-    #: How often the rudder is put over.
+    #: Number of executes.
     executes: int
     rudder_deg: Optional[float]
-    #: Heading angle at which it is put over.
+    #: Heading angle of the executes, deg.
     heading_deg: Optional[float]
-    #: What is odd about it.
+    #: Remarks on the manoeuvre.
     remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FindResult(Result):
-    """The manoeuvres of some logs."""
+    """The manoeuvres found in logs."""
 
     #: In the order of the logs, and of time.
     manoeuvres: tuple[Found, ...]
-    #: What a person should know of the logs.
+    #: Warnings on the logs.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
@@ -53,15 +53,15 @@ class FindResult(Result):
 
     def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
         rows = [
-            [Path(one.file).name, str(one.trial), one.kind, number(one.from_s, 1.0), number(one.until_s, 1.0)]
-            for one in self.manoeuvres
+            [Path(row.file).name, str(row.trial), row.kind, number(row.from_s, 1.0), number(row.until_s, 1.0)]
+            for row in self.manoeuvres
         ]
-        notes = [f"{Path(one.file).name} {one.trial}: {remark}" for one in self.manoeuvres for remark in one.remarks]
+        notes = [f"{Path(row.file).name} {row.trial}: {remark}" for row in self.manoeuvres for remark in row.remarks]
         return f"{len(rows)} manoeuvres", ["log", "trial", "manoeuvre", "from [s]", "until [s]"], rows, notes
 
     def to_frame(self, kind: str = "pandas") -> Any:
         """One row a manoeuvre, as a table of ``"pandas"`` or ``"polars"``."""
-        return _table.frame_of([vars(one) for one in self.manoeuvres], kind)
+        return _table.frame_of([vars(row) for row in self.manoeuvres], kind)
 
 
 def find(
@@ -80,15 +80,15 @@ def find(
     Raises :class:`kempf.KempfError` where a log cannot be read.
     """
     several = [logs] if isinstance(logs, (str, os.PathLike)) else list(logs)
-    asked = words(columns=columns, with_columns=with_columns)
-    text, warnings = _kempf.find([os.fspath(log) for log in several], asked)
+    arguments = options(columns=columns, with_columns=with_columns)
+    text, warnings = _kempf.find([os.fspath(log) for log in several], arguments)
     warn(warnings)
 
-    def found(file: str, entry: dict[str, Any]) -> Found:
+    def manoeuvre(file: str, entry: dict[str, Any]) -> Found:
         clock = entry["clock"]
-        rest = {**entry, "clock": None if clock is None else tuple(clock), "remarks": tuple(entry["remarks"])}
-        return Found(file=file, **rest)
+        fields = {**entry, "clock": None if clock is None else tuple(clock), "remarks": tuple(entry["remarks"])}
+        return Found(file=file, **fields)
 
-    logs_found = json.loads(text)["logs"]
-    manoeuvres = tuple(found(log["file"], entry) for log in logs_found for entry in log["manoeuvres"])
+    entries = json.loads(text)["logs"]
+    manoeuvres = tuple(manoeuvre(log["file"], entry) for log in entries for entry in log["manoeuvres"])
     return FindResult(manoeuvres=manoeuvres, warnings=tuple(warnings), _text=text)

@@ -10,7 +10,7 @@ from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 from . import _kempf, _plot, _table
 from ._kempf import KempfError
 from ._options import strings, warn, whole
-from ._own import Estimator, natives_of
+from ._functions import Estimator, natives_of
 from ._quantity import Quantity, number
 from ._record import Record, natives
 from ._result import Model, Result, models, sentence
@@ -24,7 +24,7 @@ class Method:
     method: str
     #: Whether it gave an answer.
     ok: bool
-    #: Why it gave none.
+    #: Reason of a failure.
     reason: Optional[str]
     #: Gain K, 1/s.
     K_per_s: Optional[Quantity]
@@ -40,27 +40,27 @@ class Method:
     course_unstable: Optional[bool]
     #: Root mean square of measured less replayed heading on the fitted records, deg.
     heading_rmse_deg: Optional[float]
-    #: The same on every record of the validation; only its initial state is fitted.
+    #: The same on every validation record; only its initial state is fitted.
     validation_rmse_deg: tuple[Optional[float], ...]
-    #: What the method says of itself.
+    #: Diagnostics of the method.
     diagnostics: Mapping[str, float]
 
     @classmethod
     def _of(cls, entry: Mapping[str, Any]) -> Method:
         parameters, prime = entry.get("parameters") or {}, entry.get("prime") or {}
 
-        def one(entries: Mapping[str, Any], name: str) -> Optional[Quantity]:
+        def quantity(entries: Mapping[str, Any], name: str) -> Optional[Quantity]:
             return Quantity.of(entries[name]) if name in entries else None
 
         return cls(
             method=entry["method"],
             ok=entry["status"] == "ok",
             reason=entry["reason"],
-            K_per_s=one(parameters, "K_per_s"),
-            T_s=one(parameters, "T_s"),
-            delta_r_deg=one(parameters, "delta_r_deg"),
-            K_prime=one(prime, "K"),
-            T_prime=one(prime, "T"),
+            K_per_s=quantity(parameters, "K_per_s"),
+            T_s=quantity(parameters, "T_s"),
+            delta_r_deg=quantity(parameters, "delta_r_deg"),
+            K_prime=quantity(prime, "K"),
+            T_prime=quantity(prime, "T"),
             course_unstable=entry["course_unstable"],
             heading_rmse_deg=entry["heading_rmse_deg"],
             validation_rmse_deg=tuple(on["heading_rmse_deg"] for on in entry["validation"]),
@@ -74,7 +74,7 @@ class ZigZag:
 
     #: Time from the first execute until the heading has changed by the angle of the manoeuvre, s.
     initial_turning_time_s: Optional[float]
-    #: Overshoot angles in their order, deg; ``None`` for a peak that was not seen.
+    #: Overshoot angles in their order, deg; ``None`` for a peak outside the record.
     overshoots_deg: tuple[Optional[float], ...]
     #: Their standard deviations, deg.
     overshoots_sd_deg: tuple[Optional[float], ...]
@@ -98,22 +98,22 @@ class RecordEntry:
 
     @classmethod
     def _of(cls, entry: Mapping[str, Any]) -> RecordEntry:
-        found = entry["zigzag"]
+        figures = entry["zigzag"]
         zigzag = None
-        if found is not None:
+        if figures is not None:
             zigzag = ZigZag(
-                initial_turning_time_s=found["initial_turning_time_s"],
-                overshoots_deg=tuple(found["overshoots_deg"]),
-                overshoots_sd_deg=tuple(found["overshoots_sd_deg"]),
-                period_s=found["period_s"],
-                imo=tuple(found["imo"]),
+                initial_turning_time_s=figures["initial_turning_time_s"],
+                overshoots_deg=tuple(figures["overshoots_deg"]),
+                overshoots_sd_deg=tuple(figures["overshoots_sd_deg"]),
+                period_s=figures["period_s"],
+                imo=tuple(figures["imo"]),
             )
         return cls(entry["file"], entry["sha256"], entry["samples"], entry["duration_s"], zigzag)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class FitResult(Result):
-    """Answers of the methods to the same records; ``result["output-error"]`` is one of them."""
+    """Estimates of all methods from the same records; ``result["output-error"]`` is one of them."""
 
     _model = "fit.json"
 
@@ -121,7 +121,7 @@ class FitResult(Result):
     methods: tuple[Method, ...]
     #: Records that were fitted.
     records: tuple[RecordEntry, ...]
-    #: What a person should know, of the records and of the answers.
+    #: Warnings on the records and on the answers.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
     _native: _kempf.Fit = field(repr=False)
@@ -134,50 +134,51 @@ class FitResult(Result):
         return None if verdict is None else self[verdict["method"]]
 
     def __getitem__(self, method: str) -> Method:
-        for one in self.methods:
-            if one.method == method:
-                return one
-        raise KeyError(f"{method}: there are {', '.join(one.method for one in self.methods)}")
+        for answer in self.methods:
+            if answer.method == method:
+                return answer
+        raise KeyError(f"{method}: there are {', '.join(answer.method for answer in self.methods)}")
 
     def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
-        def row(one: Method) -> list[str]:
-            if not one.ok:
-                return [one.method, f"failed: {one.reason}", "", "", ""]
-            return [one.method, str(one.K_per_s), str(one.T_s), str(one.delta_r_deg), number(one.heading_rmse_deg)]
+        def row(answer: Method) -> list[str]:
+            if not answer.ok:
+                return [answer.method, f"failed: {answer.reason}", "", "", ""]
+            estimates = [str(answer.K_per_s), str(answer.T_s), str(answer.delta_r_deg)]
+            return [answer.method, *estimates, number(answer.heading_rmse_deg)]
 
         header = ["method", "K [1/s]", "T [s]", "δ_r [deg]", "rms ψ [deg]"]
         notes = []
         for record in self.records:
             if record.zigzag is not None:
-                angles = ", ".join(number(one, 0.1) for one in record.zigzag.overshoots_deg)
+                angles = ", ".join(number(angle, 0.1) for angle in record.zigzag.overshoots_deg)
                 notes.append(
                     f"{Path(record.file).name}: overshoots {angles} deg, period {number(record.zigzag.period_s, 1.0)} s"
                 )
         return (
             f"Fit of {_names(self.records)}, values and 95 % intervals",
             header,
-            [row(one) for one in self.methods],
+            [row(answer) for answer in self.methods],
             notes,
         )
 
     def to_frame(self, kind: str = "pandas") -> Any:
         """One row a method, as a table of ``"pandas"`` or ``"polars"``."""
 
-        def row(one: Method) -> dict[str, Any]:
-            cells: dict[str, Any] = {"method": one.method, "ok": one.ok, "reason": one.reason}
+        def row(answer: Method) -> dict[str, Any]:
+            cells: dict[str, Any] = {"method": answer.method, "ok": answer.ok, "reason": answer.reason}
             for name in ("K_per_s", "T_s", "delta_r_deg"):
-                quantity = getattr(one, name) or Quantity(None, None, None)
+                quantity = getattr(answer, name) or Quantity(None, None, None)
                 low, high = quantity.ci95 or (None, None)
                 cells.update({name: quantity.value, f"{name}_sd": quantity.sd})
                 cells.update({f"{name}_low95": low, f"{name}_high95": high})
-            return {**cells, "course_unstable": one.course_unstable, "heading_rmse_deg": one.heading_rmse_deg}
+            return {**cells, "course_unstable": answer.course_unstable, "heading_rmse_deg": answer.heading_rmse_deg}
 
-        return _table.frame_of([row(one) for one in self.methods], kind)
+        return _table.frame_of([row(answer) for answer in self.methods], kind)
 
     def replay(self, method: str, record: int = 0) -> Optional[dict[str, Any]]:
         """The recorded rudder sent through the answer of a method: ``t_s``, ``heading_deg``, ``residual_deg``.
 
-        The residual is measured less replayed heading. Records of the validation follow those that were fitted.
+        The residual is measured less replayed heading. Validation records follow the fitted ones.
         ``None`` where the method has no answer.
         """
         curve = self._native.replay(record, self[method].method)
@@ -190,10 +191,10 @@ class FitResult(Result):
         ``methods`` names others. ``"estimates"``: K, T and δ_r of every method with their 95 % intervals.
         """
         if kind == "estimates":
-            return _plot.estimates([one for one in self.methods if one.ok])
+            return _plot.estimates([answer for answer in self.methods if answer.ok])
         if kind != "record":
             raise KempfError(f'kind = {kind!r}: expected "record" or "estimates"')
-        answered = [one.method for one in self.methods if one.ok]
+        answered = [answer.method for answer in self.methods if answer.ok]
         named = strings(methods) or [name for name in ("output-error", *answered) if name in answered][:1]
         native = self._native.record(record)
         if native is None:
@@ -262,7 +263,7 @@ def _result(native: _kempf.Fit) -> FitResult:
     return FitResult(
         methods=tuple(Method._of(entry) for entry in document["methods"]),
         records=tuple(RecordEntry._of(entry) for entry in document["trials"]),
-        warnings=tuple(sentence(one) for one in document.get("warnings", ())),
+        warnings=tuple(sentence(warning) for warning in document.get("warnings", ())),
         _text=native.text,
         _native=native,
     )

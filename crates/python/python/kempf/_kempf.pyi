@@ -1,4 +1,4 @@
-"""The compiled half of the package; what is meant for users is in `kempf`."""
+"""The compiled part of the package; users import `kempf`."""
 
 from typing import Callable, Optional, Union, final
 
@@ -9,7 +9,7 @@ _Array = npt.NDArray[np.float64]
 _Curve = tuple[_Array, _Array, _Array]
 #: A label and a function of records: K (1/s), T (s), δ_r (rad) and their covariance, where there is one.
 _Answer = tuple[float, float, float, Optional[list[list[float]]]]
-_Own = list[tuple[str, Callable[[list["Record"]], _Answer]]]
+_Functions = list[tuple[str, Callable[[list["Record"]], _Answer]]]
 _Scene = dict[str, Optional[str]]
 
 __all__ = [
@@ -77,31 +77,31 @@ class Trace:
     def record(self, place: int) -> Optional[Record]: ...
     def replays(self, place: int) -> Optional[list[_Curve]]: ...
 
-def read(path: str, words: list[str]) -> list[Record]: ...
-def record_of(name: str, columns: list[tuple[str, Union[_Array, list[str]]]], words: list[str]) -> Record: ...
-def find(logs: list[str], words: list[str]) -> tuple[str, list[str]]: ...
+def read(path: str, options: list[str]) -> list[Record]: ...
+def record_of(name: str, columns: list[tuple[str, Union[_Array, list[str]]]], options: list[str]) -> Record: ...
+def find(logs: list[str], options: list[str]) -> tuple[str, list[str]]: ...
 def fit(
     records: list[Record],
     validate: list[Record],
     methods: list[str],
-    own: _Own,
+    functions: _Functions,
     seed: Optional[int],
     priors: list[tuple[str, Optional[str]]],
 ) -> Fit: ...
 def bench(
     scenarios: list[str],
-    words: list[str],
-    own: _Own,
+    options: list[str],
+    functions: _Functions,
     seed: Optional[int],
     progress: Optional[Callable[[int, int], object]],
 ) -> tuple[str, list[str]]: ...
 def trace(
-    records: list[Record], validate: list[Record], words: list[str], priors: list[tuple[str, Optional[str]]]
+    records: list[Record], validate: list[Record], options: list[str], priors: list[tuple[str, Optional[str]]]
 ) -> Trace: ...
 def predict(
     models: list[tuple[str, Optional[str]]],
     replay: list[Record],
-    words: list[str],
+    options: list[str],
     priors: list[tuple[str, Optional[str]]],
 ) -> tuple[str, list[str]]: ...
 def toml_of(json: str) -> str: ...

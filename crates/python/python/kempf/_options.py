@@ -1,4 +1,4 @@
-"""Keywords as options of the program, which checks them."""
+"""Keyword arguments as options of the program, which checks them."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Any, Iterable, Optional, Sequence
 from ._kempf import KempfError, KempfWarning
 
 
-def words(**options: Any) -> list[str]:
-    """Every option that is given, as ``--name=value``; several values are given one by one."""
+def options(**keywords: Any) -> list[str]:
+    """The options that have a value, as ``--name=value``; an iterable gives one option per value."""
     given = []
-    for name, value in options.items():
+    for name, value in keywords.items():
         option = "--" + name.strip("_").replace("_", "-")
         if value is None or value is False:
             continue
         if value is True:
             given.append(option)
             continue
-        is_one = isinstance(value, (str, os.PathLike)) or not isinstance(value, Iterable)
-        for one in [value] if is_one else value:
-            given.append(f"{option}={os.fspath(one) if isinstance(one, os.PathLike) else one}")
+        is_scalar = isinstance(value, (str, os.PathLike)) or not isinstance(value, Iterable)
+        for item in [value] if is_scalar else value:
+            given.append(f"{option}={os.fspath(item) if isinstance(item, os.PathLike) else item}")
     return given
 
 
@@ -42,10 +42,10 @@ def strings(value: Any) -> list[str]:
     """A name, or several, as a list."""
     if value is None:
         return []
-    return [value] if isinstance(value, str) else [str(one) for one in value]
+    return [value] if isinstance(value, str) else [str(item) for item in value]
 
 
-def warn(found: Sequence[str], stacklevel: int = 3) -> None:
-    """Says what the program warns of, at the line that called the package."""
-    for warning in found:
-        warnings.warn(warning, KempfWarning, stacklevel=stacklevel)
+def warn(messages: Sequence[str], stacklevel: int = 3) -> None:
+    """Issues the warnings of the program at the line that called the package."""
+    for message in messages:
+        warnings.warn(message, KempfWarning, stacklevel=stacklevel)

@@ -1,4 +1,4 @@
-"""Figures of Matplotlib, which is imported here alone."""
+"""Matplotlib figures; only this module imports Matplotlib."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Interval(Protocol):
     def measured(self) -> Optional[float]: ...
 
 
-#: Measured, rudder, and the replays in their order; told apart by people who see no red or no green.
+#: Colours of measurement, rudder and replays in order, distinguishable with colour vision deficiency.
 MEASURED, RUDDER = "#222222", "#8a8a8a"
 REPLAYS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#44aa99")
 
@@ -59,10 +59,10 @@ def _figure(rows: int, columns: int = 1, **options: Any) -> tuple[Any, Any]:
 
 
 def _tidy(axes: Any) -> None:
-    for one in axes.flat:
-        one.spines[["top", "right"]].set_visible(False)
-        one.grid(True, color="#e4e4e4", linewidth=0.6)
-        one.set_axisbelow(True)
+    for panel in axes.flat:
+        panel.spines[["top", "right"]].set_visible(False)
+        panel.grid(True, color="#e4e4e4", linewidth=0.6)
+        panel.set_axisbelow(True)
 
 
 def _rudder(axes: Any, record: Series) -> None:
@@ -85,7 +85,7 @@ def record(shown: Series) -> Any:
 
 
 def replays(shown: Series, curves: Mapping[str, Mapping[str, Any]]) -> Any:
-    """Rudder, measured heading with its replays, and what is left between them."""
+    """Rudder, measured heading with its replays, and the residuals."""
     figure, axes = _figure(3, figsize=(8, 7), sharex=True, height_ratios=(1, 2.2, 1.4))
     rudder, heading, residual = axes[:, 0]
     _rudder(rudder, shown)
@@ -159,9 +159,9 @@ def intervals(rows: Sequence[tuple[str, str, str, Interval]]) -> Any:
         panel.set_ylim(len(figures) - 0.4, -0.6)
         panel.set_title(what, loc="left", fontsize=10)
         panel.set_xlabel(f"[{unit}]" if unit else "")
-    words = "circle: median; thick: 50 %; thin: 90 %"
+    legend = "circle: median; thick: 50 %; thin: 90 %"
     if any(figure.measured is not None for *_, figure in rows):
-        words += "; cross: measured"
-    canvas.suptitle(words, fontsize=10, x=0.01, ha="left")
+        legend += "; cross: measured"
+    canvas.suptitle(legend, fontsize=10, x=0.01, ha="left")
     _tidy(axes)
     return canvas

@@ -1,4 +1,4 @@
-"""Prediction: what an identified ship will do in manoeuvres that were not made."""
+"""Prediction: manoeuvres of an identified ship, with intervals."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _kempf, _plot, _table
-from ._options import strings, warn, words
+from ._options import options, strings, warn
 from ._quantity import number
 from ._record import natives
 from ._result import Model, Result, models
@@ -18,21 +18,21 @@ UNITS = {"_deg_s": "deg/s", "_deg": "deg", "_m_s": "m/s", "_lengths": "L", "_s":
 
 
 def spoken(name: str) -> tuple[str, str]:
-    """The name of a figure in words, and its unit."""
+    """Label and unit of a figure."""
     for ending, unit in UNITS.items():
         if name.endswith(ending):
             return name[: -len(ending)].replace("_", " "), unit
     return name.replace("_", " "), ""
 
 
-#: Words that say which of several is meant.
+#: Ordinals in the names of figures.
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
 def _place(name: str) -> tuple[str, int]:
-    """Where a figure stands in a table: overshoots together, in their order."""
-    first, _, rest = name.partition("_")
-    return (rest, ORDINALS.index(first)) if first in ORDINALS else (name, 0)
+    """Sort key of a figure: overshoots together, in order."""
+    first, _, figure = name.partition("_")
+    return (figure, ORDINALS.index(first)) if first in ORDINALS else (name, 0)
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class Figure:
     ci50: tuple[float, float]
     #: Interval that holds nine in ten of them.
     ci90: tuple[float, float]
-    #: Whether the manoeuvre leaves the range in which the ship was seen.
+    #: Whether the manoeuvre leaves the range of the fitted records.
     extrapolated: Optional[bool] = None
-    #: What was measured, for a record that is replayed.
+    #: Measured value, for a replayed record.
     measured: Optional[float] = None
-    #: Share of every source of doubt in the spread.
+    #: Share of each source of uncertainty in the spread.
     shares: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
@@ -69,13 +69,13 @@ class Manoeuvre:
 
     kind: str
     figures: Mapping[str, Figure]
-    #: Drawn ships that did not come to its end.
+    #: Number of drawn ships that did not complete it.
     lost: int
 
 
 @dataclass(frozen=True)
 class Replay:
-    """A record held against its prediction; nothing is fitted to it but how the ship began."""
+    """A record compared with its prediction; only the initial state is fitted to it."""
 
     file: str
     #: Share of the measured headings inside the 90 % band.
@@ -98,36 +98,36 @@ class Criterion:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PredictResult(Result):
-    """What a ship will do, with intervals."""
+    """Predicted manoeuvres with intervals."""
 
     manoeuvres: tuple[Manoeuvre, ...]
     replays: tuple[Replay, ...]
     #: Criteria of IMO, where length and speed of the ship are known.
     imo: tuple[Criterion, ...]
-    #: What a person should know.
+    #: Warnings.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
     def __getitem__(self, kind: str) -> Manoeuvre:
-        for one in self.manoeuvres:
-            if one.kind == kind:
-                return one
-        raise KeyError(f"{kind}: there are {', '.join(one.kind for one in self.manoeuvres) or 'none'}")
+        for manoeuvre in self.manoeuvres:
+            if manoeuvre.kind == kind:
+                return manoeuvre
+        raise KeyError(f"{kind}: there are {', '.join(manoeuvre.kind for manoeuvre in self.manoeuvres) or 'none'}")
 
     def _rows(self) -> list[tuple[str, str, Figure]]:
-        parts: list[tuple[str, Mapping[str, Figure]]] = [(one.kind, one.figures) for one in self.manoeuvres]
-        parts.extend((Path(one.file).name, one.figures) for one in self.replays)
+        parts: list[tuple[str, Mapping[str, Figure]]] = [(made.kind, made.figures) for made in self.manoeuvres]
+        parts.extend((Path(replay.file).name, replay.figures) for replay in self.replays)
         return [(what, name, figures[name]) for what, figures in parts for name in sorted(figures, key=_place)]
 
     def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
         def row(what: str, name: str, figure: Figure) -> list[str]:
-            said, unit = spoken(name)
+            label, unit = spoken(name)
             spread = (figure.ci90[1] - figure.ci90[0]) / 3.3
             ends = [f"[{number(low, spread)}, {number(high, spread)}]" for low, high in (figure.ci50, figure.ci90)]
             remark = "extrapolated" if figure.extrapolated else ""
             if figure.measured is not None:
                 remark = f"measured {number(figure.measured, spread)}"
-            return [what, said, unit, number(figure.median, spread), *ends, remark]
+            return [what, label, unit, number(figure.median, spread), *ends, remark]
 
         header = ["manoeuvre", "figure", "unit", "median", "50 %", "90 %", "remark"]
         notes = [
@@ -147,13 +147,13 @@ class PredictResult(Result):
                 "low90": figure.ci90[0],
                 "high90": figure.ci90[1],
             }
-            rest = {"measured": figure.measured, "extrapolated": figure.extrapolated}
-            return {"manoeuvre": what, "figure": name, "median": figure.median, **ends, **rest}
+            notes = {"measured": figure.measured, "extrapolated": figure.extrapolated}
+            return {"manoeuvre": what, "figure": name, "median": figure.median, **ends, **notes}
 
         return _table.frame_of([row(*one) for one in self._rows()], kind)
 
     def plot(self) -> Any:
-        """Medians with their 50 and 90 % intervals, and what was measured, as a figure of Matplotlib."""
+        """Medians with their 50 and 90 % intervals, and measured values, as a Matplotlib figure."""
         return _plot.intervals([(what, *spoken(name), figure) for what, name, figure in self._rows()])
 
 
@@ -171,7 +171,7 @@ def predict(
     speed_m_s: Optional[float] = None,
     speed_kn: Optional[float] = None,
 ) -> PredictResult:
-    """Predicts what an identified ship will do, with intervals, as ``study predict`` does.
+    """Predicts manoeuvres of an identified ship, with intervals, as ``study predict`` does.
 
     :param model: a result of :func:`kempf.fit` or :func:`kempf.trace`, the path of a ``fit.json`` or ``trace.json``, or
         several of them, which are a mixture
@@ -194,7 +194,7 @@ def predict(
     Raises :class:`kempf.KempfError` for a model that cannot be read, and where hardly any drawn ship comes to the end
     of a manoeuvre. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
     """
-    asked = words(
+    arguments = options(
         manoeuvre=strings(manoeuvres),
         method=method,
         calm=calm,
@@ -204,7 +204,7 @@ def predict(
         speed_m_s=speed_m_s,
         speed_kn=speed_kn,
     )
-    text, warnings = _kempf.predict(models(model), natives(replay), asked, models(prior))
+    text, warnings = _kempf.predict(models(model), natives(replay), arguments, models(prior))
     warn(warnings)
     document = json.loads(text)
 

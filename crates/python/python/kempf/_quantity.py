@@ -1,4 +1,4 @@
-"""A number with what is known of its error."""
+"""A number with its uncertainty."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Union, overl
 
 from . import _kempf, _plot, _table
 from ._kempf import KempfError
-from ._options import warn, words
+from ._options import options, warn
 
 if TYPE_CHECKING:
     import numpy as np
@@ -137,7 +137,7 @@ class Record:
         """
         given = {"t_s": t_s, "heading_deg": heading_deg, "rudder_deg": rudder_deg, "yaw_rate_deg_s": yaw_rate_deg_s}
         given.update(columns)
-        asked = words(
+        arguments = options(
             trial=trial,
             from_=from_s,
             until=until_s,
@@ -146,7 +146,7 @@ class Record:
             speed_kn=ship_speed_kn,
             **(ship or {}),
         )
-        return cls._of_columns({key: values for key, values in given.items() if values is not None}, name, asked, 4)
+        return cls._of_columns({key: values for key, values in given.items() if values is not None}, name, arguments, 4)
 
     @classmethod
     def from_frame(
@@ -170,7 +170,7 @@ class Record:
 
         Raises :class:`kempf.KempfError` where the columns make no record.
         """
-        asked = words(
+        arguments = options(
             trial=trial,
             from_=from_s,
             until=until_s,
@@ -179,11 +179,11 @@ class Record:
             speed_kn=ship_speed_kn,
             **(ship or {}),
         )
-        return cls._of_columns(_columns(frame), name, asked, 4)
+        return cls._of_columns(_columns(frame), name, arguments, 4)
 
     @classmethod
-    def _of_columns(cls, columns: Mapping[str, Any], name: str, asked: list[str], stacklevel: int) -> Record:
-        native = _kempf.record_of(name, [(key, _cells(key, values)) for key, values in columns.items()], asked)
+    def _of_columns(cls, columns: Mapping[str, Any], name: str, arguments: list[str], stacklevel: int) -> Record:
+        native = _kempf.record_of(name, [(key, _cells(key, values)) for key, values in columns.items()], arguments)
         warn(native.warnings, stacklevel)
         return cls._of(native)
 
@@ -327,7 +327,7 @@ def read(
     Raises :class:`kempf.KempfError` where the file holds no record; what the reader had to decide is a
     :class:`kempf.KempfWarning`.
     """
-    asked = words(
+    arguments = options(
         columns=columns,
         with_columns=with_columns,
         trial=trial,
@@ -338,13 +338,13 @@ def read(
         speed_kn=speed_kn,
         **(ship or {}),
     )
-    found = _kempf.read(os.fspath(path), asked)
-    if len(found) != 1:
+    read_records = _kempf.read(os.fspath(path), arguments)
+    if len(read_records) != 1:
         raise KempfError(
-            f"{path}: this is a folder of {len(found)} records; name one of them, or give kempf.fit the folder"
+            f"{path}: this is a folder of {len(read_records)} records; name one of them, or give kempf.fit the folder"
         )
-    warn(found[0].warnings)
-    return Record._of(found[0])
+    warn(read_records[0].warnings)
+    return Record._of(read_records[0])
 
 
 def _is_path(value: Any) -> bool:
@@ -356,19 +356,19 @@ def natives(records: Any) -> list[_kempf.Record]:
     several = isinstance(records, Iterable) and not (_is_path(records) or isinstance(records, Record))
     if not several or hasattr(records, "columns"):
         records = [records]
-    found: list[_kempf.Record] = []
-    for one in records:
-        one = getattr(one, "record", one) if not hasattr(one, "columns") else one
-        if isinstance(one, Record):
-            found.append(one._native)
-        elif hasattr(one, "columns"):
-            found.append(Record._of_columns(_columns(one), "record", [], 5)._native)
-        elif _is_path(one):
-            read = _kempf.read(os.fspath(one), [])
+    native: list[_kempf.Record] = []
+    for item in records:
+        item = getattr(item, "record", item) if not hasattr(item, "columns") else item
+        if isinstance(item, Record):
+            native.append(item._native)
+        elif hasattr(item, "columns"):
+            native.append(Record._of_columns(_columns(item), "record", [], 5)._native)
+        elif _is_path(item):
+            read = _kempf.read(os.fspath(item), [])
             warn([warning for record in read for warning in record.warnings], 4)
-            found.extend(read)
+            native.extend(read)
         else:
             raise KempfError(
-                f"{type(one).__name__}: expected a record, a simulated trial, a table or the path of a file"
+                f"{type(item).__name__}: expected a record, a simulated trial, a table or the path of a file"
             )
-    return found
+    return native

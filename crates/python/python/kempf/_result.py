@@ -1,4 +1,4 @@
-"""What all results have: the document of the program, a file of it, and a table."""
+"""Base of all results: document, file and table."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ._record import PathLike
 
 
 class Result:
-    """A result. ``document`` is what the program writes for other programs; everything else is read from it."""
+    """A result. ``document`` is the JSON document of the program, from which all other attributes are read."""
 
-    #: What a person should know; the same was said as :class:`kempf.KempfWarning`.
+    #: Warnings, which were also issued as :class:`kempf.KempfWarning`.
     warnings: tuple[str, ...]
     _text: str
-    #: What messages call its document, where that is a model of a ship.
+    #: Name of the document in messages, where it is a model of a ship.
     _model: ClassVar[Optional[str]] = None
 
     @cached_property
@@ -45,19 +45,19 @@ class Result:
 
 
 def sentence(warning: Mapping[str, Any]) -> str:
-    """A warning of a document in words, behind the record, file or method that it is of."""
+    """Text of a warning, after the record, file or method that it concerns."""
     source = warning["source"]
     text: str = warning["text"]
     return text if isinstance(source, str) else f"{next(iter(source.values()))}: {text}"
 
 
-#: What is known of a ship: a result of :func:`kempf.fit` or :func:`kempf.trace`, or the path of its file.
+#: An identified ship: a result of :func:`kempf.fit` or :func:`kempf.trace`, or the path of its file.
 Model = Union[Result, str, "os.PathLike[str]"]
 
 
 def models(given: Union[Model, Iterable[Model]]) -> list[tuple[str, Optional[str]]]:
     """The names of one model or several, each with its text where it is no file."""
-    return [_named(one) for one in ([given] if isinstance(given, (Result, str, os.PathLike)) else given)]
+    return [_named(model) for model in ([given] if isinstance(given, (Result, str, os.PathLike)) else given)]
 
 
 def _named(model: Model) -> tuple[str, Optional[str]]:

@@ -1,4 +1,4 @@
-"""Simulation: trials of a scenario, with what is true of them."""
+"""Simulation: trials of a scenario, with their truth."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ class Motion:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Truth:
-    """What is true of a simulated trial."""
+    """Truth of a simulated trial."""
 
     #: The first-order response nearest to the ship; the ship herself where she is first order.
     nearest: Optional[Indices]
-    #: Those of the ship's own base, where she has effects beside it.
+    #: The first-order base of a ship with effects.
     own: Optional[Indices]
     #: Effects that a first-order ship lacks in this trial.
     effects: tuple[str, ...]
@@ -66,9 +66,9 @@ class Truth:
     def _lines(self) -> list[str]:
         both = (("nearest first-order response", self.nearest), ("the ship's own base", self.own))
         lines = [
-            f"{name}: K = {one.K_per_s:.6g} 1/s, T = {one.T_s:.6g} s, δ_r = {one.delta_r_deg:.4g} deg"
-            for name, one in both
-            if one is not None
+            f"{name}: K = {indices.K_per_s:.6g} 1/s, T = {indices.T_s:.6g} s, δ_r = {indices.delta_r_deg:.4g} deg"
+            for name, indices in both
+            if indices is not None
         ]
         return [*lines, f"effects: {', '.join(self.effects) or 'none'}"]
 
@@ -80,7 +80,7 @@ class Truth:
         import numpy as np
 
         document = json.loads(text)
-        nearest, own = (found and Indices(**found) for found in (document["nearest"], document["own"]))
+        nearest, own = (entry and Indices(**entry) for entry in (document["nearest"], document["own"]))
         motion = {name: None if values is None else np.array(values) for name, values in document["motion"].items()}
         return cls(
             nearest=nearest,
@@ -97,9 +97,9 @@ class Truth:
 class Simulated:
     """A simulated trial: the record that instruments made of it, and the truth."""
 
-    #: What a method sees.
+    #: The record, as methods see it.
     record: Record
-    #: What it does not.
+    #: The truth, which methods do not see.
     truth: Truth
 
     def __repr__(self) -> str:
@@ -110,7 +110,7 @@ class Simulated:
 
 
 def scene(scenario: Scenario) -> dict[str, Optional[str]]:
-    """A scenario as the compiled half takes it."""
+    """A scenario for the compiled part."""
     if isinstance(scenario, Mapping):
         plain = json.dumps(scenario, default=lambda value: value.tolist() if hasattr(value, "tolist") else str(value))
         return {"path": "scenario.toml", "text": _kempf.toml_of(plain)}

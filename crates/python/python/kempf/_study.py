@@ -33,13 +33,13 @@ class StudyResult(Result):
     """A finished study and the folder that holds it: rows, summary, figures, ``report.html``."""
 
     folder: Path
-    #: What the study was made from and with.
+    #: Scenario, program and machine of the study.
     manifest: Mapping[str, Any]
     #: One entry for every cell and method.
     summary: tuple[Mapping[str, Any], ...]
-    #: What was noted on the way, as that an earlier run was continued.
+    #: Notes, such as on a resumed run.
     notes: tuple[str, ...]
-    #: What a person should know.
+    #: Warnings.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
 
@@ -119,7 +119,7 @@ def run(
 
 
 def shown(what: str) -> Callable[[int, int], object]:
-    """Shows on standard error how much of something is done."""
+    """Progress display on standard error."""
 
     def show(done: int, most: int) -> None:
         sys.stderr.write(f"\r{done} of {most} {what}")

@@ -33,8 +33,8 @@ def page(title: str, header: Sequence[str], rows: Rows, notes: Sequence[str] = (
     if rows:
         body = "".join(line(row, "td") for row in rows)
         table = f"<table><thead>{line(header, 'th')}</thead><tbody>{body}</tbody></table>"
-    rest = "".join(f"<div>{html.escape(note)}</div>" for note in notes)
-    return f"<div><strong>{html.escape(title)}</strong>{table}{rest}</div>"
+    footer = "".join(f"<div>{html.escape(note)}</div>" for note in notes)
+    return f"<div><strong>{html.escape(title)}</strong>{table}{footer}</div>"
 
 
 def library(kind: str) -> Any:

@@ -1,4 +1,4 @@
-"""Tracing: the effect that a first-order ship lacks."""
+"""Tracing: the effects that a first-order model lacks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _kempf, _plot, _table
 from ._kempf import KempfError
-from ._options import strings, warn, words
+from ._options import options, strings, warn
 from ._quantity import Quantity, number
 from ._record import Record, natives
 from ._result import Model, Result, models
@@ -34,7 +34,7 @@ class Parameter(Quantity):
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect that was found."""
+    """A named effect."""
 
     #: Identifier, such as ``"nonlinear_damping"``.
     id: str
@@ -46,11 +46,11 @@ class Effect:
     only: Optional[str]
     #: Parameters by their symbols, averaged over the structures.
     parameters: Mapping[str, Parameter]
-    #: Effects that these records cannot tell from it: one of the group is there.
+    #: Effects that these records cannot distinguish from it; one of the group is present.
     aliases: tuple[str, ...]
-    #: Identifier and form of every term that these records cannot tell from it.
+    #: Identifier and form of every term that these records cannot distinguish from it.
     alias_forms: tuple[tuple[str, str], ...]
-    #: Probability that it, or one of its group, is there.
+    #: Probability that it, or one of its group, is present.
     probability: float
     #: −2 log of the ratio of the evidence with it to that without; negative where it is better.
     delta_bic: float
@@ -63,7 +63,7 @@ class Effect:
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect that was looked for."""
+    """A candidate effect."""
 
     id: str
     #: ``"added"``, ``"alias"``, ``"rejected"`` or ``"not_observable"``.
@@ -75,7 +75,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Structure:
-    """Effects that may be there together."""
+    """A structure: effects that are present together."""
 
     #: Identifier and form of every effect.
     effects: tuple[tuple[str, str], ...]
@@ -98,7 +98,7 @@ class Errors:
     """Heading errors of a record before and after, deg; only the initial state is fitted to a held-out one."""
 
     file: str
-    #: Whether the record was kept from the fit.
+    #: Whether it is a validation record.
     held_out: bool
     #: Root mean square of the whole replay with the base.
     before_deg: float
@@ -110,7 +110,7 @@ class Errors:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class TraceResult(Result):
-    """What a first-order ship lacks in these records, and what it is worth."""
+    """Effects that a first-order model lacks in these records, and the errors before and after."""
 
     _model = "trace.json"
 
@@ -126,22 +126,22 @@ class TraceResult(Result):
     delta_r_deg: Quantity
     #: Effects that are named, the most probable first.
     effects: tuple[Effect, ...]
-    #: Every effect that was looked for.
+    #: All candidate effects.
     candidates: tuple[Candidate, ...]
     #: Structures, the most probable first.
     structures: tuple[Structure, ...]
     #: Errors of every record, first of those that were fitted.
     errors: tuple[Errors, ...]
-    #: The manoeuvre that would tell most.
+    #: The most informative next manoeuvre.
     next_trial: Optional[str]
-    #: What a person should know.
+    #: Warnings.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
     _native: _kempf.Trace = field(repr=False)
 
     def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
-        found = ", ".join(f"{one.id} ({one.form}), probability {one.probability:.3f}" for one in self.effects)
-        title = f"Trace: {self.verdict}" + (f", {found}" if found else "")
+        named = ", ".join(f"{term.id} ({term.form}), probability {term.probability:.3f}" for term in self.effects)
+        title = f"Trace: {self.verdict}" + (f", {named}" if named else "")
         rows = [
             [
                 Path(one.file).name,
@@ -154,20 +154,20 @@ class TraceResult(Result):
         notes = [f"{one.id}: {symbol} = {value}" for one in self.effects for symbol, value in one.parameters.items()]
         notes.insert(0, self.headline)
         notes.append(f"K = {self.K_per_s} 1/s, T = {self.T_s} s, δ_r = {self.delta_r_deg} deg")
-        notes.extend(f"{one.id} cannot be told from {', '.join(one.aliases)}" for one in self.effects if one.aliases)
+        notes.extend(f"{one.id} cannot be distinguished from {', '.join(one.aliases)}" for one in self.effects if one.aliases)
         if self.next_trial:
             notes.append(f"next trial: {self.next_trial}")
         return title, ["record", "use", "rms ψ before [deg]", "after [deg]"], rows, notes
 
     def to_frame(self, kind: str = "pandas") -> Any:
-        """The effects that were looked for, one row each, as a table of ``"pandas"`` or ``"polars"``."""
+        """The candidate effects, one row each, as a table of ``"pandas"`` or ``"polars"``."""
         return _table.frame_of([vars(one) for one in self.candidates], kind)
 
     def replay(self, record: int = 0) -> dict[str, dict[str, Any]]:
         """The recorded rudder sent through the model ``"before"`` and ``"after"``.
 
-        Each has ``t_s``, ``heading_deg`` and ``residual_deg``, measured less replayed heading. Records of the
-        validation follow those that were fitted.
+        Each has ``t_s``, ``heading_deg`` and ``residual_deg``, measured less replayed heading. Validation
+        records follow the fitted ones.
         """
         curves = self._native.replays(record)
         if curves is None:
@@ -213,7 +213,7 @@ def trace(
     Raises :class:`kempf.KempfError` where a record cannot be read, where no first-order ship fits it, and for an effect
     that there is not. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
     """
-    asked = words(
+    arguments = options(
         with_=strings(with_),
         only=strings(only),
         without_effect=strings(without_effect),
@@ -221,7 +221,7 @@ def trace(
         effect=[f"{name} = {formula}" for name, formula in effects.items()],
         rule=rule,
     )
-    native = _kempf.trace(natives(records), natives(validate), asked, models(prior))
+    native = _kempf.trace(natives(records), natives(validate), arguments, models(prior))
     warn(native.warnings)
     return _result(native)
 

@@ -64,13 +64,13 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
         ("c = 1.0", "`effect.0.c` is 1.0", 0),
         ("formula = \"cross = c * r * abs(v)\"\nc = 1.0", "needs sway velocity", 0),
         ("formula='x=c*t'\nc=1\nstands-for=['speed_los']", "did you mean `speed_loss`", 0),
-        ("formula='x=c*t'\nc=1\nstands-for=[]", "on the list and on none", 0),
+        ("formula='x=c*t'\nc=1\nstands-for=[]", "both or neither of", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='weather'", "use one of `time`, `heading`", 0),
-        ("formula='x=c*t'\nc=1\ndepends-on='time'\nstands-for=['speed_loss']", "on the list and on none", 0),
+        ("formula='x=c*t'\nc=1\ndepends-on='time'\nstands-for=['speed_loss']", "both or neither of", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='heading'\nchanges-s=[9]", "does not depend on time", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='time'\nchanges-s=[9]\nperiod-s=[4,7]", "with a period", 0),
         ("formula='x=c*t'\nc=1\ndepends-on='time'\nperiod-s=[70,40]", "the shorter first", 0),
-        ("formula='x=c*t'\nc=1\ndepends-on='time'\n[[effect]]\nsteering_lag.dead-time-s=1", "only effect", 0),
+        ("formula='x=c*t'\nc=1\ndepends-on='time'\n[[effect]]\nsteering_lag.dead-time-s=1", "this effect alone", 0),
     ] {
         desk.file("bad.toml", format!("{GOOD}\n[[effect]]\n{text}\n"));
         let run = desk.run(&["check", "bad.toml"]);

@@ -100,11 +100,11 @@ fn ctrl_c_stops_within_a_second_and_keeps_the_rows() {
     let run = ["study.toml", "--out", "stopped", "--quiet", "--threads", "2"];
     let (run, waited) = interrupted(desk.start_until(&run, || !blocks(&desk, "stopped").is_empty()));
     assert!(waited < Duration::from_secs(1), "{waited:?}");
-    run.is_refused(130, &["error: stopped after ", "the same command goes on"]);
+    run.is_refused(130, &["error: stopped after ", "to resume, repeat the command"]);
     desk.run(&["report", "stopped"]).is_refused(2, &["of cell", "is not stored", "again"]);
     let (again, _) =
         interrupted(desk.start_until(&["study.toml", "--out", "stopped"], || blocks(&desk, "stopped").len() > 10));
-    assert!(again.err.contains("going on after "), "{}", again.err);
+    assert!(again.err.contains("resuming after "), "{}", again.err);
 }
 
 #[test]

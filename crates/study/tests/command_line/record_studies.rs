@@ -142,11 +142,11 @@ fn what_is_wrong_with_records_is_said_where_it_stands() {
     };
     refused("zz_*", "none_*", 5, &["\"logs/none_*.csv\"", "no such file", "KEMPF_DATA"]);
     refused("zz_*", "other", 5, &["other.csv", "study fit"]);
-    refused("zz_*", "zz_0", 4, &["1 record, none of which judges another", "judge = \"none\""]);
+    refused("zz_*", "zz_0", 4, &["1 record, which leaves none to judge another", "judge = \"none\""]);
     refused("[records]", "ship.yukun = {}\n[records]", 4, &["`ship`", "no such key"]);
     refused("files =", "judge = \"all\"\nfiles =", 5, &["\"others\", \"left-out\", \"none\""]);
     refused("files =", "judge = { fit = [\"x\"], judge = [] }\nfiles =", 5, &["no record is called \"x\"", "zz_0"]);
-    refused("[\"logs/zz_*.csv\"]", "[\"logs/zz_*.csv\", \"logs/zz_0.csv\"]", 5, &["zz_0 stands there twice"]);
+    refused("[\"logs/zz_*.csv\"]", "[\"logs/zz_*.csv\", \"logs/zz_0.csv\"]", 5, &["zz_0 is listed twice"]);
     desk.run(&["simulate", "fleet.toml", "--out", "x.csv"])
         .is_refused(2, &["measured records", "nothing is simulated"]);
 }

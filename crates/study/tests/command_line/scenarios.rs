@@ -239,13 +239,13 @@ fn a_faulty_sweep_is_shown_at_its_place() {
 fn a_faulty_draw_is_shown_at_its_place() {
     let draw = |text: &str| format!("{}[[draw]]\n{text}\n", first_order());
     let noise = "key = \"sensor.heading-noise-deg\"\n";
-    refused(&draw("key = \"seed\"\nuniform = { from = 1, to = 2 }"), 30, &["changes `seed`", "how a trial is made"]);
+    refused(&draw("key = \"seed\"\nuniform = { from = 1, to = 2 }"), 30, &["changes `seed`", "a key of the trial"]);
     refused(
         &draw("key = \"sensor.heading-nose-deg\"\nuniform = { from = 0.1, to = 0.2 }"),
         30,
         &["has no key `heading-nose-deg`", "`heading-noise-deg`"],
     );
-    refused(&draw(noise), 29, &["from which distribution", "`log-normal`"]);
+    refused(&draw(noise), 29, &["has no distribution", "`log-normal`"]);
     refused(&draw(&format!("{noise}gamma = 3")), 31, &["no such key", "`normal`"]);
     refused(&draw(&format!("{noise}uniform = {{ from = 0.2, to = 0.1 }}")), 31, &["`to`", "is 0.1", "above 0.2"]);
     refused(&draw(&format!("{noise}normal = {{ mean = 0.1, sd = -1 }}")), 31, &["`sd`", "is -1", "above 0"]);

@@ -70,7 +70,7 @@ fn answers_from_the_truth_have_no_error() {
     desk.file("records/perfect.csv", HEAD.to_owned() + &lines[1..].concat());
     let changed = desk.run(&["score", "records/perfect.csv", "--out", "scored"]);
     assert_eq!(changed.code, Some(2), "{}", changed.err);
-    assert!(changed.err.contains("another study") && changed.err.contains("answers that were read"), "{}", changed.err);
+    assert!(changed.err.contains("another study") && changed.err.contains("a table of answers"), "{}", changed.err);
     assert!(changed.err.contains("1 of 6 trials have no answer"), "{}", changed.err);
     desk.run(&["score", "records/perfect.csv", "--out", "scored", "--restart", "--label", "less", "--quiet"]).is_done();
     let failed: Vec<Option<Box<str>>> = rows(&desk, "scored").into_iter().map(|row| row.failure).collect();

@@ -67,8 +67,8 @@ impl Identifier for KnownIndices {
 static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
     let studies = [SCENARIO.to_owned(), format!("{SCENARIO}{DAMPING}")].map(|text| {
         let mut study = scenario(text);
-        for (label, known) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
-            study = study.with_identifier(label, Arc::new(KnownIndices(known))).unwrap_or_else(|one| panic!("{one}"));
+        for (label, indices) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
+            study = study.with_identifier(label, Arc::new(KnownIndices(indices))).unwrap_or_else(|e| panic!("{e}"));
         }
         let (_, rows) = in_memory(&study);
         (study, rows)
@@ -125,17 +125,18 @@ fn what_is_stored_is_read_back() {
 #[test]
 fn a_prediction_is_of_another_side_another_amplitude_or_a_turn() {
     let zig_zag = |angles: [f64; 2], side| SteeredRecord::new(None, Some((Some(angles), side)), String::new(), None);
-    let [one, port, ten] = [([20.0, 20.0], Side::Starboard), ([20.0, 20.0], Side::Port), ([10.0, 10.0], Side::Port)]
-        .map(|(angles, side)| zig_zag(angles, side));
+    let [starboard, port, ten] =
+        [([20.0, 20.0], Side::Starboard), ([20.0, 20.0], Side::Port), ([10.0, 10.0], Side::Port)]
+            .map(|(angles, side)| zig_zag(angles, side));
     let turn = SteeredRecord::new(None, None, "turn".to_owned(), None);
     for (fitted, judge, task) in [
-        (vec![&one], &port, Some(BenchTask::OtherSide)),
-        (vec![&one], &ten, Some(BenchTask::OtherAmplitude)),
-        (vec![&one, &port], &ten, Some(BenchTask::OtherAmplitude)),
-        (vec![&one, &port], &turn, Some(BenchTask::Circle)),
-        (vec![&one], &one, None),
-        (vec![&one, &ten], &port, None),
-        (vec![&turn], &one, None),
+        (vec![&starboard], &port, Some(BenchTask::OtherSide)),
+        (vec![&starboard], &ten, Some(BenchTask::OtherAmplitude)),
+        (vec![&starboard, &port], &ten, Some(BenchTask::OtherAmplitude)),
+        (vec![&starboard, &port], &turn, Some(BenchTask::Circle)),
+        (vec![&starboard], &starboard, None),
+        (vec![&starboard, &ten], &port, None),
+        (vec![&turn], &starboard, None),
     ] {
         assert_eq!(prediction(&fitted, judge), task, "{}", judge.record.name);
     }

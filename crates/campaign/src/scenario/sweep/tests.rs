@@ -28,7 +28,7 @@ fn labels_have_few_digits_whatever_the_size() {
         value_place: KeyPath::default(),
     }
     .attributed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
-    assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
+    assert_eq!(refused.problem, "the sweep sets `a` to 1e308: `b` is wrong");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A function of Python as a method beside those of the project.
+//! A Python function as an identification method.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use identify::{Answer, Errors};
@@ -9,14 +9,14 @@ use trial::Trial;
 
 use crate::record::PyRecord;
 
-/// Functions with their labels. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and the covariance
-/// of the three, row by row, where it has one.
-pub type OwnMethods = Vec<(String, Py<PyAny>)>;
+/// Labelled functions. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and optionally their
+/// covariance, row by row.
+pub type PythonMethods = Vec<(String, Py<PyAny>)>;
 
-/// What a function returns: K, T, δ_r and their covariance.
+/// Return value of a function: K, T, δ_r and their covariance.
 type Returned = (f64, f64, f64, Option<[[f64; 3]; 3]>);
 
-/// A function that is asked for K, T and δ_r.
+/// Python function that returns K, T and δ_r.
 pub struct PyIdentifier(pub Py<PyAny>);
 
 impl Identifier for PyIdentifier {

@@ -1,4 +1,4 @@
-"""Functions as methods beside those of the program."""
+"""Python functions as identification methods."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, Callable, Iterable, Mapping, Optional
 from . import _kempf
 from ._record import Record
 
-#: A function of one or several records of the same ship. It returns K (1/s), T (s) and δ_r (deg), and behind them, where
-#: it knows one, their 3×3 covariance in these units.
+#: A function of one or several records of the same ship. It returns K (1/s), T (s) and δ_r (deg), optionally followed by
+#: their 3×3 covariance in these units.
 Estimator = Callable[..., Iterable[Any]]
 
 _Answer = tuple[float, float, float, Optional[list[list[float]]]]
 
 
 def natives_of(own: Optional[Mapping[str, Estimator]]) -> list[tuple[str, Callable[[list[_kempf.Record]], _Answer]]]:
-    """Labels and functions as the compiled half takes them."""
+    """Labels and functions for the compiled part."""
     return [(str(label), _native(function)) for label, function in (own or {}).items()]
 
 

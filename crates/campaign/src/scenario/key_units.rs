@@ -1,4 +1,4 @@
-//! The unit in the name of a key, and a key in words.
+//! Units in the names of keys, and axis titles from keys.
 
 /// Endings of keys and the units they stand for, the longest first.
 const UNITS: [(&str, &str); 20] = [
@@ -24,13 +24,13 @@ const UNITS: [(&str, &str); 20] = [
     ("-rps", "1/s"),
 ];
 
-/// The unit that is in the name of a key.
+/// Unit in the name of a key; "1" without one.
 pub(crate) fn unit_of(key: &str) -> &'static str {
     UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("1", |(_, unit)| unit)
 }
 
-/// A dotted key in words, as the title of an axis: `sensor.heading-noise-deg` is "heading noise [°]".
-pub fn in_words(key: &str) -> String {
+/// Axis title of a dotted key: "heading noise [°]" for `sensor.heading-noise-deg`.
+pub fn axis_title(key: &str) -> String {
     let last = key.rsplit('.').next().unwrap_or(key);
     let (name, unit) = match UNITS.iter().find(|(ending, _)| last.len() > ending.len() && last.ends_with(ending)) {
         Some((ending, unit)) => (last.trim_end_matches(ending), format!(" [{}]", unit.replace("deg", "°"))),
@@ -45,8 +45,8 @@ mod tests {
 
     #[test]
     fn a_key_in_words_has_its_unit() {
-        assert_eq!(in_words("sensor.heading-noise-deg"), "heading noise [°]");
-        assert_eq!(in_words("ship.first-order.T-s"), "T [s]");
-        assert_eq!(in_words("replicates"), "replicates");
+        assert_eq!(axis_title("sensor.heading-noise-deg"), "heading noise [°]");
+        assert_eq!(axis_title("ship.first-order.T-s"), "T [s]");
+        assert_eq!(axis_title("replicates"), "replicates");
     }
 }

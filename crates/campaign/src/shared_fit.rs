@@ -1,4 +1,4 @@
-//! Trials of measured records that share a fit: every method is fitted once, and each trial is judged by its record.
+//! Trials of measured records that share a fit: every method is fitted once and scored on each validation record.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use ship::angle::to_deg;
 use simulate::StreamKey;
 use trial::{Channel, Trial};
 
-use crate::engine::{self, TrialOutcome, TrialQuestion, TrialRunner};
+use crate::engine::{self, TrialInput, TrialOutcome, TrialRunner};
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::is_in_lengths;
 use crate::reference::TrialReference;
@@ -25,23 +25,23 @@ use crate::scenario::{Predictions, Procedure, Scenario};
 use crate::task::Task;
 use crate::timings::TrialTiming;
 
-/// By how much the lengths of two records of one scale may differ, as a share.
+/// Relative tolerance of ship length within one scale.
 const SCALE: f64 = 0.01;
 
-/// Places of tasks, in order, that are run together: trials of measured records that share a fit.
+/// Index ranges of tasks that are run together: trials of measured records that share a fit.
 pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
     let fit = |task: &Task| {
         let set = scenario.cells[task.cell].record_set()?;
-        Some((task.cell, &set.questions[task.replicate as usize].fitted))
+        Some((task.cell, &set.splits[task.replicate as usize].fitted))
     };
-    let share = |one: &Task, other: &Task| fit(one).is_some() && fit(one) == fit(other);
+    let share = |task: &Task, next: &Task| fit(task).is_some() && fit(task) == fit(next);
     let mut start = 0;
-    let of = |unit: &[Task]| {
+    let range = |unit: &[Task]| {
         let place = start..start + unit.len();
         start = place.end;
         place
     };
-    tasks.chunk_by(share).map(of).collect()
+    tasks.chunk_by(share).map(range).collect()
 }
 
 /// Runs the tasks of one unit.
@@ -52,10 +52,10 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
     }
 }
 
-/// What a method made of the records that were fitted together.
+/// Fit of a method to the records of a unit.
 struct RecordFit {
     answer: FitAnswer,
-    /// The ship that predicts; none where nothing is predicted, and where the answer has no covariance.
+    /// Identified ship for predictions; none where nothing is predicted, and where the answer has no covariance.
     ship: Option<IdentifiedShip>,
 }
 
@@ -71,20 +71,20 @@ struct SharedTrials<'a> {
     scenario: &'a Scenario,
     tasks: &'a [Task],
     fitted: &'a [Trial],
-    /// The fitted records without readings of their compass that belong to no ship: these count for no method.
-    shown: &'a [Trial],
-    /// The record that judges each of them, as it is and without such readings.
+    /// The fitted records without heading spikes, which are excluded from all errors.
+    cleaned: &'a [Trial],
+    /// Validation record of each trial, as read and without heading spikes.
     judges: Vec<Option<[&'a Trial; 2]>>,
 }
 
-/// Runs trials that share a fit, in their order.
+/// Runs trials that share a fit, in order.
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
-    let question = |task: &Task| &set.questions[task.replicate as usize];
-    let both = [&set.trials, set.shown()];
-    let of_fit = |all: &[Trial]| question(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
-    let [fitted, shown]: [Vec<Trial>; 2] = both.map(of_fit);
-    let judges = tasks.iter().map(|task| question(task).judge.map(|place| both.map(|all| &all[place]))).collect();
-    let trials = SharedTrials { scenario, tasks, fitted: &fitted, shown: &shown, judges };
+    let split = |task: &Task| &set.splits[task.replicate as usize];
+    let both = [&set.trials, set.without_spikes()];
+    let of_fit = |all: &[Trial]| split(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
+    let [fitted, cleaned]: [Vec<Trial>; 2] = both.map(of_fit);
+    let judges = tasks.iter().map(|task| split(task).judge.map(|place| both.map(|all| &all[place]))).collect();
+    let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, judges };
     let blank = |task: &Task| TrialOutcome {
         rows: Vec::new(),
         timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
@@ -103,7 +103,7 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome
 }
 
 impl SharedTrials<'_> {
-    /// The rows of a method, one a trial.
+    /// Rows of a method, one per trial.
     fn rows(&self, method: usize, procedure: &Procedure) -> Vec<StudyRow> {
         let key = |task: &Task| engine::key(self.scenario, *task);
         let shared = match procedure {
@@ -117,12 +117,12 @@ impl SharedTrials<'_> {
             }
             Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
-            // Answers from elsewhere are looked up by their trial.
+            // Answers of outside estimators are looked up by trial.
             Procedure::Answers(_) => None,
         };
         let row = |(trial, task): (usize, &Task)| {
-            let own = if shared.is_none() { self.response(procedure, &key(task)) } else { None };
-            let fit = shared.as_ref().or(own.as_ref()).expect("a trace is shared");
+            let separate = if shared.is_none() { self.response(procedure, &key(task)) } else { None };
+            let fit = shared.as_ref().or(separate.as_ref()).expect("a trace is shared");
             let blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, method, ..StudyRow::default() };
             match fit {
                 Ok(fit) => self.row(trial, fit, &blank, &key(task)),
@@ -132,12 +132,12 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// The judge of a trial, where it is of the length of the fitted records: a response of another scale is not
-    /// replayed.
+    /// Validation record of a trial; `None` where its ship length differs from that of the fitted records, since
+    /// responses of another scale are not replayed.
     fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
-        let are_alike = |(one, other): (f64, f64)| (one / other - 1.0).abs() < SCALE;
+        let are_alike = |(length, fitted): (f64, f64)| (length / fitted - 1.0).abs() < SCALE;
         self.judges[trial].filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
@@ -148,29 +148,29 @@ impl SharedTrials<'_> {
         Some(answer.map(fit).map_err(|error| error.in_a_row().into_owned()))
     }
 
-    /// An answer, with the settings of a trace, and the ship that predicts, where anything is predicted.
+    /// An answer with the identified ship for predictions; `settings` are those of a trace.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
     }
 
-    /// The row of a fit on a trial.
+    /// Row of a fit on a trial.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
-        let judge = self.replayed(trial).map(|[_, shown]| shown);
+        let judge = self.replayed(trial).map(|[_, cleaned]| cleaned);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
-        let asked = TrialQuestion { trials: self.shown, key, reference: &reference, missing: &[], check: None };
+        let input = TrialInput { trials: self.cleaned, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| {
                     of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
-                (asked.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+                (input.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
-            FitAnswer::StraightOn => (asked.straight_on(blank), None),
+            FitAnswer::StraightOn => (input.straight_on(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
-                (asked.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
+                (input.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
         let windows = errors.and_then(|errors| errors.within(HORIZONS[1]));
@@ -182,10 +182,9 @@ impl SharedTrials<'_> {
     }
 }
 
-/// The ship of an answer; none where it has no covariance.
+/// Identified ship of an answer; none without a covariance.
 ///
-/// Of a trace whose model needs a speed and a sway that a trial that was not made does not have, the one that is traced
-/// without them.
+/// A trace whose model needs measured speed or sway cannot predict; the records are then traced again without them.
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
@@ -203,8 +202,8 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
     }
 }
 
-/// Figures of the record that judges, predicted by replaying its helm with drawn ships of its scale; a current that its
-/// track shows is taken out.
+/// Figures of the validation record, predicted by replaying its rudder with drawn ships at its scale, after removing
+/// the current that its track shows.
 fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
     let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
         (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),
@@ -216,11 +215,11 @@ fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) ->
     let Some(replay) = replay else { return Box::default() };
     let is_counted = |name: &str| !is_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
     let figures = replay.figures.iter().filter(|(name, _)| is_counted(name));
-    let figure = |(name, own): (&String, &predict::replay::Compared)| PredictedFigure {
+    let figure = |(name, compared): (&String, &predict::replay::Compared)| PredictedFigure {
         name: name.as_str().into(),
-        truth: own.measured,
-        median: own.interval.median,
-        ci90: own.interval.ci90,
+        truth: compared.measured,
+        median: compared.interval.median,
+        ci90: compared.interval.ci90,
     };
     figures.map(figure).collect()
 }

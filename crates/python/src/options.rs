@@ -1,0 +1,19 @@
+//! Keyword arguments of Python, parsed as options of the command line, which declares and checks them.
+
+use campaign::failure::Failure;
+use clap::{Args, Parser};
+use study::cli::misused;
+
+#[derive(Parser)]
+#[command(no_binary_name = true)]
+struct KeywordOptions<R: Args> {
+    #[command(flatten)]
+    request: R,
+}
+
+/// Request parsed from options, each written as `--name=value`.
+///
+/// Fails with the usage error of the command line.
+pub fn request<R: Args>(options: Vec<String>) -> Result<R, Failure> {
+    KeywordOptions::try_parse_from(options).map(|parsed| parsed.request).map_err(|usage| misused(&usage))
+}
