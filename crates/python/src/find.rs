@@ -2,7 +2,7 @@
 
 use document::Warnings;
 use pyo3::prelude::*;
-use study::commands::find::found;
+use study::commands::find::find_answer;
 use study::documents;
 use study::options::FindRequest;
 
@@ -16,7 +16,7 @@ pub fn find(py: Python<'_>, logs: Vec<String>, words: Vec<String>) -> PyResult<(
     patiently(py, move || {
         let asked: FindRequest = request(words.into_iter().chain([String::from("--")]).chain(logs).collect())?;
         let mut warnings = Warnings::default();
-        let found = found(&asked, &mut warnings)?;
-        Ok((documents::of(&found)?, sentences(&warnings.ranked())))
+        let answer = find_answer(&asked, &mut warnings)?;
+        Ok((documents::answer_text(&answer)?, sentences(&warnings.ranked())))
     })
 }

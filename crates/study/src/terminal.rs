@@ -1,4 +1,4 @@
-//! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
+//! Observer of a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
 
 use std::sync::OnceLock;
 
@@ -8,7 +8,7 @@ use campaign::failure::Failure;
 use crate::progress::ProgressSteps;
 use crate::{interrupt, screen};
 
-/// The terminal of a person who waits.
+/// Observer that reports progress on the terminal.
 pub struct Terminal {
     quiet: bool,
     what: &'static str,
@@ -16,7 +16,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// A terminal without a bar yet; `what` is done step by step.
+    /// A terminal without a bar yet; `what` names the steps.
     pub fn new(what: &'static str, quiet: bool) -> Self {
         Self { quiet, what, steps: OnceLock::new() }
     }

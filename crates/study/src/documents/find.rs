@@ -64,20 +64,20 @@ pub struct ManoeuvreEntry {
 
 impl LogEntry {
     /// A log with its manoeuvres.
-    pub fn of(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Self {
+    pub fn of(file: &Path, log: &Log, manoeuvres: &[FoundManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
-        let manoeuvre = |(trial, one): (usize, &FoundManoeuvre)| {
-            let [rudder_deg, heading_deg] = one.angles().map(|angle| angle.map(to_deg));
+        let manoeuvre = |(trial, manoeuvre): (usize, &FoundManoeuvre)| {
+            let [rudder_deg, heading_deg] = manoeuvre.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
                 trial,
-                kind: one.name(),
-                from_s: one.from,
-                until_s: one.until,
-                clock: clock(one.from).zip(clock(one.until)).map(|(from, until)| [from, until]),
-                executes: one.executes,
+                kind: manoeuvre.name(),
+                from_s: manoeuvre.from,
+                until_s: manoeuvre.until,
+                clock: clock(manoeuvre.from).zip(clock(manoeuvre.until)).map(|(from, until)| [from, until]),
+                executes: manoeuvre.executes,
                 rudder_deg,
                 heading_deg,
-                remarks: one.quality.remarks(),
+                remarks: manoeuvre.quality.remarks(),
             }
         };
         let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
@@ -86,7 +86,7 @@ impl LogEntry {
             rows: log.time().len(),
             duration_s: last - first,
             date: log.clock.and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
-            manoeuvres: (1..).zip(found).map(manoeuvre).collect(),
+            manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect(),
         }
     }
 }

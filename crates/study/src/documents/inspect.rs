@@ -11,7 +11,7 @@ use trial::{Channel, Log};
 use super::answers::CommandAnswer;
 
 /// Time between two readings, in usual intervals, beyond which it is a gap.
-const GAP: f64 = 1.5;
+const MIN_GAP: f64 = 1.5;
 
 /// A log.
 #[derive(Serialize, JsonSchema)]
@@ -73,7 +73,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let shown = |value: f64| value / unit.to_si();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
         let spoken = |channel: Channel| names::plain(channel.spoken());
-        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > GAP * usual));
+        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),
             source: readings.source.clone(),

@@ -68,8 +68,8 @@ pub struct TrueMotion {
 }
 
 impl TrueIndices {
-    fn of(own: FirstOrder) -> Self {
-        Self { K_per_s: own.K(), T_s: own.T(), delta_r_deg: to_deg(own.rudder_bias) }
+    fn of(response: FirstOrder) -> Self {
+        Self { K_per_s: response.K(), T_s: response.T(), delta_r_deg: to_deg(response.rudder_bias) }
     }
 }
 

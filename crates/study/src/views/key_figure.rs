@@ -58,7 +58,7 @@ fn is_of_k(title: &str) -> bool {
 }
 
 fn of_panels(data: &mut Panels, about: &[String]) {
-    let (mut others, mut said) = (Vec::new(), Vec::new());
+    let (mut pale_names, mut notes) = (Vec::new(), Vec::new());
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
@@ -71,25 +71,27 @@ fn of_panels(data: &mut Panels, about: &[String]) {
         for panel in &mut stack.panels {
             let (quiet, mut shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
-            others.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
+            pale_names.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
             panel.layers = quiet.into_iter().map(paled).collect();
             panel.layers.append(&mut shown);
         }
-        let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
-        let all = distinct(stack.panels.iter().flat_map(own));
+        let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
+        let all = distinct(stack.panels.iter().flat_map(marked));
         let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
-        let what = if is_of_intervals { "intervals" } else { "answers" };
+        let answers = if is_of_intervals { "intervals" } else { "answers" };
         for panel in &stack.panels {
-            let missing = all.iter().filter(|name| !own(panel).contains(name));
-            said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {what}.")));
+            let missing = all.iter().filter(|name| !marked(panel).contains(name));
+            notes.extend(
+                missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {answers}.")),
+            );
         }
     }
-    let others = distinct(others).len();
-    if others > 0 {
-        said.push(format!("Pale: {}.", counted(others as u64, "other method")));
+    let pale_names = distinct(pale_names).len();
+    if pale_names > 0 {
+        notes.push(format!("Pale: {}.", counted(pale_names as u64, "other method")));
     }
-    said.insert(0, data.note.take().unwrap_or_default());
-    data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
+    notes.insert(0, data.note.take().unwrap_or_default());
+    data.note = Some(notes.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
 }
 
 /// Leaves the rows of K out, and hands their heads on.
@@ -107,18 +109,19 @@ fn keep_t(stack: &mut Stack) {
 fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) {
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
-        let own = column.rows.iter().zip(&data.names).filter(|(_, name)| about.contains(name)).flat_map(|(row, _)| row);
+        let shown =
+            column.rows.iter().zip(&data.names).filter(|(_, name)| about.contains(name)).flat_map(|(row, _)| row);
         let densities =
-            own.filter_map(|item| if let RowKind::Violin(_, own, _) = &item.kind { Some(own) } else { None });
-        column.reached = densities.flat_map(|own| own.iter().map(|(value, _)| *value)).collect();
+            shown.filter_map(|item| if let RowKind::Violin(_, shown, _) = &item.kind { Some(shown) } else { None });
+        column.reached = densities.flat_map(|shown| shown.iter().map(|(value, _)| *value)).collect();
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
         // The others share a line, and have no ranges.
         row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
         let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
-        let own: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
-        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !own.contains(&value(item)));
+        let drawn_values: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
+        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !drawn_values.contains(&value(item)));
         let mut place = RowPlace::Below;
         for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
             if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {

@@ -31,7 +31,7 @@ const RECORDS: &str = "records.csv";
 /// The parameters of the effects named.
 const EFFECTS: &str = "effects.csv";
 
-/// Figure of the errors on the records that judge.
+/// Stem of the figure of errors on held-out records.
 const JUDGED: &str = "judged";
 
 /// A line for every cell and method, for a person.
@@ -48,8 +48,8 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
         let mut cells = tables::place(design, line.cell, line.method);
         cells.push(format!("{}/{}", line.failed, line.fits));
         for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
-            cells.push(figure.map_or_else(|| MISSING.into(), |own| number::supported(own.value, own.ci95)));
-            cells.push(number::interval(figure.and_then(|own| own.ci95)));
+            cells.push(figure.map_or_else(|| MISSING.into(), |figure| number::supported(figure.value, figure.ci95)));
+            cells.push(number::interval(figure.and_then(|figure| figure.ci95)));
         }
         let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect(id)));
         cells.push(named.collect::<Vec<_>>().join(", "));
@@ -83,7 +83,7 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
     let head = tables::head(design).texts(["fitted", "judge"]);
     let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
     let mut table = Table::new(head.texts(["verdict", "named", "failure"]));
-    let number = |value: Option<f64>| value.map_or_else(String::new, |own| significant(own, 6));
+    let number = |value: Option<f64>| value.map_or_else(String::new, |number| significant(number, 6));
     for row in rows {
         let cell = &design.cells[row.cell as usize];
         let Some(record) = cell.records.get(row.replicate as usize) else { continue };
@@ -91,8 +91,8 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
         cells.extend([record.fitted.clone(), record.judge.clone().unwrap_or_default()]);
         cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
         let traced = row.traced.as_ref();
-        cells.push(traced.map_or_else(String::new, |own| own.verdict.to_string()));
-        let named = traced.map(|own| own.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
+        cells.push(traced.map_or_else(String::new, |trace| trace.verdict.to_string()));
+        let named = traced.map(|trace| trace.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
         cells.push(named.unwrap_or_default().join("+"));
         cells.push(row.failure.as_deref().unwrap_or_default().to_owned());
         table.push(cells);
@@ -118,7 +118,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
                 let mut cells = tables::place(design, row.cell as usize, row.method);
                 cells.extend([record.fitted.clone(), effect.id.to_string(), size.symbol.to_string()]);
                 cells
-                    .extend([Some(size.value), size.sd].map(|own| own.map_or_else(String::new, |x| significant(x, 6))));
+                    .extend([Some(size.value), size.sd].map(|end| end.map_or_else(String::new, |x| significant(x, 6))));
                 table.push(cells);
             }
         }
@@ -126,7 +126,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
     table
 }
 
-/// The heading error of every method on every record that judges, a line each.
+/// Figure of the heading error of every method on every held-out record, one row per cell and method.
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let mut names = Vec::new();
     let marks = lines.iter().map(|line| {
@@ -135,13 +135,13 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
         let look = CurveOrigin::Method(method.id.clone()).look();
         let pale = Look { hollow: true, ..look };
-        let own = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
-        let mut items: Vec<RowItem> = own
+        let trials = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
+        let mut items: Vec<RowItem> = trials
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
         let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
-        items.extend(median.map(|own| RowItem::new("", RowKind::Mark(look, own.value, own.ci95))));
+        items.extend(median.map(|median| RowItem::new("", RowKind::Mark(look, median.value, median.ci95))));
         items
     });
     let column = RowsColumn {
@@ -149,9 +149,8 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         rows: marks.collect(),
         ..RowsColumn::default()
     };
-    let caption = "Heading error of every method on the records that judge, which it has not seen: the recorded rudder is \
-                   replayed, and the initial state alone is fitted. Hollow marks: trials; full ones: medians, with 95 % intervals over \
-                   fits where there are six or more.";
+    let caption = "Heading error of every method on held-out records: the recorded rudder is replayed; only the initial state is fitted. \
+                   Hollow marks: trials; full marks: medians, with 95 % intervals over fits for six or more.";
     let plot = NamedRows {
         names,
         columns: vec![column],
@@ -163,48 +162,48 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
 }
 
-/// Cells that a finding names one by one.
-const NAMED_CELLS: usize = 3;
+/// Maximum number of cells that a finding names one by one.
+const MAX_NAMED_CELLS: usize = 3;
 
-/// What came out, in a sentence: of the method that is nearest over all cells.
+/// Finding: error ratio of the method with the smallest error over all cells.
 fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let first = &design.methods[0].label;
     let ratios = |method: usize| -> Vec<(usize, f64)> {
-        let own = lines.iter().filter(|line| line.method == method);
-        own.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
+        let method_lines = lines.iter().filter(|line| line.method == method);
+        method_lines.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
     };
     let mean = |method: &usize| {
         let all = ratios(*method);
         all.iter().map(|(_, ratio)| ratio.ln()).sum::<f64>() / all.len() as f64
     };
     let methods = (1..design.methods.len()).filter(|method| ratios(*method).len() == design.cells.len());
-    let Some(best) = methods.min_by(|one, other| mean(one).total_cmp(&mean(other))) else {
+    let Some(best) = methods.min_by(|a, b| mean(a).total_cmp(&mean(b))) else {
         return format!("Heading error of {first} on records that were not fitted");
     };
     let shares = ratios(best);
     let share = |(cell, ratio): &(usize, f64)| {
         let labels = design.cells[*cell].labels.join(", ");
-        let of = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
-        format!("{}{of}", significant(*ratio, 2))
+        let place = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
+        format!("{}{place}", significant(*ratio, 2))
     };
     let shares = match shares.len() {
-        0..=NAMED_CELLS => shares.iter().map(share).collect::<Vec<_>>().join(", "),
+        0..=MAX_NAMED_CELLS => shares.iter().map(share).collect::<Vec<_>>().join(", "),
         _ => {
-            let end = |pick: fn(f64, f64) -> f64| shares.iter().map(|(_, own)| *own).reduce(pick).unwrap_or(f64::NAN);
+            let end = |pick: fn(f64, f64) -> f64| shares.iter().map(|(_, each)| *each).reduce(pick).unwrap_or(f64::NAN);
             format!("{} to {}", significant(end(f64::min), 2), significant(end(f64::max), 2))
         }
     };
     let method = &design.methods[best].label;
-    format!("{} foretells records that it has not seen at {shares} of the error of {first}", capital(method))
+    format!("{} predicts unseen records with {shares} times the error of {first}", capital(method))
 }
 
-/// What a person sees.
+/// Text of the screen: question, table, coverage of predictions.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
     let mut text = format!("{}: {}\n\n", stored.manifest.name, design.words.question.trim());
     text += &brief(&summary.records, design).to_text();
     if !summary.predictions.is_empty() {
-        text += "\nwhat 90 % intervals of predictions hold\n";
+        text += "\ncoverage of 90 % prediction intervals\n";
         text += &coverage_table::pooled(&summary.predictions, design).to_text();
     }
     text
