@@ -69,8 +69,8 @@ enum Command {
     Check(With<check::CheckRequest>),
     /// List methods, effects, ships, manoeuvres, sensors, keys, column names and priors
     List(With<list::ListRequest>),
-    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from its files, without simulation or fit; for
-    /// several studies also one page over them
+    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from its files, without simulation or fit;
+    /// for several studies also one page over them
     Report(With<report::ReportRequest>),
     /// Check the machine and the terminal: version, threads, instruction set, whether files can be written
     Doctor(Common),

@@ -15,8 +15,8 @@ pub fn give_up(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::fail(failure)))
 }
 
-/// Installs the handler of Ctrl-C for the program `study`; Python handles its own. Without a handler an interruption ends
-/// the program by its signal.
+/// Installs the handler of Ctrl-C for the program `study`; Python handles its own. Without a handler an interruption
+/// ends the program by its signal.
 pub fn install() {
     let handler = || {
         let first = !ASKED.swap(true, Ordering::SeqCst);

@@ -19,7 +19,7 @@ use ship::effects::Formula;
 use trial::Manoeuvre;
 use trial::clock::Stamp;
 
-/// How a scenario is run.
+/// Options of running a scenario.
 #[derive(Debug, Clone, Args)]
 pub struct RunRequest {
     /// Run part I of N only; all parts may have one folder, or be copied into one, and `study report` makes its page
@@ -245,8 +245,8 @@ pub struct TraceRequest {
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::effects))]
     pub without_effect: Vec<String>,
-    /// A candidate effect as a formula for a yaw moment, in rudder angle, such as `bank = c * tanh(k * psi)`; can be given
-    /// several times
+    /// A candidate effect as a formula for a yaw moment, in rudder angle, such as `bank = c * tanh(k * psi)`; can be
+    /// given several times
     #[arg(long, value_name = "NAME = FORMULA", value_parser = formula)]
     pub effect: Vec<Arc<Formula>>,
     /// Candidate effects from a file, `effects = ["NAME = FORMULA", …]`
@@ -346,8 +346,8 @@ pub struct PredictRequest {
     /// MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
-    /// Convert the hulls of MODEL.json to another loading, given by the tables [ship] and [form] as in a sidecar, with the
-    /// formulas of `study list priors` and wider intervals
+    /// Convert the hulls of MODEL.json to another loading, given by the tables [ship] and [form] as in a sidecar, with
+    /// the formulas of `study list priors` and wider intervals
     #[arg(long, value_name = "LOAD.toml")]
     pub load: Option<PathBuf>,
     /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured

@@ -1,5 +1,5 @@
-//! Progress on standard error: a bar with the remaining time on a terminal, elsewhere one line with the expected time of
-//! long work.
+//! Progress on standard error: a bar with the remaining time on a terminal, elsewhere one line with the expected time
+//! of long work.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

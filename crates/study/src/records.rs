@@ -64,8 +64,8 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Opens a log and adds the reader's `warnings`. `columns` is a description of its columns, or a folder with one for it;
-/// the channels of `parts` are joined with it.
+/// Opens a log and adds the reader's `warnings`. `columns` is a description of its columns, or a folder with one for
+/// it; the channels of `parts` are joined with it.
 pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
@@ -300,8 +300,8 @@ pub fn rudder_logged_late(late: f64) -> String {
     )
 }
 
-/// Warnings on repeated records: given twice for identification a record makes the errors too small, and a fitted record
-/// validates nothing.
+/// Warnings on repeated records: given twice for identification a record makes the errors too small, and a fitted
+/// record validates nothing.
 pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
     let twice =

@@ -1,5 +1,5 @@
-//! Output to the terminal: results on standard output, warnings and errors on standard error. A closed pipe (`study list
-//! ships | head -1`) ends the output, not the work. Control characters, which a path, a file or a stored label may
+//! Output to the terminal: results on standard output, warnings and errors on standard error. A closed pipe (`study
+//! list ships | head -1`) ends the output, not the work. Control characters, which a path, a file or a stored label may
 //! hold, are escaped.
 
 use std::borrow::Cow;
@@ -71,8 +71,8 @@ pub struct CommandOutput<'a> {
     pub document: &'a str,
 }
 
-/// Prints a result and its warnings, unless the output is silent. In formats for programs, table or document stand alone
-/// on standard output, and notes go to standard error.
+/// Prints a result and its warnings, unless the output is silent. In formats for programs, table or document stand
+/// alone on standard output, and notes go to standard error.
 ///
 /// Fails as [`say`] does.
 pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {

@@ -1,4 +1,4 @@
-//! How figures are drawn, as options of the command line and as a file.
+//! Style of figures: options of the command line, and a file.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use report::Theme;
 use report::theme::{DPI, WIDTH_MM};
 use trial::file::{Kind, read_text};
 
-/// How figures are drawn.
+/// Style of figures.
 #[derive(Debug, Clone, Args)]
 pub struct FigureOptions {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
@@ -22,7 +22,7 @@ pub struct FigureOptions {
     pub style: Option<PathBuf>,
 }
 
-/// How the figures of a page are drawn, and whether.
+/// Style and selection of the figures of a page.
 #[derive(Debug, Clone, Args)]
 pub struct PageFigureOptions {
     /// How they are drawn
@@ -50,7 +50,7 @@ impl PageFigureOptions {
     }
 }
 
-/// How the figures of a study are drawn, and which.
+/// Style and selection of the figures of a study.
 #[derive(Debug, Clone, Args)]
 pub struct StudyFigureOptions {
     /// How they are drawn

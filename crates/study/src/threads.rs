@@ -18,8 +18,8 @@ pub fn count(common: &Common) -> usize {
     common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
 }
 
-/// Number of threads on a machine of so many `cores` with this value of the `variable` [`THREADS`]: a number above 0, up
-/// to [`MAX_THREADS`]; else `cores`.
+/// Number of threads on a machine of so many `cores` with this value of the `variable` [`THREADS`]: a number above 0,
+/// up to [`MAX_THREADS`]; else `cores`.
 fn threads_of(variable: Option<&str>, cores: usize) -> usize {
     // A number too large to parse is above the maximum, too.
     let asked = variable.filter(|digits| !digits.is_empty()).map(|digits| digits.parse().unwrap_or(usize::MAX));

@@ -1,5 +1,5 @@
-//! `study bench`: the benchmark on measured and simulated trials. Its studies run like any other and `campaign::benchmark`
-//! computes its scores; this module writes tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. Its studies run like any other and
+//! `campaign::benchmark` computes its scores; this module writes tables, figures and files.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -106,7 +106,7 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(
     publish(&stored, &folder, &theme, style.figures, common)
 }
 
-/// What opens a file with the program of the user's choice.
+/// Program that opens a file in the user's browser.
 #[cfg(target_os = "macos")]
 const OPENER: (&str, &[&str]) = ("open", &[]);
 #[cfg(windows)]

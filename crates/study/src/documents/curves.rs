@@ -1,5 +1,5 @@
-//! Curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the moment
-//! that the base lacks. They are written after the analysis; figures are drawn from the tables read back.
+//! Curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the
+//! moment that the base lacks. They are written after the analysis; figures are drawn from the tables read back.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -33,7 +33,7 @@ pub struct LogEntry {
     pub rows: usize,
     /// Length, s.
     pub duration_s: f64,
-    /// Its first day, where it has a clock with dates.
+    /// First day, where the clock has dates.
     pub date: Option<String>,
     /// Its manoeuvres in order of time.
     pub manoeuvres: Vec<ManoeuvreEntry>,
@@ -44,21 +44,21 @@ pub struct LogEntry {
 pub struct ManoeuvreEntry {
     /// Its number, as `--trial` takes it.
     pub trial: usize,
-    /// What it is, such as `zig-zag 10/10`.
+    /// Name, such as `zig-zag 10/10`.
     pub kind: String,
-    /// Its begin, s.
+    /// Beginning, s.
     pub from_s: f64,
-    /// Its end, s.
+    /// End, s.
     pub until_s: f64,
-    /// What the clock shows at both.
+    /// Clock readings at beginning and end.
     pub clock: Option<[String; 2]>,
-    /// How often the rudder is put over.
+    /// Number of executes.
     pub executes: usize,
     /// Rudder angle, deg.
     pub rudder_deg: Option<f64>,
     /// Heading angle at which it is put over, deg.
     pub heading_deg: Option<f64>,
-    /// What is odd about it.
+    /// Remarks on its quality.
     pub remarks: Vec<String>,
 }
 

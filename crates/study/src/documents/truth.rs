@@ -30,7 +30,7 @@ pub struct TruthDocument {
     pub nearest: Option<TrueIndices>,
     /// The base of a ship that has effects beside it.
     pub own: Option<TrueIndices>,
-    /// What a first-order base lacks.
+    /// Effects that a first-order base lacks.
     pub missing: Vec<String>,
     /// Drawn values in the units of their keys.
     pub drawn: BTreeMap<String, f64>,

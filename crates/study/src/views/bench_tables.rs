@@ -7,7 +7,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
 use report::{Table, TableHead};
 
-/// What stands for a figure that an answer which failed decides.
+/// Text in place of a figure that falls on a failed answer.
 const FAILED: &str = "failed";
 
 /// Digits of scores: no interval is so narrow that more of them would say anything.
@@ -71,7 +71,7 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
     cells
 }
 
-/// One board.
+/// Table of one leaderboard.
 pub fn board(results: &BenchDocument, board: &Board) -> Table {
     let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
@@ -133,7 +133,7 @@ pub fn sets(results: &BenchDocument) -> Table {
     table
 }
 
-/// One method on every set, beside the reference.
+/// Medians of one method on every set, beside the reference.
 pub fn of_method(results: &BenchDocument, method: &str) -> Table {
     let head = TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(["median"]).counts(["failed"]);
     let place = |label: &str| results.methods.iter().position(|name| name == label);
@@ -148,7 +148,7 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Table {
     table
 }
 
-/// One method on every board.
+/// Rows of one method on every leaderboard.
 pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     let mut table = Table::new(columns(TableHead::default().texts(["task"]).counts(["n"]), &results.reference, true));
     for board in &results.boards {
@@ -173,7 +173,7 @@ fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLin
     table
 }
 
-/// What methods said of missing effects, all ships together.
+/// Outcomes of naming the missing effect, all ships together.
 pub fn naming_totals(results: &BenchDocument) -> Table {
     let kinds = [(true, "that lack one effect"), (false, "that lack nothing")];
     let all = results.methods.iter().flat_map(|method| kinds.map(|(is_missing, ships)| (method, is_missing, ships)));
@@ -182,7 +182,7 @@ pub fn naming_totals(results: &BenchDocument) -> Table {
     naming_table("ships", all.filter_map(line))
 }
 
-/// The same set by set, of one method or of all.
+/// Outcomes of naming the missing effect set by set, for one method or all.
 pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
     let lines = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
     naming_table("set", lines.map(|line| (line.set.as_str(), line.clone())))

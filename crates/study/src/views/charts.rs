@@ -17,7 +17,7 @@ use campaign::summary::{Performance, Summary};
 pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
-    /// The same over the Cramér–Rao bound.
+    /// Root mean square errors of K and T over the Cramér–Rao bound.
     OverBound,
     /// Coverage and width of the intervals of K and T.
     Coverage,
@@ -305,7 +305,7 @@ pub fn over_axes(
 struct ChartGroup {
     /// The labels of the other axes.
     name: String,
-    /// The same, numbers with the names of their axes.
+    /// Labels of the other axes, numbers with the names of their axes.
     head: String,
     cells: Vec<usize>,
 }
@@ -326,7 +326,7 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
     groups.map(|(name, cells)| ChartGroup { name, head: head(cells[0]), cells }).collect()
 }
 
-/// How a method is drawn.
+/// Colour and mark of a method.
 pub fn origin(design: &Design, method: usize) -> CurveOrigin {
     curves::origin(&design.methods, &design.methods[method].label)
 }

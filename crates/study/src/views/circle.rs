@@ -36,7 +36,7 @@ pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     format!("{name}, a turning circle to {side} with {}° of rudder: {figures}", fixed(rudder_deg.abs(), 1))
 }
 
-/// The same of every circle.
+/// Figures of merit of every circle, a sentence each.
 pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
     all(document, curves).map(|(name, circle, _)| sentence(&name, circle)).collect()
 }

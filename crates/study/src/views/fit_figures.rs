@@ -72,7 +72,7 @@ fn agreement(document: &FitDocument) -> String {
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
     let FitRecord { replays, rejected, .. } = record;
     let name = names::record(&record.name) + if record.validation { " (validation)" } else { "" };
-    let figure = |kind: &str, finding: String, what: &str, plot: Plot| {
+    let figure = |kind: &str, finding: String, description: &str, plot: Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };
         PageFigure::new(stem, finding, format!("{name}: {description}"), plot)
     };
@@ -139,7 +139,8 @@ fn titles(ship: Option<Particulars>) -> [String; 2] {
     }
 }
 
-/// How many times the middle distance from the middle is drawn; what lies farther off is named below.
+/// Half the range of an axis as a multiple of the median distance from the median; methods farther off are listed
+/// below.
 const PLANE_REACH: f64 = 4.0;
 
 /// K and T of all methods that have an answer, with the regions that hold both with 95 %.

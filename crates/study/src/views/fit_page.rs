@@ -27,13 +27,13 @@ struct FitPage<'a> {
     verdict: Option<String>,
     /// Paragraphs below the verdict.
     lines: Vec<String>,
-    /// What the records measure of the criteria of IMO.
+    /// Measured IMO criteria.
     criteria: Option<Table>,
     /// A sentence for every turning circle.
     circles: Vec<String>,
     /// The form of MSC/Circ.1053: what is declared, the tests, and remarks.
     form: Option<(Vec<(&'a str, Table)>, Table)>,
-    /// What the form says beside its entries, and the mark of its headlines.
+    /// Remarks of the form, and the mark of its headings.
     form_remarks: &'a [String],
     mark: &'static str,
     answers: Table,
@@ -152,7 +152,8 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     Some(text)
 }
 
-/// Nature of the residual of output error: noise, a missing effect or random moments, and a late rudder that explains it.
+/// Nature of the residual of output error: noise, a missing effect or random moments, and a late rudder that explains
+/// it.
 fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let [residual, with_terms] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     let mut sentences = match verdict.residual {

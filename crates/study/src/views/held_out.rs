@@ -17,7 +17,7 @@ use crate::documents::curves::{TraceCurves, TracedRecord};
 /// Panels side by side.
 const ACROSS: usize = 3;
 
-/// What both models leave of the heading of every record that was held out, the worst first; `None` where none was.
+/// Figure of the residuals of both models on every held-out record, the worst first; `None` without held-out records.
 pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
     let mut all: Vec<(&RecordEntry, &TracedRecord, &BeforeAfter)> =

@@ -1,4 +1,4 @@
-//! How the heading error grows with how far ahead a replay goes, on records that were not fitted.
+//! Growth of the heading error with the horizon of a replay, on records that were not fitted.
 
 use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
@@ -40,7 +40,7 @@ fn place(entries: &[&HorizonEntry]) -> f64 {
     entries.iter().map(|entry| entry.horizon_s).sum::<f64>() / entries.len() as f64
 }
 
-/// What the figure shows, in numbers.
+/// Finding: errors at one horizon and over the whole record.
 fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
     let errors = |entries: &[&HorizonEntry]| {
         let [before, after] = MODELS.map(|(_, error)| significant(pooled(entries, error), 2));

@@ -8,7 +8,7 @@ use report::{Table, TableHead};
 
 use super::method_table::estimate;
 
-/// Which amplitude K and T of a first-order response belong to; nothing where the records are no zig-zags.
+/// Sentence on the amplitude at which K and T are valid; empty where the records are not zig-zags.
 pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
     amplitude.map_or_else(String::new, |Amplitude { rudder_deg, heading_deg }| {
         let [rudder, heading] = [rudder_deg, heading_deg].map(|angle| fixed(*angle, 0));
@@ -16,7 +16,7 @@ pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
     })
 }
 
-/// How far K and T go from record to record, and whether they agree.
+/// Sentence on the range of K and T over the records, and whether they agree.
 pub fn of_records(all: &SingleRecords) -> String {
     let range = |value_of: fn(&SingleRecord) -> f64, unit: &str| {
         let values = || all.records.iter().map(value_of);

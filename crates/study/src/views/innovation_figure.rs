@@ -10,7 +10,7 @@ use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
 use report::{PageFigure, PlotCurve};
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
-/// Fewest innovations that are judged.
+/// Minimum number of innovations for the figure.
 const MIN_INNOVATIONS: usize = 8;
 
 /// Places between the ends at which the band is drawn, and places at either end that are all drawn.

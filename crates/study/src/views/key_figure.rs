@@ -11,7 +11,7 @@ use report::palette::{Look, Marker, QUIET, SOLID};
 
 use campaign::statistics::distinct;
 
-/// How a method is drawn that the figure is not about.
+/// Look of a method that the figure does not highlight.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
 /// Share of the range of what a figure is about by which everything else may widen its axes.

@@ -33,7 +33,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     table
 }
 
-/// Most significant digits shown.
+/// Maximum number of significant digits.
 const DIGITS: i32 = 5;
 
 /// A value and its interval, with the digits the interval supports and no more than five significant ones.

@@ -85,7 +85,7 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
     Panels { stacks, note, ..Panels::default() }
 }
 
-/// How large the moment of one record is, and what explains it.
+/// Finding: size of the moment of one record and the channel that explains it best.
 pub fn finding(entry: &MissingMomentEntry) -> String {
     let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
@@ -96,7 +96,7 @@ pub fn finding(entry: &MissingMomentEntry) -> String {
     }
 }
 
-/// What has the shape of the moment of one record.
+/// Caption: effects that have the shape of the moment of one record.
 pub fn sentence(entry: &MissingMomentEntry) -> String {
     let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
     let Some(best) = telling().next() else { return String::from("The moment depends on time alone.") };

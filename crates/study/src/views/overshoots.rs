@@ -50,13 +50,13 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
     all
 }
 
-/// How far the overshoots of a replay are from measured ones.
+/// Error of the overshoots of a replay.
 pub struct OvershootError {
     /// Median distance, degrees; `None` where the replay has none of them.
     pub median_deg: Option<f64>,
     /// Measured overshoots.
     pub measured: usize,
-    /// Those of them that the replay does not have.
+    /// Measured overshoots without a replayed one.
     pub missing: usize,
 }
 

@@ -12,7 +12,7 @@ use crate::documents;
 /// The page as Markdown.
 pub const REPORT: &str = "report.md";
 
-/// The same page for a browser, in one file.
+/// The page for a browser, in one file.
 pub const BROWSER: &str = "report.html";
 
 /// Stem of the figure that stands for a page.

@@ -120,7 +120,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             LayeredPanel { head: Some(design.methods[method].label.clone()), layers }
         };
         let spread = |detail: &MethodDetail| {
-            cloud.cloud.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())
+            detail.cloud.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())
         };
         let usual = median(&mut detail.methods.iter().map(spread).filter(|spread| *spread > 0.0).collect::<Vec<_>>());
         let is_near = |(_, detail): &(usize, &MethodDetail)| usual.is_none_or(|usual| spread(detail) <= FAR * usual);

@@ -123,7 +123,7 @@ fn first_figures(prediction: &Prediction) -> String {
     }
 }
 
-/// How near a replayed record is.
+/// Finding: coverage of the band and heading error of a replayed record.
 fn inside(replayed: &RecordReplay) -> String {
     let [share, rmse] = [fixed(100.0 * replayed.band_coverage_90, 0), significant(replayed.heading_rmse_deg, 2)];
     format!("The 90 % band holds {share} % of the headings; heading error of the most probable ship {rmse}° (rms)")
@@ -137,7 +137,7 @@ fn diameter(replayed: &RecordReplay) -> String {
     format!("Tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
 }
 
-/// How dense the outer band is, and the inner one, which lies on it.
+/// Opacity of the outer band and of the inner one drawn over it.
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band as far as there is room.

@@ -10,7 +10,7 @@ use report::{Page, PlacedFigures, Table, TableHead};
 
 use super::bench_figures::capital;
 
-/// What stands for an entry that nobody can fill in.
+/// Text of an entry without a value.
 const EMPTY: &str = "–";
 
 /// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
@@ -70,7 +70,7 @@ pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     (declared.into_iter().map(declaration).collect(), tested)
 }
 
-/// What is measured of the criteria of MSC.137(76), to both sides.
+/// Table of the measured criteria of MSC.137(76), to both sides.
 pub fn criteria(entries: &[ImoFormEntry]) -> Table {
     let head = TableHead::default().texts(["test", "result"]).numbers(["to port", "to starboard"]).texts(["unit"]);
     let mut table = Table::new(head.numbers(["limit"]).texts(["kept"]));

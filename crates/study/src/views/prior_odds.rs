@@ -1,4 +1,4 @@
-//! How the probabilities of effects move with their prior odds.
+//! Sensitivity of the probabilities of effects to their prior odds.
 
 use document::names;
 use document::trace::{Outcome, TraceDocument};
@@ -10,7 +10,7 @@ use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, REC
 /// Probability that an effect without a name reaches at some odds to be drawn.
 const MIN_DRAWN_PROBABILITY: f64 = 0.05;
 
-/// Most lines of the figure.
+/// Maximum number of lines of the figure.
 const MAX_LINES: usize = 8;
 
 /// Change of a probability that is said.
@@ -95,7 +95,7 @@ pub fn sentence(document: &TraceDocument) -> Option<String> {
     unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
 }
 
-/// The same for the least factor of the odds.
+/// Sentence for the smallest factor of the odds.
 fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<String> {
     let fallen = lines.iter().filter(|line| line.is_named && line.probability[0] < named_from);
     let fallen: Vec<String> = fallen.map(|line| format!("{} ({})", line.name, fixed(line.probability[0], 2))).collect();

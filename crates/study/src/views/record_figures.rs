@@ -12,19 +12,19 @@ use ship::angle::to_deg;
 /// A model of a record over time: the heading and its residual in degrees, the root mean square of this, and half the
 /// width of its 95 % band.
 pub struct ModelOverTime {
-    /// Whose model.
+    /// The model drawn.
     pub origin: CurveOrigin,
-    /// RecordReplay heading.
+    /// Replayed heading.
     pub heading: PlotCurve,
     /// Recorded minus replayed heading.
     pub residual: PlotCurve,
-    /// Its root mean square, degrees.
+    /// Root mean square of the residual, degrees.
     pub rms_deg: Option<f64>,
     /// The lower and upper ends of the band about the heading and about no residual.
     pub band: Option<[[PlotCurve; 2]; 2]>,
 }
 
-/// How dense the area of a band is.
+/// Opacity of a band.
 const OPACITY: f64 = 0.2;
 
 /// The panel of a rudder.
@@ -90,7 +90,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
             true => (to_deg(ship.rudder[row]), to_deg(ship.yaw_rate[row])),
             false => (f64::NAN, f64::NAN),
         };
-        let (x, y): (Vec<f64>, Vec<f64>) = (0..of.rudder.len()).map(place).unzip();
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..ship.rudder.len()).map(place).unzip();
         PlotCurve::new(x, y)
     };
     let (rudder, rate) = (to_deg(seen.rudder_rad), to_deg(seen.yaw_rate_rad_s));

@@ -58,7 +58,7 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     table
 }
 
-/// The same for other programs: `summary.csv`.
+/// `summary.csv`: a line for every cell and method, for other programs.
 pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["fits", "failed"]);
     for name in ["own error [deg]", "judged error [deg]", "ratio to the first method", "ratio in 60 s"] {

@@ -17,21 +17,21 @@ use super::page_files::KEY_FIGURE;
 /// Name of the page.
 const PAGE: &str = "README.md";
 
-/// How the page begins; one that begins otherwise belongs to somebody else.
+/// First line of the page; a file with another first line was not made by this program.
 const MARK: &str = "<!-- Made by `study report` of several studies, which writes it anew. -->\n";
 
-/// Largest page that is looked at, bytes.
+/// Maximum size of an existing page that is read, bytes.
 const MAX_PAGE_BYTES: u64 = 1 << 26;
 
-/// What the page says of a study.
+/// Section of a study.
 struct Section {
     /// Name of its folder.
     name: String,
-    /// Its folder, from where the page lies.
+    /// Path of its folder, relative to the page.
     folder: String,
-    /// What it asks.
+    /// Question of the study.
     question: String,
-    /// What came out.
+    /// Finding of the study.
     finding: String,
     /// File of the figure that stands for it.
     figure: Option<String>,

@@ -37,7 +37,7 @@ pub enum FigurePlace {
     Traces,
     /// With all trials.
     AllTrials,
-    /// The same, of errors over the axes.
+    /// With all trials: errors over the axes.
     Chart,
 }
 

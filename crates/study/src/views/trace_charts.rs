@@ -225,7 +225,7 @@ fn shares(
     Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
-/// Most kinds of trial that are told apart by name, and most series of a figure.
+/// Maximum number of kinds of trial with a name each, and of series in a figure.
 const MAX_SERIES: usize = 6;
 
 /// Ranges a decade of the expected ratio is divided in where kinds of trial are many.
@@ -283,7 +283,7 @@ pub fn single(lines: &[TraceSummary]) -> [u64; 2] {
     [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
 }
 
-/// How often what was given the highest probabilities was there.
+/// Finding: how many of the effects with the highest probabilities were present.
 pub fn kept(lines: &[TraceSummary]) -> String {
     let ranges = calibration(lines);
     let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {

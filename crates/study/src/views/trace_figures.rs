@@ -180,7 +180,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
         (name, (alone, text), Some(effect.delta_bic), Outcome::Added)
     });
     let silent = trace.candidates.iter().filter(|entry| trace.effects.iter().all(|effect| effect.id != entry.id));
-    let mut others: Vec<_> = others
+    let mut silent: Vec<_> = silent
         .map(|entry| {
             let best = entry.forms.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
             let name =

@@ -53,7 +53,7 @@ impl EarlierModel {
         Ok(Self { file: shown.to_owned(), records, hulls })
     }
 
-    /// Its ship beside that of the records.
+    /// Document entry of the model, compared with the ship of the records.
     fn entry(&self, ship: &HullParticulars) -> PriorModelEntry {
         let earlier_ship = self.hulls[0].particulars;
         let likeness = Likeness::of(&earlier_ship, ship);
@@ -145,7 +145,7 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
     let before_trials = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
-    for (stored, before_trials) in ship.hulls.iter_mut().zip(&before_trials) {
+    for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
         let Some((after, check)) = hull::after_earlier(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);

@@ -52,7 +52,7 @@ fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> 
         ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
     ];
     let compared = |&(symbol, unit, dimension, quantity_of): &(&str, &str, [i32; 2], Of)| {
-        let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
+        let prime = |estimate: &Estimate| quantity_of(estimate).scaled(ship.prime(dimension));
         let at_scales = by_scale.iter().map(|estimate| estimate.as_ref().map(prime)).collect();
         term([symbol, unit], prime(joint), at_scales)
     };

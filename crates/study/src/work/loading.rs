@@ -200,7 +200,7 @@ mod tests {
         HullParticulars { length: 320.0, speed: 8.0, block_coefficient: Some(0.77), ..form }
     }
 
-    /// What the formulas say at some particulars.
+    /// Coefficients by the formulas at some particulars.
     fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
         HullForm::mmg(&priors(at).expect("a ship")).coefficients().to_vec()
     }
@@ -220,9 +220,7 @@ mod tests {
             speed_m_s: 8.0,
             particulars: by_keys(&at_trial()),
             coefficients: terms.iter().map(coefficient).collect(),
-            covariance: (0..coefficients.len())
-                .map(|i| (0..coefficients.len()).map(|j| entry(i, j)).collect())
-                .collect(),
+            covariance: (0..terms.len()).map(|i| (0..terms.len()).map(|j| entry(i, j)).collect()).collect(),
             ..StoredHull::default()
         };
         let ship = IdentifiedShip { hulls: vec![StoredHull::default(), hull], ..IdentifiedShip::default() };

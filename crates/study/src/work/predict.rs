@@ -35,7 +35,7 @@ const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
 pub struct StoredModel {
     file: String,
     ship: IdentifiedShip,
-    /// How it was identified.
+    /// Method of identification.
     method: String,
     /// The records that are in it: their files by their SHA-256.
     records: BTreeMap<String, String>,
@@ -61,7 +61,7 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 }
 
 impl StoredModel {
-    /// What is known of the ship in a file, as a request asks for it.
+    /// The identified ship in a file, by the method and weather of the request.
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
@@ -128,13 +128,13 @@ pub struct PredictInput<'a> {
     pub models: &'a [StoredModel],
     /// Earlier trials of the ship, which the models have not seen.
     pub earlier: &'a [EarlierModel],
-    /// The same ship as she was loaded in the records; empty where they need no correction.
+    /// The same ship in the loading of the records; empty where they need no correction.
     pub ballast: &'a [StoredModel],
     /// Records that are held against their prediction.
     pub records: Vec<Trial>,
-    /// What is taken out of the tracks of their turns; `None` for what each shows itself.
+    /// Current removed from the tracks of their turns; `None` for the current of each track.
     pub current: Option<Current>,
-    /// What a sidecar says where there are no records.
+    /// Conditions declared by a sidecar without records.
     pub declared: Declared<'a>,
 }
 
@@ -153,9 +153,9 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
 /// The ships of a mixture that steer manoeuvres.
 struct SteeredShips<'a> {
     mixture: &'a ShipMixture,
-    /// How many are drawn.
+    /// Number of drawn ships.
     draws: usize,
-    /// What messages call the model.
+    /// Name of the model in messages.
     file: &'a str,
 }
 
@@ -314,9 +314,9 @@ fn at_loading(
 
 /// Models that records are compared with.
 struct ReplayedModels<'a> {
-    /// Those at the loading that is predicted for.
+    /// Models at the loading of the prediction.
     full: &'a [StoredModel],
-    /// Those in the condition of the records; empty where they need no correction.
+    /// Models in the condition of the records; empty where they need no correction.
     ballast: &'a [StoredModel],
     /// The name of the loading.
     loading: &'a str,

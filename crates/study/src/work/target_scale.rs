@@ -20,7 +20,7 @@ pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
 #[derive(Clone, Copy)]
 pub struct TargetScale {
     length: f64,
-    /// That of Froude where it is not given.
+    /// At the same Froude number where it is `None`.
     speed: Option<f64>,
     is_asked: bool,
 }

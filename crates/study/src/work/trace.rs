@@ -212,7 +212,7 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
     format!("A {} {gains}{limits}.", best.name)
 }
 
-/// How the records of a request are analysed.
+/// Settings of the analysis of a request.
 ///
 /// Fails with the name of an effect that is not known.
 pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {

@@ -14,8 +14,8 @@ use trial::Trial;
 /// Maximum ratio of a replay error to that of the best; beyond it a method is listed apart.
 const MAX_ERROR_RATIO: f64 = 10.0;
 
-/// Minimum share of the variance of the headings that a replay has to explain. First-order responses to sound records of ships
-/// and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
+/// Minimum share of the variance of the headings that a replay has to explain. First-order responses to sound records
+/// of ships and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
 const MIN_EXPLAINED_SHARE: f64 = 0.9;
 
 /// Reference methods for contradictions.
