@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 use crate::screen;
 
 /// Progress bar over `length` steps; it disappears when the work is done.
-pub fn bar(what: &str, length: u64, quiet: bool) -> ProgressBar {
+pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
@@ -18,19 +18,19 @@ pub fn bar(what: &str, length: u64, quiet: bool) -> ProgressBar {
         .expect("the template is valid");
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr())
         .with_style(style)
-        .with_message(what.to_owned())
+        .with_message(label.to_owned())
         .with_finish(ProgressFinish::AndClear);
     bar.enable_steady_tick(Duration::from_millis(500));
     bar
 }
 
 /// Spinner on standard error for work of unknown length; hidden like a bar.
-pub fn busy(what: &'static str, quiet: bool) -> ProgressBar {
+pub fn busy(label: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]").expect("a fixed template");
-    let bar = ProgressBar::new_spinner().with_style(style).with_message(what);
+    let bar = ProgressBar::new_spinner().with_style(style).with_message(label);
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
@@ -44,7 +44,7 @@ const MIN_ELAPSED: Duration = Duration::from_secs(1);
 /// A known number of steps that take about the same time.
 pub struct ProgressSteps {
     bar: ProgressBar,
-    what: &'static str,
+    label: &'static str,
     most: u64,
     done: AtomicU64,
     side_by_side: usize,
@@ -54,10 +54,10 @@ pub struct ProgressSteps {
 
 impl ProgressSteps {
     /// `most` steps of which `done` are complete; `side_by_side` run at a time.
-    pub fn new(what: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
+    pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {
-            bar: bar(what, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
-            what,
+            bar: bar(label, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
+            label,
             most: most.saturating_sub(done),
             done: AtomicU64::new(0),
             side_by_side,
@@ -72,7 +72,7 @@ impl ProgressSteps {
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
         if elapsed >= MIN_ELAPSED && !self.is_told.swap(true, Ordering::Relaxed) {
             // The steps under way are about as far as the first finished one.
-            let line = forecast(self.what, self.most, done.max(self.side_by_side as u64), elapsed);
+            let line = forecast(self.label, self.most, done.max(self.side_by_side as u64), elapsed);
             line.iter().for_each(|line| screen::warn(line));
         }
     }
@@ -84,9 +84,9 @@ impl ProgressSteps {
 }
 
 /// Expected time of `most` steps after `done` took `elapsed`; `None` for short work.
-fn forecast(what: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
+fn forecast(label: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
     let seconds = elapsed.as_secs_f64() * (most as f64 / done as f64).max(1.0);
-    (seconds >= MIN_FORECAST_S).then(|| format!("{most} {what}: about {seconds:.0} s"))
+    (seconds >= MIN_FORECAST_S).then(|| format!("{most} {label}: about {seconds:.0} s"))
 }
 
 #[cfg(test)]

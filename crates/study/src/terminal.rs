@@ -11,14 +11,14 @@ use crate::{interrupt, screen};
 /// Observer that reports progress on the terminal.
 pub struct Terminal {
     quiet: bool,
-    what: &'static str,
+    label: &'static str,
     steps: OnceLock<ProgressSteps>,
 }
 
 impl Terminal {
-    /// A terminal without a bar yet; `what` names the steps.
-    pub fn new(what: &'static str, quiet: bool) -> Self {
-        Self { quiet, what, steps: OnceLock::new() }
+    /// A terminal without a bar yet; `label` names the steps.
+    pub fn new(label: &'static str, quiet: bool) -> Self {
+        Self { quiet, label, steps: OnceLock::new() }
     }
 }
 
@@ -26,7 +26,7 @@ impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::listen(true);
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| ProgressSteps::new(self.what, most, done, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new(self.label, most, done, threads, self.quiet));
     }
 
     fn advance(&self) {

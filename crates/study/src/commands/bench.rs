@@ -129,11 +129,11 @@ fn are_known<'a>(
     asked: &[String],
     names: impl Iterator<Item = &'a str>,
     option: &str,
-    what: &str,
+    kind: &str,
 ) -> Result<(), Failure> {
     let names: Vec<&str> = names.collect();
     match asked.iter().find(|word| !names.contains(&word.as_str())) {
-        Some(word) => Err(Failure::input(format!("{option} {word}: no such {what}; {}", suggestion(word, &names)))),
+        Some(word) => Err(Failure::input(format!("{option} {word}: no such {kind}; {}", suggestion(word, &names)))),
         None => Ok(()),
     }
 }

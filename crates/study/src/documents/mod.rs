@@ -145,8 +145,8 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
     let command = schema.split('/').next().unwrap_or_default();
     let (stated, text): (Stated, String) = read_json(path, command)?;
     if stated.schema != schema {
-        let what = format!("schema = {:?}, expected {schema:?}", stated.schema);
-        let problem = format!("{what}; make it again with `study {command}`");
+        let mismatch = format!("schema = {:?}, expected {schema:?}", stated.schema);
+        let problem = format!("{mismatch}; make it again with `study {command}`");
         return Err(Failure::about(path, problem).with_code(ErrorCode::Document));
     }
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;

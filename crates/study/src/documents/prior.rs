@@ -49,8 +49,8 @@ fn contradiction(earlier: &EarlierTrials) -> String {
         format!("{key} by {} standard deviations{means}", fixed(*shift, 1))
     });
     let moved = moved.collect::<Vec<_>>().join(", ");
-    let what = if moved.is_empty() { String::new() } else { format!("; farthest off: {moved}") };
-    format!("--prior {files}: the records contradict it ({}){what}; {cure}", numbers(nearest))
+    let farthest = if moved.is_empty() { String::new() } else { format!("; farthest off: {moved}") };
+    format!("--prior {files}: the records contradict it ({}){farthest}; {cure}", numbers(nearest))
 }
 
 fn numbers(check: &PriorCheckEntry) -> String {

@@ -45,9 +45,9 @@ impl EarlierModel {
         let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
         let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
         let ship = ship.ok_or_else(|| {
-            let what = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \
+            let problem = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \
                         approach speed of the ship and a speed column";
-            Failure::about(shown, what)
+            Failure::about(shown, problem)
         })?;
         let hulls = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
         Ok(Self { file: shown.to_owned(), records, hulls })
@@ -78,9 +78,9 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(hash, file)| Some((file, seen.get(hash.as_str())?))) {
-            let what =
+            let problem =
                 format!("{file} is in this model and in {other}, but a record counts only once; leave one of them out");
-            return Err(Failure::about(model, what));
+            return Err(Failure::about(model, problem));
         }
         seen.extend(records.keys().map(|sha256| (sha256.as_str(), model.as_str())));
     }
@@ -93,10 +93,10 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
-        let what = "--prior cannot be used";
+        let problem = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
-        return Err(Failure::about(file_of(&trials[0]).0, format!("{what}: {error}; {cure}")));
+        return Err(Failure::about(file_of(&trials[0]).0, format!("{problem}: {error}; {cure}")));
     }
     Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
@@ -154,8 +154,8 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
         checks.extend(check.map(|check| (hull_before.form.as_str(), check)));
     }
     if checks.is_empty() {
-        let what = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave --prior out";
-        return Err(Failure::about(shown, what));
+        let problem = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave --prior out";
+        return Err(Failure::about(shown, problem));
     }
     checks.sort_by(|a, b| b.1.p_value.total_cmp(&a.1.p_value));
     let earlier = earlier_trials(models, &before_trials[0].particulars, &checks, |_| true);

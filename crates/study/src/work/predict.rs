@@ -338,8 +338,8 @@ impl ReplayedModels<'_> {
         let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
         let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
         let Some(replayed) = replayed else {
-            let what = "too few headings at its beginning to determine the initial state";
-            return Err(Failure::about(file, format!("{what}; choose a part under [part] of a sidecar")));
+            let problem = "too few headings at its beginning to determine the initial state";
+            return Err(Failure::about(file, format!("{problem}; choose a part under [part] of a sidecar")));
         };
         if ballast.is_empty() {
             return Ok((replayed, None));
@@ -374,10 +374,10 @@ impl ReplayedModels<'_> {
 fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&str>) -> Result<String, Failure> {
     let methods: Vec<&str> = ships.keys().map(String::as_str).collect();
     if methods.is_empty() {
-        let what = "no method has a covariance for this record, so no intervals can be predicted";
+        let problem = "no method has a covariance for this record, so no intervals can be predicted";
         return Err(Failure::about(
             file,
-            format!("{what}; fit again with --method output-error, or with a longer record or several"),
+            format!("{problem}; fit again with --method output-error, or with a longer record or several"),
         ));
     }
     match asked {

@@ -93,7 +93,7 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
     let taken = taken.unwrap_or(nearest);
     let is_far = |entry: &&MethodEntry| rms(entry) > MAX_ERROR_RATIO * rms(&nearest) && entry.method != taken.method;
-    let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
+    let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(size(lack)));
     let contradicts = |entry: &&MethodEntry| USUAL.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
     Some(VerdictEntry {
         believe: Belief::Yes,
