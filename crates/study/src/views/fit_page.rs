@@ -147,7 +147,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     text += &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
     text += &contradiction(document, verdict);
     if !verdict.set_apart.is_empty() {
-        text += &format!("\nMore than ten times its error: {}.", verdict.set_apart.join(", "));
+        text += &format!("\nReplay error more than ten times larger: {}.", verdict.set_apart.join(", "));
     }
     Some(text)
 }
@@ -158,31 +158,31 @@ fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let [residual, with_terms] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     let mut sentences = match verdict.residual {
         None => String::new(),
-        Some(ResidualKind::Noise) => String::from("\nThe replay error of output-error is noise of the heading sensor."),
+        Some(ResidualKind::Noise) => String::from("\nThe output-error residual is noise of the heading sensor."),
         Some(ResidualKind::LacksEffect) if document.has_faulty_readings() => format!(
-            "\nThe replay error of output-error falls from {residual}° to {with_terms}° with more hull terms, but check the readings before \
+            "\nThe output-error residual falls from {residual}° to {with_terms}° with more hull terms, but check the readings before \
              the ship: see the warnings."
         ),
         Some(ResidualKind::LacksEffect) if !verdict.falls_with_ship_terms() => format!(
-            "\nThe replay error of output-error, {residual}°, is more than noise although a calm is declared: the model may lack an \
+            "\nThe output-error residual, {residual}°, is more than noise although a calm is declared: the model may lack an \
              effect; run `study trace`."
         ),
         Some(ResidualKind::LacksEffect) => format!(
-            "\nThe replay error of output-error falls from {residual}° to {with_terms}° with more hull terms: the model may lack an \
+            "\nThe output-error residual falls from {residual}° to {with_terms}° with more hull terms: the model may lack an \
              effect; run `study trace`, which also gives K and T for small motions."
         ),
         Some(ResidualKind::Random) => {
-            format!("\nThe replay error of output-error, {residual}°, looks random: hull terms leave {with_terms}°.")
+            format!("\nThe output-error residual, {residual}°, looks random: more hull terms leave {with_terms}°.")
         }
     };
     if let Some(delay) = verdict.rudder_delay_s {
         sentences += &match fixed(delay.abs(), 1) {
             late if delay < 0.0 => format!(
-                "\nMost of this error disappears if the rudder was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
+                "\nMost of this residual disappears if the rudder was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
                  under [rudder] in the sidecar."
             ),
             later => format!(
-                "\nMost of this error disappears if the rudder acts about {later} s later than it was recorded. Possible causes: a dead \
+                "\nMost of this residual disappears if the rudder acts about {later} s later than it was recorded. Possible causes: a dead \
                  time, sway coupling of the ship, a slow compass, or the order in place of the angle."
             ),
         };

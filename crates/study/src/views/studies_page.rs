@@ -46,8 +46,8 @@ struct StudiesPage {
 /// Fails where a folder is not that of a study, and where a page of somebody else lies in the place of this one.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
-        let problem = format!("it holds no {}, and a page over several folders is one over studies", files::MANIFEST);
-        return Err(Failure::about(folder, format!("{problem}; run a scenario first, or give the folder alone")));
+        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
+        return Err(Failure::about(folder, format!("{problem}; give folders of studies, or this folder alone")));
     }
     let path = place.join(PAGE);
     if disk::read(&path, MAX_PAGE_BYTES).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {

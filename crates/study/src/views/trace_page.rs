@@ -101,8 +101,8 @@ fn noise(document: &TraceDocument) -> String {
     let beside = largest.map(tables::coloured).unwrap_or_default();
     let beside = beside.iter().map(|noise_term| format!(", {noise_term}")).collect::<String>();
     let holds = match all.iter().all(|noise_entry| noise_entry.describes_what_is_left) {
-        true => "this explains the rest of the error",
-        false => "this does not explain all of the rest",
+        true => "this explains the remaining error",
+        false => "this does not explain all of the remaining error",
     };
     format!("heading {white}° (uncorrelated){beside}; {holds}")
 }
