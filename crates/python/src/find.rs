@@ -2,7 +2,7 @@
 
 use document::Warnings;
 use pyo3::prelude::*;
-use study::commands::find::found;
+use study::commands::find::find_answer;
 use study::documents;
 use study::options::FindRequest;
 
@@ -16,7 +16,7 @@ pub fn find(py: Python<'_>, logs: Vec<String>, options: Vec<String>) -> PyResult
     patiently(py, move || {
         let asked: FindRequest = request(options.into_iter().chain([String::from("--")]).chain(logs).collect())?;
         let mut warnings = Warnings::default();
-        let manoeuvres = found(&asked, &mut warnings)?;
-        Ok((documents::of(&manoeuvres)?, sentences(&warnings.ranked())))
+        let answer = found(&asked, &mut warnings)?;
+        Ok((documents::answer_text(&answer)?, sentences(&warnings.ranked())))
     })
 }

@@ -12,7 +12,7 @@ use campaign::task::default_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use study::options::{FigureChoice, FigureOptions, MOST_THREADS};
+use study::options::{FigureChoice, FigureOptions, MAX_THREADS};
 use study::views::publish;
 
 use crate::raise::raised;
@@ -70,8 +70,8 @@ impl Observer for Watch {
 
 /// Thread pool of a study.
 fn pool(count: i64) -> Result<ThreadPool, Failure> {
-    if !(1..=MOST_THREADS).contains(&count) {
-        return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MOST_THREADS}")));
+    if !(1..=MAX_THREADS).contains(&count) {
+        return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MAX_THREADS}")));
     }
     let pool = ThreadPoolBuilder::new().num_threads(count as usize).build();
     pool.map_err(|error| Failure::work(format!("failed to start {count} threads: {error}")))

@@ -1,4 +1,4 @@
-//! The command line: what a user may ask for, and which part of the study answers. It knows no hydrodynamics.
+//! The command line: commands with their options, and the modules that run them. It knows no hydrodynamics.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use document::ErrorCode;
 
-/// What `--version` tells.
+/// Text of `--version`.
 static VERSION: LazyLock<String> = LazyLock::new(campaign::manifest::version);
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
@@ -35,7 +35,7 @@ struct Cli {
     common: Common,
 }
 
-/// What is asked of a command, and what may be asked of all.
+/// The options of a command with the options common to all commands.
 #[derive(Debug, Args)]
 struct With<R: Args> {
     #[command(flatten)]
@@ -48,35 +48,35 @@ struct With<R: Args> {
 enum Command {
     /// Identify a record with every (or the named) method: table, plot, fit.json
     Fit(With<FitRequest>),
-    /// Close the loop on records: fit, look at what is left, name the effect the model lacks, add it: trace.json,
+    /// Find the effects that a first-order model lacks: fit, examine the residual, name effects, add them: trace.json,
     /// report, plots
     Trace(With<TraceRequest>),
-    /// Predict manoeuvres that were not made from fit.json or trace.json, with intervals: predict.json, report, plots
+    /// Predict other manoeuvres from fit.json or trace.json, with intervals: predict.json, report, plots
     Predict(With<PredictRequest>),
     /// List the manoeuvres inside long logs: zig-zags, turning circles, pull-outs, spirals, straight pieces
     Find(With<FindRequest>),
-    /// Look at every channel of a log before anything is fitted: source, rate, gaps, steps, sign, scale, lag
+    /// Show every channel of a log before a fit: source, rate, gaps, steps, sign, scale, lag
     Inspect(With<inspect::InspectRequest>),
-    /// Write a first description of the columns of a table, NAME.trial.toml beside it, for a person to check
+    /// Write a first description of the columns of a table, NAME.trial.toml beside it; check it before use
     Sidecar(With<sidecar::SidecarRequest>),
-    /// Write simulated trials in the format `study fit` reads, the truth beside them
+    /// Write simulated trials in the format that `study fit` reads, with the true values beside them
     Simulate(With<SimulateRequest>),
-    /// Score answers to simulated trials that another program found, beside the methods of the scenario
+    /// Score answers of another program to simulated trials, beside the methods of the scenario
     Score(With<score::ScoreRequest>),
     /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
     Bench(With<bench::BenchRequest>),
     /// Resolve scenario files and run nothing
     Check(With<check::CheckRequest>),
-    /// List what scenario files can name
+    /// List methods, effects, ships, manoeuvres, sensors, keys, column names and priors
     List(With<list::ListRequest>),
-    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from what is stored; nothing is simulated or
-    /// fitted; of several studies also one page over them
+    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from its files, without simulation or fit;
+    /// for several studies also one page over them
     Report(With<report::ReportRequest>),
-    /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
+    /// Check the machine and the terminal: version, threads, instruction set, whether files can be written
     Doctor(Common),
     /// Print the JSON schema of a file, for editors and programs
     Schema(With<schema::SchemaRequest>),
-    /// Print what a shell has to read to complete commands and options
+    /// Print the completion script of a shell
     Completions(With<shell::CompletionsRequest>),
     /// Write manual pages, one for every command
     Man(With<shell::ManRequest>),
@@ -88,7 +88,7 @@ impl<R: Args> With<R> {
         run(&self.request, &self.common)
     }
 
-    /// Runs a command that works on several.
+    /// Runs a command that works on several threads.
     fn work(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
         threads::start(&self.common)?;
         run(&self.request, &self.common)
@@ -98,50 +98,50 @@ impl<R: Args> With<R> {
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong, 130
 /// Ctrl-C.
 pub fn main() -> ExitCode {
-    interrupt::of_program();
-    let words: Vec<OsString> = std::env::args_os().collect();
-    if asks_for_json(&words) {
-        failures::tell_programs();
+    interrupt::install();
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    if asks_for_json(&arguments) {
+        failures::use_json();
     }
-    match parse(&words).and_then(answer) {
+    match parse(&arguments).and_then(answer) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => ExitCode::from(failures::fail(&failure)),
     }
 }
 
-/// Whether the answer is to be JSON, and with it what went wrong, be it in these very words.
-fn asks_for_json(words: &[OsString]) -> bool {
-    words.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
-        || words.iter().any(|word| word == "--format=json")
+/// Whether the arguments ask for JSON; errors in the arguments themselves are then JSON, too.
+fn asks_for_json(arguments: &[OsString]) -> bool {
+    arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
+        || arguments.iter().any(|word| word == "--format=json")
 }
 
-/// What is asked for; help and version are told at once.
-fn parse(words: &[OsString]) -> Result<Cli, Failure> {
-    if let Some(name) = mistaken_command(words.get(1)) {
-        let known: Vec<String> =
+/// The parsed arguments; help and version are printed at once.
+fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
+    if let Some(name) = mistaken_command(arguments.get(1)) {
+        let commands: Vec<String> =
             Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
-        let advice = suggestion(&name, &known);
+        let advice = suggestion(&name, &commands);
         return Err(Failure::input(format!(
             "there is no command `{name}`, and no scenario file of that name; {advice}"
         ))
         .with_code(ErrorCode::Usage));
     }
-    Cli::try_parse_from(words).map_err(|usage| match usage.kind() {
+    Cli::try_parse_from(arguments).map_err(|usage| match usage.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             usage.exit()
         }
         _ if failures::is_for_programs() => misused(&usage),
-        // By the same way as all other messages: an argument may hold anything.
+        // Through the same writer as all other messages, because an argument may hold control characters.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })
 }
 
-/// What is wrong with options, without how the command is used.
+/// Message of a usage error, without the usage text.
 pub fn misused(usage: &clap::Error) -> Failure {
-    let said = usage.to_string();
-    let (said, _) = said.split_once("\n\nUsage:").unwrap_or((&said, ""));
-    let (said, _) = said.split_once("\n\nFor more information").unwrap_or((said, ""));
-    Failure::input(said.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
+    let message = usage.to_string();
+    let (message, _) = message.split_once("\n\nUsage:").unwrap_or((&message, ""));
+    let (message, _) = message.split_once("\n\nFor more information").unwrap_or((message, ""));
+    Failure::input(message.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
 }
 
 /// A first argument that is a single word, and neither a command nor the path of anything.
@@ -160,21 +160,21 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         return run::run(&scenario, &cli.request, &cli.common);
     };
     match command {
-        Command::Fit(own) => own.work(fit::run),
-        Command::Trace(own) => own.work(trace::run),
-        Command::Predict(own) => own.work(predict::run),
-        Command::Simulate(own) => own.work(simulate::run),
-        Command::Score(own) => own.work(score::run),
-        Command::Bench(own) => own.work(bench::run),
-        Command::Report(own) => own.work(report::run),
-        Command::Find(own) => own.answer(find::run),
-        Command::Inspect(own) => own.answer(inspect::run),
-        Command::Sidecar(own) => own.answer(sidecar::run),
-        Command::Check(own) => own.answer(check::run),
-        Command::List(own) => own.answer(list::run),
-        Command::Schema(own) => own.answer(schema::run),
-        Command::Completions(own) => own.answer(|own, common| shell::completions(own, Cli::command(), common)),
-        Command::Man(own) => own.answer(|own, common| shell::man(own, Cli::command(), common)),
+        Command::Fit(asked) => asked.work(fit::run),
+        Command::Trace(asked) => asked.work(trace::run),
+        Command::Predict(asked) => asked.work(predict::run),
+        Command::Simulate(asked) => asked.work(simulate::run),
+        Command::Score(asked) => asked.work(score::run),
+        Command::Bench(asked) => asked.work(bench::run),
+        Command::Report(asked) => asked.work(report::run),
+        Command::Find(asked) => asked.answer(find::run),
+        Command::Inspect(asked) => asked.answer(inspect::run),
+        Command::Sidecar(asked) => asked.answer(sidecar::run),
+        Command::Check(asked) => asked.answer(check::run),
+        Command::List(asked) => asked.answer(list::run),
+        Command::Schema(asked) => asked.answer(schema::run),
+        Command::Completions(asked) => asked.answer(|asked, common| shell::completions(asked, Cli::command(), common)),
+        Command::Man(asked) => asked.answer(|asked, common| shell::man(asked, Cli::command(), common)),
         Command::Doctor(common) => doctor::run(&common),
     }
 }

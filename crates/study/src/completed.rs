@@ -1,4 +1,4 @@
-//! Words that a shell completes: parsers of options that know what they take, beside reading it.
+//! Option parsers with the values that a shell completes.
 
 use ::trace::EffectId;
 use campaign::benchmark::BenchTask;
@@ -8,19 +8,19 @@ use clap::{Arg, Command, Error};
 use identify::registry;
 use std::ffi::OsStr;
 
-/// Stands for every method where methods are named.
+/// Value of `--method` for all methods.
 pub const ALL: &str = "all";
 
-/// A parser with words that it takes. Whether it takes others is for the parser to say, and how it refuses them.
+/// A parser with values for completion. The parser alone decides which values are valid.
 #[derive(Clone)]
 pub struct Completed<P> {
     parser: P,
-    words: fn() -> Vec<String>,
+    values: fn() -> Vec<String>,
 }
 
-/// What `parser` reads, and some `words` that it takes.
-pub fn completed<P: TypedValueParser>(parser: P, words: fn() -> Vec<String>) -> Completed<P> {
-    Completed { parser, words }
+/// `parser` with some valid `values`.
+pub fn completed<P: TypedValueParser>(parser: P, values: fn() -> Vec<String>) -> Completed<P> {
+    Completed { parser, values }
 }
 
 impl<P: TypedValueParser> TypedValueParser for Completed<P> {
@@ -31,7 +31,7 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new((self.words)().into_iter().map(PossibleValue::new)))
+        Some(Box::new((self.values)().into_iter().map(PossibleValue::new)))
     }
 }
 
@@ -41,7 +41,7 @@ pub fn methods() -> Vec<String> {
     built.map(|method| method.id().to_owned()).collect()
 }
 
-/// The same, and the word for all of them.
+/// Methods of the project, and [`ALL`].
 pub fn methods_or_all() -> Vec<String> {
     methods().into_iter().chain([String::from(ALL)]).collect()
 }
@@ -61,7 +61,7 @@ pub fn effects() -> Vec<String> {
     EffectId::all().into_iter().map(|id| id.as_str().to_owned()).collect()
 }
 
-/// Rules by which structures are weighed.
+/// Rules that weight structures.
 pub fn rules() -> Vec<String> {
     ::trace::Rule::ALL.map(|rule| rule.as_str().to_owned()).into()
 }

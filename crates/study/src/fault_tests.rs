@@ -133,12 +133,12 @@ fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> 
 #[test]
 fn no_fault_of_the_disk_loses_anything_of_a_study() {
     let desk = tempfile::tempdir().expect("a temporary folder");
-    let (study, told) = (scenario(""), scenario("finding = \"No.\"\n"));
+    let (study, with_finding) = (scenario(""), scenario("finding = \"No.\"\n"));
     assert!(fail_each(None, |folder| run(&study, folder)) > 50);
     // A rerun that has new words to say.
     let whole = desk.path().join("whole");
     run(&study, &whole).unwrap_or_else(|failure| panic!("{failure}"));
-    assert!(fail_each(Some(&whole), |folder| run(&told, folder)) > 20);
+    assert!(fail_each(Some(&whole), |folder| run(&with_finding, folder)) > 20);
 }
 
 #[test]

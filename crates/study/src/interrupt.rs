@@ -15,9 +15,9 @@ pub fn give_up(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::fail(failure)))
 }
 
-/// Takes the interruptions of this process, which is the program `study`; another one, such as Python, sees to them
-/// itself. Where no handler can be installed, an interruption ends the program by its signal.
-pub fn of_program() {
+/// Installs the handler of Ctrl-C for the program `study`; Python handles its own. Without a handler an interruption
+/// ends the program by its signal.
+pub fn install() {
     let handler = || {
         let first = !ASKED.swap(true, Ordering::SeqCst);
         if !(first && LISTENING.load(Ordering::SeqCst)) {
@@ -27,12 +27,12 @@ pub fn of_program() {
     let _ = ctrlc::set_handler(handler);
 }
 
-/// Takes an interruption as a request from now on, or no more: then it ends the program again.
+/// Treats the next interruption as a request to stop; with `false` it ends the program at once again.
 pub fn listen(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
-/// Whether to stop.
+/// Whether Ctrl-C has asked to stop.
 pub fn is_asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

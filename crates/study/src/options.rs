@@ -1,4 +1,4 @@
-//! What a user may ask of a command. Longer than most: options and arguments are declared once. Nothing here acts.
+//! Options and arguments of the commands. Longer than most: each option is declared once. Nothing here acts.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -19,7 +19,7 @@ use ship::effects::Formula;
 use trial::Manoeuvre;
 use trial::clock::Stamp;
 
-/// How a scenario is run.
+/// Options of running a scenario.
 #[derive(Debug, Clone, Args)]
 pub struct RunRequest {
     /// Run part I of N only; all parts may have one folder, or be copied into one, and `study report` makes its page
@@ -33,8 +33,8 @@ pub struct RunRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
-pub const MOST_THREADS: i64 = 1024;
+/// Maximum number of threads; no machine has more cores, and the system refuses many more.
+pub const MAX_THREADS: i64 = 1024;
 
 /// Options every command understands.
 #[derive(Debug, Clone, Args)]
@@ -43,21 +43,21 @@ pub struct Common {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: all cores]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     pub threads: Option<u16>,
-    /// Seed of what is simulated, in place of the scenario's
+    /// Seed of the simulation, in place of the scenario's
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// No progress bar, table, note or warning; errors remain, and what --format asks for
+    /// No progress bar, table, note or warning; only errors and the output that --format asks for
     #[arg(long)]
     pub quiet: bool,
-    /// What is written to standard output
+    /// Format of standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }
 
 impl Common {
-    /// Whether standard output is to hold nothing: a form that was asked for is written all the same.
+    /// Whether standard output stays empty; a format that was asked for is written even with `--quiet`.
     pub fn is_silent(&self) -> bool {
         self.quiet && self.format == Format::Text
     }
@@ -67,7 +67,7 @@ fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
-/// What is written to standard output.
+/// Format of standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// Words and aligned columns, for people
@@ -95,25 +95,25 @@ impl Format {
     }
 }
 
-/// How records are read, which part of them is used, and what is known of the ship.
+/// Options on reading records: columns, part of the record, particulars of the ship.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ReadingOptions {
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
     #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
-    /// Another file of the one record given, for example with its rudder; joined by time
+    /// Another file of the same record, for example with its rudder; joined by time
     #[arg(long, value_name = "FILE")]
     pub with_columns: Vec<PathBuf>,
     /// Use the manoeuvre with this number in `study find` [default: the zig-zag, where there is one]
     #[arg(long, value_name = "N", conflicts_with_all = ["from", "until"])]
     pub trial: Option<usize>,
-    /// Use the record from this time on: seconds on its clock (0 is its begin), or a time of day such as 14:03:05
+    /// Use the record from this time on: seconds on its clock (0 is its beginning), or a time of day such as 14:03:05
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub from: Option<TimePoint>,
     /// Use the record until this time
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub until: Option<TimePoint>,
-    /// What is known of the ship
+    /// Known particulars of the ship
     #[command(flatten)]
     pub ship: ShipOptions,
 }
@@ -123,7 +123,7 @@ pub struct ReadingOptions {
 pub enum TimePoint {
     /// Seconds on the clock of the record.
     Seconds(f64),
-    /// What the clock of the ship shows.
+    /// Reading of the ship's clock.
     Clock(Stamp, String),
 }
 
@@ -141,28 +141,28 @@ impl FromStr for TimePoint {
     }
 }
 
-/// What `study find` is asked to do.
+/// Arguments of `study find`.
 #[derive(Debug, Clone, Args)]
 pub struct FindRequest {
-    /// Logs in which manoeuvres are looked for; a folder stands for all its records
+    /// Logs to search for manoeuvres; a folder stands for all its records
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Description of the columns of the logs (a sidecar), or a folder with a NAME.trial.toml for each
     #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
-    /// Another file of the one log given, for example with its rudder; joined by time
+    /// Another file of the same log, for example with its rudder; joined by time
     #[arg(long, value_name = "FILE")]
     pub with_columns: Vec<PathBuf>,
 }
 
-/// What `study fit` is asked to do.
+/// Arguments of `study fit`.
 #[derive(Debug, Clone, Args)]
 pub struct FitRequest {
     /// Records of one ship, identified together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
-    /// Fit every record alone: a row each, or with --format json a line of JSON each, on standard output and nowhere
-    /// else; a record that cannot be read is a row
+    /// Fit every record alone: one row each, or with --format json one line of JSON each, on standard output only; a
+    /// record that cannot be read is a row
     #[arg(long, conflicts_with_all = ["validate", "priors", "with_columns", "trial", "from", "until", "out"])]
     pub each: bool,
     /// Records on which the identified responses are replayed; only their initial state is fitted
@@ -172,8 +172,8 @@ pub struct FitRequest {
     #[arg(long = "method", value_name = "ID|all", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::methods_or_all))]
     pub methods: Vec<String>,
-    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider
-    /// errors, is the prior of this one; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a sister ship or a scale model: its hull, with wider
+    /// errors, is the prior of this analysis; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json")]
     pub priors: Vec<PathBuf>,
     /// How the records are read
@@ -184,7 +184,7 @@ pub struct FitRequest {
     pub style: PageFigureOptions,
 }
 
-/// What `study simulate` is asked to do.
+/// Arguments of `study simulate`.
 #[derive(Debug, Clone, Args)]
 pub struct SimulateRequest {
     /// Scenario whose trials are written
@@ -198,7 +198,7 @@ pub struct SimulateRequest {
     pub replicate: Replicates,
 }
 
-/// Which trials of a cell are meant.
+/// Selection of trials in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replicates {
     /// All of them.
@@ -218,13 +218,13 @@ impl FromStr for Replicates {
     }
 }
 
-/// What `study trace` is asked to do.
+/// Arguments of `study trace`.
 #[derive(Debug, Clone, Args)]
 pub struct TraceRequest {
     /// Records of one ship, analysed together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
-    /// Records that only judge the result: nothing but their initial state is fitted
+    /// Held-out records that validate the result: only their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
     /// How the records are read
@@ -233,35 +233,34 @@ pub struct TraceRequest {
     /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
     #[arg(long, value_name = "CHANNEL", value_enum)]
     pub without: Vec<Withheld>,
-    /// Effects that are in the model whatever the evidence says, by their ids in `study list effects` or their names
-    /// in `--effect`
+    /// Effects that are always in the model, by their ids in `study list effects` or their names in `--effect`
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::effects))]
     pub with: Vec<String>,
-    /// Exactly these effects and no search
+    /// Use exactly these effects, without a search
     #[arg(long, value_name = "ID,…", value_delimiter = ',', conflicts_with_all = ["with", "without_effect"],
         hide_possible_values = true, value_parser = completed(StringValueParser::new(), completed::effects))]
     pub only: Vec<String>,
-    /// Effects that are left out of the search
+    /// Effects to leave out of the search
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::effects))]
     pub without_effect: Vec<String>,
-    /// An effect of one's own, a candidate like those of the list: a moment as an angle of the rudder, `bank = c *
-    /// tanh(k * psi)`; can be given several times
+    /// A candidate effect as a formula for a yaw moment, in rudder angle, such as `bank = c * tanh(k * psi)`; can be
+    /// given several times
     #[arg(long, value_name = "NAME = FORMULA", value_parser = formula)]
     pub effect: Vec<Arc<Formula>>,
-    /// The same from a file, `effects = ["…"]`
+    /// Candidate effects from a file, `effects = ["NAME = FORMULA", …]`
     #[arg(long, value_name = "FILE.toml", value_parser = formulas)]
     pub effects: Option<Formulas>,
-    /// Fit no hulls of three degrees of freedom; they are fitted beside the structures where length and speed of the
-    /// ship are known and the structures leave more than noise
+    /// Fit no hulls of three degrees of freedom; they are fitted if length and speed of the ship are known and the
+    /// effects leave more than noise
     #[arg(long)]
     pub without_hull: bool,
-    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister: its hull, with wider
-    /// errors, is the prior of this one; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a sister ship or a scale model: its hull, with wider
+    /// errors, is the prior of this analysis; can be given several times
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
-    /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
+    /// How models are weighted: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
     #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), hide_possible_values = true,
         value_parser = completed(rule, completed::rules))]
     pub rule: Rule,
@@ -271,37 +270,37 @@ pub struct TraceRequest {
 }
 
 impl TraceRequest {
-    /// What is asked for and what excluded.
+    /// Effects that are required, excluded or added as formulas.
     ///
-    /// Fails with a name that is neither on the list nor that of a formula.
+    /// Fails for a name that is neither on the list nor that of a formula.
     pub fn selection(&self) -> Result<Selection, Failure> {
-        let of_file = self.effects.iter().flat_map(|own| own.all());
+        let of_file = self.effects.iter().flat_map(|formulas| formulas.all());
         let formulas: Vec<Arc<Formula>> = self.effect.iter().chain(of_file).cloned().collect();
-        let known = Selection { formulas, ..Selection::default() };
+        let selection = Selection { formulas, ..Selection::default() };
         let named = |option: &str, names: &[String]| -> Result<Vec<EffectId>, Failure> {
-            names.iter().map(|name| effect(option, name, &known)).collect()
+            names.iter().map(|name| effect(option, name, &selection)).collect()
         };
         let (with, without) = (named("with", &self.with)?, named("without-effect", &self.without_effect)?);
         let mut only = named("only", &self.only)?;
         if only.is_empty() {
-            return Ok(Selection { with, without, ..known });
+            return Ok(Selection { with, without, ..selection });
         }
-        let typed = known.formulas.iter().map(|formula| EffectId::of(formula));
-        let more: Vec<EffectId> = typed.filter(|own| !only.contains(own)).collect();
+        let typed = selection.formulas.iter().map(|formula| EffectId::of(formula));
+        let more: Vec<EffectId> = typed.filter(|id| !only.contains(id)).collect();
         only.extend(more);
-        Ok(Selection { formulas: known.formulas, ..Selection::only(only) })
+        Ok(Selection { formulas: selection.formulas, ..Selection::only(only) })
     }
 }
 
 fn rule(name: &str) -> Result<Rule, String> {
-    let known = Rule::ALL.map(Rule::as_str);
-    Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &known))
+    let names = Rule::ALL.map(Rule::as_str);
+    Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &names))
 }
 
-/// The effect that an option names.
-fn effect(option: &str, name: &str, known: &Selection) -> Result<EffectId, Failure> {
-    known.find(name).ok_or_else(|| {
-        let ids: Vec<&str> = known.ids().into_iter().map(EffectId::as_str).collect();
+/// The effect of this name; `option` is the option that names it.
+fn effect(option: &str, name: &str, selection: &Selection) -> Result<EffectId, Failure> {
+    selection.find(name).ok_or_else(|| {
+        let ids: Vec<&str> = selection.ids().into_iter().map(EffectId::as_str).collect();
         Failure::input(format!("--{option}: there is no effect `{name}`; {}", suggestion(name, &ids)))
     })
 }
@@ -319,10 +318,10 @@ pub enum Withheld {
     Sway,
 }
 
-/// Numbers of draws that make sense.
+/// Range of the number of draws.
 const DRAWS: std::ops::RangeInclusive<i64> = 50..=100_000;
 
-/// What `study predict` is asked to do.
+/// Arguments of `study predict`.
 #[derive(Debug, Clone, Args)]
 pub struct PredictRequest {
     /// fit.json or trace.json of one ship; several are mixed with equal weights
@@ -332,47 +331,47 @@ pub struct PredictRequest {
     /// a negative rudder begins to port [default: those of the IMO criteria, unless a record is replayed]
     #[arg(long = "manoeuvre", value_name = "KIND", allow_hyphen_values = true)]
     pub manoeuvres: Vec<Manoeuvre>,
-    /// Record whose rudder is replayed, and which is held against its prediction; nothing is fitted to it
+    /// Record to compare with the prediction for its rudder; nothing is fitted to it
     #[arg(long = "replay", value_name = "RECORD")]
     pub replays: Vec<PathBuf>,
-    /// Circle of 720° or more whose current is taken out of the tracks of all replayed turns [default: out of each its
-    /// own, where it turns that far]
+    /// Circle of 720° or more whose current is removed from the tracks of all replayed turns [default: each turn's own
+    /// current, where it turns that far]
     #[arg(long, value_name = "RECORD", requires = "replays")]
     pub current_from: Option<PathBuf>,
-    /// fit.json or trace.json of earlier trials of the same ship, a model of her or a sister, which are not in
-    /// MODEL.json: its hulls are weighed together with theirs, with wider errors; can be given several times
+    /// fit.json or trace.json of earlier trials of the same ship, a sister ship or a scale model, which are not in
+    /// MODEL.json: combines their hulls, with wider errors, with those of MODEL.json; can be given several times
     #[arg(long = "prior", value_name = "EARLIER.json", conflicts_with = "ballast")]
     pub priors: Vec<PathBuf>,
-    /// What is known of the same ship as she was loaded at the trial of --replay: corrects what it measured to the load
-    /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
+    /// Model of the same ship in the loading of the --replay trial: corrects the measured values to the loading of
+    /// MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
-    /// Take the hulls of MODEL.json to another loading, whose tables ship and form are written as in a sidecar: by the
-    /// formulas of `study list priors`, with wider intervals
+    /// Convert the hulls of MODEL.json to another loading, given by the tables [ship] and [form] as in a sidecar, with
+    /// the formulas of `study list priors` and wider intervals
     #[arg(long, value_name = "LOAD.toml")]
     pub load: Option<PathBuf>,
     /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured
-    /// where a record of --replay is that trial
+    /// values where a --replay record is that trial
     #[arg(long)]
     pub form: bool,
-    /// Method whose answer in fit.json is used [default: the one to take, or the next that has a covariance]
+    /// Method whose answer in fit.json is used [default: that of the verdict, or the next with a covariance]
     #[arg(long, value_name = "ID", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::methods))]
     pub method: Option<String>,
-    /// Without the random moment and the steady wind of the records
+    /// Predict for calm weather, without the random yaw moment and the steady wind of the records
     #[arg(long)]
     pub calm: bool,
-    /// Ships that are drawn
+    /// Number of ships to draw
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
     pub draws: u32,
-    /// Also write the drawn ships, their parameters and their figures, a row each, as draws.parquet
+    /// Also write draws.parquet: one row per drawn ship, with its parameters and figures
     #[arg(long)]
     pub draws_file: bool,
-    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each; its ship is
-    /// the scale that is predicted for, unless --length-m says otherwise
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each; its ship
+    /// sets the scale of the prediction, unless --length-m is given
     #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
-    /// The scale that is predicted for: another length scales the ship by Froude
+    /// Scale of the prediction: another length scales the ship by Froude
     #[command(flatten)]
     pub scale: ScaleOptions,
     /// How figures are drawn, and whether
@@ -417,34 +416,34 @@ pub enum Described {
     Trials,
     /// NAME.truth.json, beside a simulated record
     Truth,
-    /// What a study, `report` and `score` say with --format json
+    /// Answer of a study, `report` and `score` with --format json
     Study,
-    /// What a shard of a study says
+    /// Answer of a shard of a study
     Shard,
-    /// What `find` says
+    /// Answer of `find`
     Find,
-    /// What `inspect` says
+    /// Answer of `inspect`
     Inspect,
-    /// What `check` says
+    /// Answer of `check`
     Check,
-    /// What `list` says
+    /// Answer of `list`
     List,
-    /// What `simulate` says
+    /// Answer of `simulate`
     Simulate,
-    /// What `sidecar` says
+    /// Answer of `sidecar`
     SidecarAnswer,
-    /// A line of what `fit --each` says
+    /// A line of `fit --each`
     FitEach,
-    /// What every command says on standard error when it fails
+    /// Error document of every command, on standard error
     Error,
 }
 
-/// What can be listed.
+/// Lists of `study list`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Listed {
     /// Identification methods with their settings
     Identifiers,
-    /// Effects a first-order response lacks
+    /// Effects that a first-order response may lack
     Effects,
     /// Ships
     Ships,
@@ -454,10 +453,10 @@ pub enum Listed {
     Sensors,
     /// Every key of a scenario
     Keys,
-    /// What columns of a record may be called
+    /// Names of columns of a record
     Columns,
-    /// What a sidecar may say
+    /// Keys of a sidecar
     Sidecar,
-    /// What particulars of a ship say about the coefficients of her MMG hull
+    /// Priors of the coefficients of an MMG hull from the particulars of the ship
     Priors,
 }

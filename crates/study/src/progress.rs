@@ -1,5 +1,5 @@
-//! How far work is, on standard error: a bar with the time that is left where that is a terminal, and elsewhere one
-//! line with the time to expect, where that is long.
+//! Progress on standard error: a bar with the remaining time on a terminal, elsewhere one line with the expected time
+//! of long work.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,8 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::screen;
 
-/// A bar over `length` of something; it goes away when the work is done.
-pub fn of(what: &str, length: u64, quiet: bool) -> ProgressBar {
+/// Progress bar over `length` steps; it disappears when the work is done.
+pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
@@ -18,33 +18,33 @@ pub fn of(what: &str, length: u64, quiet: bool) -> ProgressBar {
         .expect("the template is valid");
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr())
         .with_style(style)
-        .with_message(what.to_owned())
+        .with_message(label.to_owned())
         .with_finish(ProgressFinish::AndClear);
     bar.enable_steady_tick(Duration::from_millis(500));
     bar
 }
 
-/// A sign on standard error that work of unknown length goes on; hidden like a bar.
-pub fn busy(what: &'static str, quiet: bool) -> ProgressBar {
+/// Spinner on standard error for work of unknown length; hidden like a bar.
+pub fn busy(label: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]").expect("a fixed template");
-    let bar = ProgressBar::new_spinner().with_style(style).with_message(what);
+    let bar = ProgressBar::new_spinner().with_style(style).with_message(label);
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
 
-/// Time to expect, s, from which it is said where no bar is seen.
-const LONG: f64 = 10.0;
+/// Minimum expected time, s, that is printed where no bar is visible.
+const MIN_FORECAST_S: f64 = 10.0;
 
-/// Time after which the steps so far are taken for what comes: the first ones of many are slower.
-const ENOUGH: Duration = Duration::from_secs(1);
+/// Minimum elapsed time for a forecast: the first of many steps are slower.
+const MIN_ELAPSED: Duration = Duration::from_secs(1);
 
 /// A known number of steps that take about the same time.
 pub struct ProgressSteps {
     bar: ProgressBar,
-    what: &'static str,
+    label: &'static str,
     most: u64,
     done: AtomicU64,
     side_by_side: usize,
@@ -53,11 +53,11 @@ pub struct ProgressSteps {
 }
 
 impl ProgressSteps {
-    /// So many steps of which some are done already; `side_by_side` are worked on at a time.
-    pub fn new(what: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
+    /// `most` steps of which `done` are complete; `side_by_side` run at a time.
+    pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {
-            bar: of(what, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
-            what,
+            bar: bar(label, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
+            label,
             most: most.saturating_sub(done),
             done: AtomicU64::new(0),
             side_by_side,
@@ -66,27 +66,27 @@ impl ProgressSteps {
         }
     }
 
-    /// One more is done. The first one that takes a second, or those of a second, tell how long all will take.
+    /// Counts a finished step, and prints the forecast once after the first second.
     pub fn advance(&self) {
         self.bar.inc(1);
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
-        if elapsed >= ENOUGH && !self.is_told.swap(true, Ordering::Relaxed) {
-            // Those that are under way are about as far as the first that is done.
-            let line = forecast(self.what, self.most, done.max(self.side_by_side as u64), elapsed);
+        if elapsed >= MIN_ELAPSED && !self.is_told.swap(true, Ordering::Relaxed) {
+            // The steps under way are about as far as the first finished one.
+            let line = forecast(self.label, self.most, done.max(self.side_by_side as u64), elapsed);
             line.iter().for_each(|line| screen::warn(line));
         }
     }
 
-    /// No more are done.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish();
     }
 }
 
-/// How long so many steps take of which some took so long, where that is long.
-fn forecast(what: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
+/// Expected time of `most` steps after `done` took `elapsed`; `None` for short work.
+fn forecast(label: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
     let seconds = elapsed.as_secs_f64() * (most as f64 / done as f64).max(1.0);
-    (seconds >= LONG).then(|| format!("{most} {what}: about {seconds:.0} s"))
+    (seconds >= MIN_FORECAST_S).then(|| format!("{most} {label}: about {seconds:.0} s"))
 }
 
 #[cfg(test)]
@@ -95,9 +95,9 @@ mod tests {
 
     #[test]
     fn long_work_says_how_long() {
-        let said = |most, done, elapsed: f64| forecast("trials", most, done, Duration::from_secs_f64(elapsed));
-        assert_eq!(said(1000, 40, 1.0).as_deref(), Some("1000 trials: about 25 s"));
-        assert_eq!(said(9, 2, 60.0).as_deref(), Some("9 trials: about 270 s"));
-        assert_eq!((said(1000, 160, 1.0), said(1, 1, 9.0)), (None, None));
+        let line = |most, done, elapsed: f64| forecast("trials", most, done, Duration::from_secs_f64(elapsed));
+        assert_eq!(line(1000, 40, 1.0).as_deref(), Some("1000 trials: about 25 s"));
+        assert_eq!(line(9, 2, 60.0).as_deref(), Some("9 trials: about 270 s"));
+        assert_eq!((line(1000, 160, 1.0), line(1, 1, 9.0)), (None, None));
     }
 }

@@ -1,4 +1,4 @@
-//! Measured records as commands are given them: read with their warnings, told apart by name.
+//! Measured records of a command: expanded from folders, read with their warnings, named uniquely.
 
 use std::path::{Path, PathBuf};
 
@@ -19,20 +19,20 @@ use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::known::RecordFacts;
 use campaign::scenario::name;
 
-/// Endings of files that a folder of records is looked through for.
+/// File endings of records in a folder.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
 
-/// A record with this much beside its zig-zag is cut: that is a run-up, a stop, the way back to the course or another
-/// manoeuvre.
-const REST: f64 = 0.02;
+/// Maximum share of time outside the zig-zag for a record to be used whole; more is a run-up, a stop, the way back to
+/// the course or another manoeuvre, and is cut.
+const MAX_SURPLUS_SHARE: f64 = 0.02;
 
-/// The files that were named; a folder stands for all its records, in the order of their names, and `-` for standard
+/// Files of the given paths; a folder stands for all its records, in the order of their names, and `-` for standard
 /// input.
 ///
 /// Fails for a folder without any, and where standard input is to be read twice.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if paths.iter().filter(|path| *path == Path::new(STDIN)).count() > 1 {
-        return Err(Failure::input("- is given twice: standard input holds one record; give files for the others"));
+        return Err(Failure::input("- is given twice, but standard input holds one record; give files for the others"));
     }
     let mut files = Vec::new();
     for path in paths {
@@ -40,7 +40,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             files.push(path.clone());
             continue;
         }
-        // Among simulated records, each with its truth, are a list of them and answers.
+        // A folder of simulated records also holds a list of them and answers; only records have a truth beside them.
         let is_simulated = path.join(TRIALS).is_file();
         let is_record = |file: &PathBuf| {
             let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -49,45 +49,46 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
                 && (!is_simulated || file.with_extension("truth.json").is_file())
         };
         let entries = std::fs::read_dir(path).on("read", path)?;
-        let mut own: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
-        own.sort();
-        if own.is_empty() {
+        let mut records: Vec<PathBuf> =
+            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
+        records.sort();
+        if records.is_empty() {
             let endings = ENDINGS.join(", .");
             return Err(Failure::about(
                 path,
                 format!("this folder holds no record; expected files that end in .{endings}"),
             ));
         }
-        files.extend(own);
+        files.extend(records);
     }
     Ok(files)
 }
 
-/// Opens a log; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder
-/// that holds one for it; the channels of `others` are joined with it.
-pub fn open(path: &Path, columns: Option<&Path>, others: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
+/// Opens a log and adds the reader's `warnings`. `columns` is a description of its columns, or a folder with one for
+/// it; the channels of `parts` are joined with it.
+pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
         return Err(Failure::input(format!(
-            "{0}: this is a TOML file and no record; expected a table of time, heading and rudder. A scenario is run with \
-             `study {0}`, a description of columns is given with `--columns {0}`",
+            "{0}: this is a TOML file, not a record; expected a table of time, heading and rudder. Run a scenario with `study {0}`; give \
+             a description of columns with `--columns {0}`",
             path.display()
         )));
     }
     // Folders and figures are named after the record.
     name::of_file(called(path))?;
     let sidecar = Sidecar::describing(path, columns);
-    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(refused)?;
+    let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
     warnings.extend(source(called(path)).of(std::mem::take(&mut log.warnings)));
     Ok(log)
 }
 
-/// A record as the source of warnings; `path` is what messages call it.
+/// A record as the source of warnings; `path` is its name in messages.
 pub fn source(path: &Path) -> Source {
     Source::Record(path.display().to_string())
 }
 
-/// Why a file is no record, with the file told apart.
+/// Failure of a file that is not a record, with file and line as parts.
 fn refused(error: ReadError) -> Failure {
     let code = error.code();
     let failure = match error {
@@ -102,9 +103,9 @@ fn refused(error: ReadError) -> Failure {
     failure.with_code(code)
 }
 
-/// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
+/// Reads the records to identify: of each the selected part, or its zig-zag.
 ///
-/// Fails when one cannot be read, and when a log holds several zig-zags and nobody said which.
+/// Fails when one cannot be read, and when a log holds several zig-zags and none is selected.
 pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
     let files = expand(paths)?;
     let one_only = [
@@ -113,13 +114,13 @@ pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warn
         ("--from and --until", options.from.is_some() || options.until.is_some()),
     ];
     if let Some((option, _)) = one_only.iter().find(|(_, given)| *given && files.len() > 1) {
-        return Err(Failure::input(format!("{option} is for one record, {} are given; give one", files.len())));
+        return Err(Failure::input(format!("{option} is for one record, but {} are given; give one", files.len())));
     }
     files.iter().map(|path| read(path, options, warnings)).collect()
 }
 
-/// Reads records that are only replayed: of each its zig-zag.
-pub fn read_others(
+/// Reads records for replay only: of each its zig-zag.
+pub fn read_for_replay(
     paths: &[PathBuf],
     options: &ReadingOptions,
     warnings: &mut Warnings,
@@ -133,9 +134,9 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
     of_log(open(path, options.columns.as_deref(), &options.with_columns, warnings)?, called(path), options, warnings)
 }
 
-/// The record that a log holds: the part that was asked for, or its zig-zag. `path` is what messages call it.
+/// The record in a log: the selected part, or its zig-zag. `path` is its name in messages.
 ///
-/// Fails when that part is no record, and when the log holds several zig-zags and nobody said which.
+/// Fails when that part is not a record, and when the log holds several zig-zags and none is selected.
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
@@ -144,17 +145,17 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Wa
         chosen(log, path, options.trial, warnings)?
     };
     let ship = ship(&log, path, options, warnings)?;
-    let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
-    warnings.extend(source(path).of(found));
+    let ReadRecord { trial, warnings: reader_warnings } = log.into_trial(ship).map_err(refused)?;
+    warnings.extend(source(path).of(reader_warnings));
     with_hull(trial, path, &options.ship.form)
 }
 
-/// The record with what options say of the hull; they go before a sidecar, which says nothing of a ship of another
-/// length.
+/// The record with the hull particulars of the options, which override those of a sidecar; particulars of a ship of
+/// another length are dropped.
 fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
-    let length = trial.particulars().map(|own| own.length);
-    if conditions.particulars.is_some_and(|own| Some(own.length) != length) {
+    let length = trial.particulars().map(|ship| ship.length);
+    if conditions.particulars.is_some_and(|ship| Some(ship.length) != length) {
         conditions.hull = HullParticulars::default();
     }
     options.apply(&mut conditions.hull);
@@ -177,7 +178,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
             time.map(Some).ok_or_else(|| {
                 Failure::about(
                     path,
-                    format!("`{text}` is a time of day, and this record has no clock that shows it; give seconds"),
+                    format!("`{text}` is a time of day that the clock of this record does not show; give seconds"),
                 )
             })
         }
@@ -198,26 +199,28 @@ pub fn manoeuvres(log: &Log) -> Vec<FoundManoeuvre> {
     })
 }
 
-/// The manoeuvre that was asked for; else the zig-zag where the log holds one and much beside it.
+/// The selected manoeuvre; else the zig-zag, where the log holds one and is much longer than it.
 fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) -> Result<Log, Failure> {
     let file = path.display();
     if asked.is_none() && log.has_declared_part() {
         return Ok(log);
     }
-    let found = manoeuvres(&log);
+    let listed = manoeuvres(&log);
     let manoeuvre = match asked {
-        Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
-            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", found.len()))
+        Some(number) => number.checked_sub(1).and_then(|place| listed.get(place)).ok_or_else(|| {
+            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", listed.len()))
         })?,
         None => {
-            let zigzags: Vec<(usize, &FoundManoeuvre)> =
-                (1..).zip(&found).filter(|(_, one)| matches!(one.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect();
+            let zigzags: Vec<(usize, &FoundManoeuvre)> = (1..)
+                .zip(&listed)
+                .filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. })))
+                .collect();
             match zigzags.as_slice() {
                 [] => {
-                    if found.iter().any(|one| one.manoeuvre.is_none()) {
+                    if listed.iter().any(|manoeuvre| manoeuvre.manoeuvre.is_none()) {
                         let text = format!(
-                            "no zig-zag is recognised, the whole record is used; `study find {file}` lists what is; for \
-                             a part, write `from-s` and `until-s` under [part] of its sidecar"
+                            "no zig-zag is recognised, so the whole record is used; `study find {file}` lists its manoeuvres; to use a part, \
+                             write `from-s` and `until-s` under [part] of its sidecar"
                         );
                         warnings.push(Code::WholeRecord, source(path), text);
                     }
@@ -231,7 +234,7 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) 
     let (from, until) = (manoeuvre.from, manoeuvre.until);
     let time = log.time();
     let beside = (from - time[0]) + (time[time.len() - 1] - until);
-    if asked.is_none() && beside <= REST * (until - from) {
+    if asked.is_none() && beside <= MAX_SURPLUS_SHARE * (until - from) {
         return Ok(log);
     }
     let text = format!(
@@ -245,17 +248,17 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) 
     log.part(from, until).map_err(refused)
 }
 
-/// The question which of several zig-zags is meant.
+/// Error for a log with several zig-zags, which lists them with their `--trial` numbers.
 fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure {
-    let line = |(number, one): &(usize, &FoundManoeuvre)| {
-        format!("\n  --trial {number}: {}, {} to {}", one.name(), at(log, one.from), at(log, one.until))
+    let line = |(number, entry): &(usize, &FoundManoeuvre)| {
+        format!("\n  --trial {number}: {}, {} to {}", entry.name(), at(log, entry.from), at(log, entry.until))
     };
     let lines: String = several.iter().map(line).collect();
-    Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
+    Failure::about(path, format!("there are {} zig-zags in this log; choose one:{lines}", several.len()))
         .with_code(ErrorCode::SeveralManoeuvres)
 }
 
-/// A time of a log for people: seconds, and what the clock shows.
+/// A time of a log as text: seconds, and the reading of the clock.
 pub fn at(log: &Log, time: f64) -> String {
     let clock = log.clock.map(|clock| format!(" ({})", clock.at(time)));
     format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
@@ -283,36 +286,37 @@ fn ship(
     Ok(Some(Particulars { length, speed }))
 }
 
-/// Why records that have a speed or positions tell no track.
+/// Warning where records with a speed or positions give no track, with the reason.
 pub fn no_track(shown: &RecordFacts) -> Option<Warning> {
     shown.no_track.as_ref().map(|why| Code::NoTrack.warning(why))
 }
 
-/// What a negative dead time of so many seconds says, and what mends it.
+/// Message on a negative dead time, s: the rudder was logged late; and the remedy.
 pub fn rudder_logged_late(late: f64) -> String {
     let late = ShortNumber::rounded(late, 2);
     format!(
-        "the dead time is −{late} s, which no steering gear has: a rudder logged {late} s late; write `late-s = {late}` \
-         under [rudder] in a sidecar NAME.trial.toml"
+        "the dead time is −{late} s, which no steering gear has: the rudder was logged {late} s late; write `late-s = {late}` under \
+         [rudder] in a sidecar NAME.trial.toml"
     )
 }
 
-/// The same record counts only once: given twice for identification its errors come out too small, and on a record that
-/// was fitted there is nothing to validate.
-pub fn repetitions(trials: &[Trial], others: &[Trial]) -> Vec<Warning> {
-    let is_in = |records: &[Trial], own: &Trial| records.iter().any(|other| file_of(other).1 == file_of(own).1);
-    let twice = trials.iter().enumerate().filter(|(number, own)| is_in(&trials[..*number], own)).map(|(_, own)| own);
-    let in_both = others.iter().filter(|own| is_in(trials, own));
+/// Warnings on repeated records: given twice for identification a record makes the errors too small, and a fitted
+/// record validates nothing.
+pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
+    let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
+    let twice =
+        trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
+    let in_both = held_out.iter().filter(|trial| is_in(trials, trial));
     let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
     let idle = "used for identification and for validation; the error on it validates nothing";
-    let all = twice.map(|own| (own, narrow)).chain(in_both.map(|own| (own, idle)));
-    all.map(|(own, text)| Warning::new(Code::Repetition, source_of(own), text)).collect()
+    let all = twice.map(|trial| (trial, narrow)).chain(in_both.map(|trial| (trial, idle)));
+    all.map(|(trial, text)| Warning::new(Code::Repetition, source_of(trial), text)).collect()
 }
 
-/// A name for every record: its own, with a number where several have the same.
-pub fn names(own: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
+/// Unique names: the given ones, with a number where several are the same.
+pub fn names(given: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in own {
+    for name in given {
         let name = name.as_ref();
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         let unique = std::iter::once(name.to_owned()).chain(numbered).find(|candidate| !names.contains(candidate));
@@ -321,8 +325,7 @@ pub fn names(own: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     names
 }
 
-/// Where the results of a command go unless a folder is named: by the record, or by the first of several and their
-/// number.
+/// Default folder of the results: named after the record, or after the first of several and their number.
 pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
     let first = trials[0].name();
     PathBuf::from(match trials.len() {

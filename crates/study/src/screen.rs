@@ -1,6 +1,6 @@
-//! Writing to the terminal: results on standard output, warnings and errors on standard error. A reader that has gone
-//! away (`study list ships | head -1`) ends the writing and not the work. What could act on the terminal is shown and
-//! not sent: a path, a file or a stored label may hold it.
+//! Output to the terminal: results on standard output, warnings and errors on standard error. A closed pipe (`study
+//! list ships | head -1`) ends the output, not the work. Control characters, which a path, a file or a stored label may
+//! hold, are escaped.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -29,8 +29,7 @@ fn put(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to standard error, with the word it begins with in colour where a terminal shows that. Where it cannot
-/// be written, nobody is there to be told.
+/// Writes a line to standard error, with its first word in colour on a terminal. A failure to write is ignored.
 pub fn warn(line: &str) {
     let stream = std::io::stderr();
     let line = shown(line);
@@ -38,12 +37,12 @@ pub fn warn(line: &str) {
     let _ = writeln!(stream.lock(), "{line}");
 }
 
-/// Whether a stream goes to a terminal that shows colours, and nobody asked for none (`NO_COLOR`, `TERM=dumb`).
+/// Whether a stream goes to a terminal with colours, not switched off by `NO_COLOR` or `TERM=dumb`.
 pub fn is_coloured(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
 
-/// Words that say at the beginning of a line what it is, with their colours.
+/// First words of lines with their colours.
 const MARKS: [(&str, &str); 5] = [
     ("error:", "\x1b[1;31m"),
     ("warning:", "\x1b[1;33m"),
@@ -53,31 +52,31 @@ const MARKS: [(&str, &str); 5] = [
 ];
 
 fn coloured(lines: &str) -> String {
-    let one = |line: &str| match MARKS.iter().find(|(mark, _)| line.starts_with(mark)) {
+    let coloured_line = |line: &str| match MARKS.iter().find(|(mark, _)| line.starts_with(mark)) {
         Some((mark, colour)) => format!("{colour}{mark}\x1b[0m{}", &line[mark.len()..]),
         None => line.to_owned(),
     };
-    lines.split('\n').map(one).collect::<Vec<_>>().join("\n")
+    lines.split('\n').map(coloured_line).collect::<Vec<_>>().join("\n")
 }
 
-/// What a command found, in every form in which it may be asked for.
+/// Result of a command in every output format.
 pub struct CommandOutput<'a> {
-    /// Words before and behind the table.
-    pub words: [&'a str; 2],
+    /// Text before and after the table.
+    pub frame: [&'a str; 2],
     /// The table.
     pub table: &'a Table,
-    /// What else a person should know.
+    /// Notes below, such as the path of the file.
     pub notes: &'a str,
-    /// The whole for a program: the text of the file that was written.
+    /// The JSON document: the text of the file that was written.
     pub document: &'a str,
 }
 
-/// Tells a result, unless nothing is to be said, and what was noticed on the way. Where another program reads, table or
-/// document stand alone on standard output, and notes go to standard error.
+/// Prints a result and its warnings, unless the output is silent. In formats for programs, table or document stand
+/// alone on standard output, and notes go to standard error.
 ///
 /// Fails as [`say`] does.
 pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
-    let CommandOutput { words: [before, behind], table, notes, document } = output;
+    let CommandOutput { frame: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
         if !common.quiet {
             warn(line)
@@ -99,20 +98,20 @@ pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) 
     Ok(())
 }
 
-/// Writes warnings to standard error, one a line, unless none are wanted.
+/// Writes warnings to standard error, one per line, unless `--quiet` is given.
 pub fn warn_of(common: &Common, warnings: &[impl Display]) {
     let wanted = warnings.iter().filter(|_| !common.quiet);
     wanted.for_each(|warning| warn(&format!("warning: {warning}")));
 }
 
-/// Writes a document to standard output as it is: JSON shows by itself what could act on the terminal.
+/// Writes a document to standard output unchanged: JSON escapes control characters itself.
 ///
 /// Fails as [`say`] does.
 pub fn say_document(document: &str) -> Result<(), Failure> {
     put(document.trim_end())
 }
 
-/// The lines without anything but text in them, as they are written.
+/// Lines with control characters escaped.
 pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }

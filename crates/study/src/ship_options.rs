@@ -28,7 +28,7 @@ impl ScaleOptions {
     }
 }
 
-/// What is known of a ship.
+/// Known particulars of a ship.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ShipOptions {
     /// Her length and approach speed
@@ -40,23 +40,23 @@ pub struct ShipOptions {
 }
 
 impl ShipOptions {
-    /// Whether nothing is given.
+    /// Whether no particular is given.
     pub fn is_empty(&self) -> bool {
         self.scale.length_m.is_none() && self.form.0.is_empty()
     }
 }
 
-/// The options that are called as [`PARTICULARS`] are, without length and speed.
+/// Options with the keys of [`PARTICULARS`], without length and speed.
 #[derive(Debug, Clone, Default)]
 pub struct FormOptions(Vec<(&'static Particular, f64)>);
 
 impl FormOptions {
-    /// The first that is given.
+    /// Key of the first given particular.
     pub fn first(&self) -> Option<&'static str> {
         self.0.first().map(|(particular, _)| particular.key)
     }
 
-    /// Puts what is given in its place.
+    /// Sets the given particulars of a hull.
     pub fn apply(&self, hull: &mut HullParticulars) {
         self.0.iter().for_each(|(particular, value)| particular.set(hull, *value));
     }

@@ -1,4 +1,4 @@
-//! How figures are drawn, as options of the command line and as a file.
+//! Style of figures: options of the command line, and a file.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use report::Theme;
 use report::theme::{DPI, WIDTH_MM};
 use trial::file::{Kind, read_text};
 
-/// How figures are drawn.
+/// Style of figures.
 #[derive(Debug, Clone, Args)]
 pub struct FigureOptions {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
@@ -22,13 +22,13 @@ pub struct FigureOptions {
     pub style: Option<PathBuf>,
 }
 
-/// How the figures of a page are drawn, and whether.
+/// Style and selection of the figures of a page.
 #[derive(Debug, Clone, Args)]
 pub struct PageFigureOptions {
     /// How they are drawn
     #[command(flatten)]
     pub style: FigureOptions,
-    /// Whether figures are made; the document, the curves and the page in words are always written
+    /// Whether figures are made; the document, the curves and the text of the page are always written
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = PageFigures::All)]
     pub figures: PageFigures,
 }
@@ -50,7 +50,7 @@ impl PageFigureOptions {
     }
 }
 
-/// How the figures of a study are drawn, and which.
+/// Style and selection of the figures of a study.
 #[derive(Debug, Clone, Args)]
 pub struct StudyFigureOptions {
     /// How they are drawn
@@ -69,7 +69,7 @@ pub enum FigureChoice {
     Named,
     /// All there are
     All,
-    /// The one that stands for the study, `output.figure`
+    /// The key figure of the study, `output.figure`
     Hero,
     /// None
     None,
@@ -84,23 +84,24 @@ pub(crate) fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, St
 }
 
 impl FigureOptions {
-    /// The theme of the figures; what the command line says goes before the file. Fails when no page carries it, and
-    /// when the file cannot be read.
+    /// The theme of the figures; the command line overrides the file.
+    ///
+    /// Fails for a width or resolution out of range, and when the file cannot be read.
     pub fn theme(&self) -> Result<Theme, Failure> {
         let file = self.style.as_deref();
-        let own = file.map(style_of).transpose()?.unwrap_or_default();
+        let style = file.map(style_of).transpose()?.unwrap_or_default();
         let named = |error: String| match file {
             Some(file) => Failure::about(file, error),
             None => Failure::input(error),
         };
         let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
-        let printed = printed.or_else(|| Some((own.width_mm?, own.dpi.unwrap_or(self.dpi))));
+        let printed = printed.or_else(|| Some((style.width_mm?, style.dpi.unwrap_or(self.dpi))));
         let theme = match printed {
             None => Theme::screen(),
             Some((width_mm, dpi)) => Theme::paper(width_mm, dpi).map_err(|error| named(error.to_string()))?,
         };
-        let own = report::Style { dpi: own.dpi.filter(|_| self.paper.is_none()), ..own };
-        own.on(theme).map_err(|error| named(error.to_string()))
+        let style = report::Style { dpi: style.dpi.filter(|_| self.paper.is_none()), ..style };
+        style.on(theme).map_err(|error| named(error.to_string()))
     }
 }
 
@@ -131,7 +132,7 @@ mod tests {
     fn a_wrong_style_is_refused_with_its_file_and_key() {
         let dir = tempfile::tempdir().expect("a folder");
         let path = dir.path().join("own.toml");
-        for (text, said) in [
+        for (text, message) in [
             ("colour = 1", "unknown field `colour`, expected one of `width-mm`, `dpi`"),
             ("width-mm = 3", "3 mm"),
             ("dpi = 10", "dpi = 10: expected a number from 72 to 1200"),
@@ -139,7 +140,7 @@ mod tests {
         ] {
             fs::write(&path, text).expect("written");
             let error = theme(&path).expect_err("refused").to_string();
-            assert!(error.contains("own.toml") && error.contains(said), "{error}");
+            assert!(error.contains("own.toml") && error.contains(message), "{error}");
         }
         fs::write(&path, "#".repeat((1 << 20) + 1)).expect("written");
         let error = theme(&path).expect_err("refused").to_string();

@@ -1,4 +1,4 @@
-//! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
+//! Observer of a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
 
 use std::sync::OnceLock;
 
@@ -8,17 +8,17 @@ use campaign::failure::Failure;
 use crate::progress::ProgressSteps;
 use crate::{interrupt, screen};
 
-/// The terminal of a person who waits.
+/// Observer that reports progress on the terminal.
 pub struct Terminal {
     quiet: bool,
-    what: &'static str,
+    label: &'static str,
     steps: OnceLock<ProgressSteps>,
 }
 
 impl Terminal {
-    /// A terminal without a bar yet; `what` is done step by step.
-    pub fn new(what: &'static str, quiet: bool) -> Self {
-        Self { quiet, what, steps: OnceLock::new() }
+    /// A terminal without a bar yet; `label` names the steps.
+    pub fn new(label: &'static str, quiet: bool) -> Self {
+        Self { quiet, label, steps: OnceLock::new() }
     }
 }
 
@@ -26,7 +26,7 @@ impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::listen(true);
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| ProgressSteps::new(self.what, most, done, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new(self.label, most, done, threads, self.quiet));
     }
 
     fn advance(&self) {

@@ -1,10 +1,10 @@
-//! How many threads the program starts.
+//! Number of threads of the program.
 
 use campaign::failure::Failure;
 
-use crate::options::{Common, MOST_THREADS};
+use crate::options::{Common, MAX_THREADS};
 
-/// The variable of the environment that says how many threads to start where the command line does not.
+/// Environment variable for the number of threads where the command line gives none.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Processors that this program may use.
@@ -12,18 +12,18 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Threads that parallel work gets.
+/// Number of threads for parallel work.
 pub fn count(common: &Common) -> usize {
     let variable = std::env::var(THREADS).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
     common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
 }
 
-/// How many threads a machine of so many `cores` starts where the `variable` [`THREADS`] is all that is said: a number
-/// above 0 is meant, up to the most that can be asked for.
+/// Number of threads on a machine of so many `cores` with this value of the `variable` [`THREADS`]: a number above 0,
+/// up to [`MAX_THREADS`]; else `cores`.
 fn threads_of(variable: Option<&str>, cores: usize) -> usize {
-    // Digits beyond all bounds are a number that is too large.
+    // A number too large to parse is above the maximum, too.
     let asked = variable.filter(|digits| !digits.is_empty()).map(|digits| digits.parse().unwrap_or(usize::MAX));
-    asked.filter(|threads| *threads > 0).unwrap_or(cores).min(MOST_THREADS as usize)
+    asked.filter(|threads| *threads > 0).unwrap_or(cores).min(MAX_THREADS as usize)
 }
 
 /// Starts the threads of all parallel work.

@@ -1,5 +1,5 @@
-//! `study bench`: the benchmark on measured and simulated trials. Its studies are run as any others, its numbers are
-//! made in `campaign::benchmark`; here its tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. Its studies run like any other and
+//! `campaign::benchmark` computes its scores; this module writes tables, figures and files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,21 +37,21 @@ const LEADERBOARD: &str = "leaderboard.csv";
 /// Folder with a page for every method.
 const METHODS: &str = "methods";
 
-/// What `study bench` is asked to do.
+/// Arguments of `study bench`.
 #[derive(Debug, Clone, Args)]
 pub struct BenchRequest {
     /// Scenarios of a benchmark of your own [default: those of scenarios/bench, which are part of the program]
     #[arg(value_name = "SCENARIO.toml")]
     pub scenarios: Vec<PathBuf>,
-    /// Methods that take part [default: all]
+    /// Methods to compare [default: all]
     #[arg(long = "method", value_name = "LABEL", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::entrants))]
     pub methods: Vec<String>,
-    /// Tasks that are set [default: all]
+    /// Tasks to score [default: all]
     #[arg(long = "task", value_name = "ID", hide_possible_values = true,
         value_parser = completed(task, completed::tasks))]
     pub tasks: Vec<BenchTask>,
-    /// Names of the scenarios that are run [default: all]
+    /// Names of the scenarios to run [default: all]
     #[arg(long = "set", value_name = "NAME")]
     pub sets: Vec<String>,
     /// Discard rows of an earlier run in the folder instead of going on with them
@@ -64,12 +64,12 @@ pub struct BenchRequest {
 
 fn task(name: &str) -> Result<BenchTask, String> {
     BenchTask::ALL.into_iter().find(|task| task.id() == name).ok_or_else(|| {
-        let known = BenchTask::ALL.map(BenchTask::id);
-        format!("there is no such task; {}", suggestion(name, &known))
+        let ids = BenchTask::ALL.map(BenchTask::id);
+        format!("there is no such task; {}", suggestion(name, &ids))
     })
 }
 
-/// Methods of the caller, by their labels.
+/// Methods of the caller with their labels.
 pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
 
 /// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; `entrants`
@@ -92,7 +92,7 @@ pub fn measure(
     are_known(&request.sets, scenarios.iter().map(|scenario| scenario.name.as_str()), "--set", "scenario")?;
     are_known(&request.methods, scenarios.iter().flat_map(Scenario::labels), "--method", "method")?;
     let (mut studies, mut absent) = (Vec::new(), Vec::new());
-    for scenario in scenarios.into_iter().filter(|own| request.sets.is_empty() || request.sets.contains(&own.name)) {
+    for scenario in scenarios.into_iter().filter(|set| request.sets.is_empty() || request.sets.contains(&set.name)) {
         let Some(mut scenario) = scenario.with_methods(&request.methods) else { continue };
         for (label, identifier) in entrants {
             scenario = scenario.with_identifier(label, Arc::clone(identifier))?;
@@ -117,23 +117,23 @@ pub fn measure(
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
         return Err(Failure::input(format!(
-            "there is no question to ask:\n  {}\nKEMPF_DATA names the folder with the measured records",
+            "there is nothing to score:\n  {}\nset KEMPF_DATA to the folder with the measured records",
             reasons.join("\n  ")
         )));
     }
     Ok(results)
 }
 
-/// Refuses a word of an option that names nothing.
+/// Fails for an option value that is not among the `names`.
 fn are_known<'a>(
-    words: &[String],
-    known: impl Iterator<Item = &'a str>,
+    asked: &[String],
+    names: impl Iterator<Item = &'a str>,
     option: &str,
-    what: &str,
+    kind: &str,
 ) -> Result<(), Failure> {
-    let known: Vec<&str> = known.collect();
-    match words.iter().find(|word| !known.contains(&word.as_str())) {
-        Some(word) => Err(Failure::input(format!("{option} {word}: no such {what}; {}", suggestion(word, &known)))),
+    let names: Vec<&str> = names.collect();
+    match asked.iter().find(|word| !names.contains(&word.as_str())) {
+        Some(word) => Err(Failure::input(format!("{option} {word}: no such {kind}; {}", suggestion(word, &names)))),
         None => Ok(()),
     }
 }
@@ -154,7 +154,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
 /// Fails when they cannot be written.
 pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
     let text = publish(results, folder, theme)?;
-    let notes: String = results.skipped.iter().map(|own| format!("skipped: {}\n", skipped(own))).collect();
+    let notes: String = results.skipped.iter().map(|record| format!("skipped: {}\n", skipped(record))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
     let naming = match results.naming.is_empty() {
         true => String::new(),
@@ -162,13 +162,13 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
     };
     let head = format!("{}\n", counted(results.cases.len() as u64, "question"));
     let table = bench_tables::leaderboard(results);
-    let output = CommandOutput { words: [&head, &naming], table: &table, notes: &notes, document: &text };
+    let output = CommandOutput { frame: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::tell(common, &output, &[] as &[&str])
 }
 
 /// A record that was not used, in a line.
-pub fn skipped(own: &Skipped) -> String {
-    format!("{}, {}: {}", own.set, own.record, own.reason)
+pub fn skipped(record: &Skipped) -> String {
+    format!("{}, {}: {}", record.set, record.record, record.reason)
 }
 
 /// Writes everything; what an earlier run left and this one does not make goes away. The text of the document.

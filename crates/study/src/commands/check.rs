@@ -13,13 +13,13 @@ use campaign::scenario::Scenario;
 use report::number::counted;
 use simulate::Assumption;
 
-/// What `study check` is asked to do.
+/// Arguments of `study check`.
 #[derive(Debug, Clone, Args)]
 pub struct CheckRequest {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO.toml")]
     pub scenarios: Vec<PathBuf>,
-    /// Print every scenario with nothing left out, as TOML; defaults are marked
+    /// Print every scenario completely, as TOML; defaults are marked
     #[arg(long)]
     pub resolved: bool,
 }
@@ -46,8 +46,8 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
     }
     let mut wrong = wrong.into_iter();
     let Some(first) = wrong.next() else { return Ok(()) };
-    let others: String = wrong.map(|failure| format!("\n\n{failure}")).collect();
-    Err(Failure { message: format!("{}{others}", first.message), ..first })
+    let more: String = wrong.map(|failure| format!("\n\n{failure}")).collect();
+    Err(Failure { message: format!("{}{more}", first.message), ..first })
 }
 
 /// A scenario that is right, for a program.

@@ -28,7 +28,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
         (true, true) => "terminal with colours",
     };
     let (output, errors) = (std::io::stdout(), std::io::stderr());
-    let found = [
+    let checks = [
         ("version", manifest::version()),
         ("machine", format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS)),
         ("processors", threads::cores().to_string()),
@@ -43,9 +43,9 @@ pub fn run(common: &Common) -> Result<(), Failure> {
         ),
     ];
     let mut table = Table::new(TableHead::default().texts(["what", "found"]));
-    found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
-    let found = found.into_iter().map(|(name, value)| (name.replace(' ', "_"), value)).collect();
-    reply(common, &DoctorAnswer { found }, common.format.render(&table).trim_end())?;
+    checks.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
+    let checks = checks.into_iter().map(|(name, value)| (name.replace(' ', "_"), value)).collect();
+    reply(common, &DoctorAnswer { found: checks }, common.format.render(&table).trim_end())?;
     written
 }
 

@@ -20,7 +20,7 @@ use campaign::failure::Failure;
 fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     let files = expand(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
-        return Err(Failure::input(format!("--with-columns is for one log, {} are given; give one", files.len())));
+        return Err(Failure::input(format!("--with-columns is for one log, but {} are given; give one", files.len())));
     }
     Ok(files)
 }
@@ -28,9 +28,9 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 /// The manoeuvres of every log, for other programs.
 ///
 /// Fails when a log cannot be read.
-pub fn found(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
-    let one = |file: &PathBuf| entry(file, request, warnings);
-    let logs = files(request)?.iter().map(one).collect::<Result<_, Failure>>()?;
+pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
+    let entry_of = |file: &PathBuf| entry(file, request, warnings);
+    let logs = files(request)?.iter().map(entry_of).collect::<Result<_, Failure>>()?;
     Ok(FindAnswer { logs, warnings: warnings.ranked() })
 }
 
@@ -45,7 +45,7 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<
 pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     if common.format == Format::Json {
-        documents::say(&found(request, &mut warnings)?)?;
+        documents::say(&find_answer(request, &mut warnings)?)?;
         screen::warn_of(common, &warnings.ranked());
         return Ok(());
     }
@@ -65,29 +65,29 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
             screen::say(&format!("{head}\nno manoeuvre found\n"))?;
             continue;
         }
-        let remarked = manoeuvres.iter().filter(|one| !one.remarks.is_empty());
-        let remarks: String = remarked.map(|one| format!("{}: {}\n", one.trial, one.remarks.join(" "))).collect();
+        let remarked = manoeuvres.iter().filter(|entry| !entry.remarks.is_empty());
+        let remarks: String = remarked.map(|entry| format!("{}: {}\n", entry.trial, entry.remarks.join(" "))).collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     screen::warn_of(common, &warnings.ranked());
     Ok(())
 }
 
-fn table(found: &[ManoeuvreEntry]) -> Table {
+fn table(manoeuvres: &[ManoeuvreEntry]) -> Table {
     let head = TableHead::default().numbers(["--trial"]).texts(["manoeuvre"]).numbers(["from", "until"]).unit("s");
     let head = head.texts(["clock"]).numbers(["executes"]).numbers(["rudder", "heading"]).unit("deg");
     let mut table = Table::new(head);
-    for one in found {
-        let clock = one.clock.as_ref().map(|[from, until]| format!("{from} to {until}"));
+    for manoeuvre in manoeuvres {
+        let clock = manoeuvre.clock.as_ref().map(|[from, until]| format!("{from} to {until}"));
         table.push([
-            one.trial.to_string(),
-            one.kind.clone(),
-            fixed(one.from_s, 1),
-            fixed(one.until_s, 1),
+            manoeuvre.trial.to_string(),
+            manoeuvre.kind.clone(),
+            fixed(manoeuvre.from_s, 1),
+            fixed(manoeuvre.until_s, 1),
             clock.unwrap_or_else(|| MISSING.to_owned()),
-            one.executes.to_string(),
-            optional(one.rudder_deg, 1),
-            optional(one.heading_deg, 1),
+            manoeuvre.executes.to_string(),
+            optional(manoeuvre.rudder_deg, 1),
+            optional(manoeuvre.heading_deg, 1),
         ]);
     }
     table

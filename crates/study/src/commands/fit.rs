@@ -11,7 +11,7 @@ use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::{self, FIT, folder_for_records};
 use crate::options::{Common, FitRequest};
-use crate::records::{default_folder, read_all, read_others, repetitions};
+use crate::records::{default_folder, read_all, read_for_replay, repetitions};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
@@ -29,12 +29,12 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Warnings::default();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
-    let others = read_others(&request.validate, &request.reading, &mut warnings)?;
-    warnings.extend(repetitions(&trials, &others));
+    let validation = read_for_replay(&request.validate, &request.reading, &mut warnings)?;
+    warnings.extend(repetitions(&trials, &validation));
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit"));
     let place = folder_for_records(FIT, &place, &trials)?;
-    let fit = fit([&trials, &others], &methods, &priors, common.quiet, warnings)?;
+    let fit = fit([&trials, &validation], &methods, &priors, common.quiet, warnings)?;
     let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();
     let text = documents::keep_with_curves(&folder, FIT, &fit.document, &curves)?;
@@ -54,22 +54,22 @@ pub fn show(
 ) -> Result<(), Failure> {
     curve_tables::write_replays(curves, folder)?;
     write_page(folder, fit_page::page(document, curves), theme)?;
-    let rest = format!("{}\nresults: {}", fit_page::rest(document, curves), folder.path().join(FIT).display());
-    let verdict = fit_page::verdict(document).map_or_else(String::new, |words| format!("{words}\n\n"));
+    let notes = format!("{}\nresults: {}", fit_page::below_table(document, curves), folder.path().join(FIT).display());
+    let verdict = fit_page::verdict(document).map_or_else(String::new, |sentences| format!("{sentences}\n\n"));
     let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
     let table = fit_page::answers(document, curves);
-    let output = CommandOutput { words: [&head, ""], table: &table, notes: &rest, document: text };
+    let output = CommandOutput { frame: [&head, ""], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, &shortened(document.of_answer()))
 }
 
 /// Warnings that stand on the screen.
-const ON_SCREEN: usize = 3;
+const MAX_SCREEN_WARNINGS: usize = 3;
 
 /// The first warnings, and how many there are beside them.
 fn shortened<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<String> {
     let mut lines: Vec<String> = warnings.map(Warning::to_string).collect();
-    let more = lines.len().saturating_sub(ON_SCREEN);
-    lines.truncate(ON_SCREEN);
+    let more = lines.len().saturating_sub(MAX_SCREEN_WARNINGS);
+    lines.truncate(MAX_SCREEN_WARNINGS);
     lines.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
     lines
 }

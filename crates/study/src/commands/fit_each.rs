@@ -13,7 +13,7 @@ use crate::work::fit::methods;
 use crate::{progress, screen};
 
 /// Logs that are fitted before lines of JSON are written.
-const AT_ONCE: usize = 64;
+const CHUNK_LOGS: usize = 64;
 
 /// Identifies every log alone and prints a row for it, in the order in which they were named.
 ///
@@ -21,15 +21,15 @@ const AT_ONCE: usize = 64;
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let files = expand(&request.trials)?;
-    let bar = progress::of("logs", files.len() as u64, common.quiet);
-    let one = |file| {
+    let bar = progress::bar("logs", files.len() as u64, common.quiet);
+    let fit_of = |file| {
         let fit = LogFit::of(file, &methods, &request.reading);
         bar.inc(1);
         fit
     };
     let mut fits: Vec<LogFit> = Vec::with_capacity(files.len());
-    for part in files.chunks(AT_ONCE) {
-        let done: Vec<LogFit> = part.par_iter().map(|file| one(file)).collect();
+    for part in files.chunks(CHUNK_LOGS) {
+        let done: Vec<LogFit> = part.par_iter().map(|file| fit_of(file)).collect();
         if common.format == Format::Json {
             bar.suspend(|| done.iter().try_for_each(|fit| screen::say_document(&line(fit)?)))?;
         }

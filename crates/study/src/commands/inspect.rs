@@ -16,7 +16,7 @@ use crate::records::{open, source};
 use crate::screen::{self, CommandOutput};
 use campaign::failure::Failure;
 
-/// What `study inspect` is asked to do.
+/// Arguments of `study inspect`.
 #[derive(Debug, Clone, Args)]
 pub struct InspectRequest {
     /// The log
@@ -40,14 +40,14 @@ pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     warnings.extend(source(file).of(doubts(log.clone())));
     let answer = InspectAnswer::of(file, &log, warnings.ranked());
     let before = format!("{}: {} rows, {} s\n", answer.file, answer.rows, fixed(answer.duration_s, 1));
-    let text = documents::of(&answer)?;
-    let output = CommandOutput { words: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
+    let text = documents::answer_text(&answer)?;
+    let output = CommandOutput { frame: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
     screen::tell(common, &output, &answer.warnings)
 }
 
-/// What is said of the log as one record.
+/// Warnings of the log read as one record; the reason where it cannot be.
 fn doubts(log: Log) -> Vec<Warning> {
-    let refused = |problem: String| vec![Code::Implausible.warning(format!("as one record it is refused: {problem}"))];
+    let refused = |problem: String| vec![Code::Implausible.warning(format!("not usable as one record: {problem}"))];
     match log.into_trial(None) {
         Ok(read) => read.warnings,
         Err(ReadError::Table { problem, .. }) => refused(problem.to_string()),
@@ -58,7 +58,7 @@ fn doubts(log: Log) -> Vec<Warning> {
 fn table(channels: &[ChannelEntry]) -> Table {
     let head = TableHead::default().texts(["channel", "source"]).numbers(["readings"]);
     let head = head.numbers(["every", "longest gap", "from"]).unit("s").numbers(["lowest", "highest", "step"]);
-    let head = head.texts(["unit"]).numbers(["wraps"]).texts(["positive turns to", "held against"]);
+    let head = head.texts(["unit"]).numbers(["wraps"]).texts(["positive turns to", "compared with"]);
     let mut table = Table::new(head.numbers(["scale"]).numbers(["lag"]).unit("s"));
     let text = |text: &Option<String>| text.clone().unwrap_or_else(|| MISSING.to_owned());
     let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);

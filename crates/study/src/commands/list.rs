@@ -1,4 +1,4 @@
-//! `study list`: what scenario files can name.
+//! `study list`: methods, effects, ships, manoeuvres, sensors, keys, column names and priors.
 
 use std::path::PathBuf;
 
@@ -20,15 +20,15 @@ use trial::sidecar::{self, Key, Sidecar};
 use campaign::failure::Failure;
 use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
-/// What `study list` is asked to do.
+/// Arguments of `study list`.
 #[derive(Debug, Clone, Args)]
 pub struct ListRequest {
     /// What to list
     pub what: Listed,
-    /// For priors: sidecar of a record whose tables ship and form say what is known of the ship
+    /// For priors: sidecar whose tables [ship] and [form] give the particulars of the ship
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
-    /// For priors: what is known of the ship
+    /// For priors: particulars of the ship
     #[command(flatten)]
     pub ship: ShipOptions,
 }
@@ -37,9 +37,7 @@ pub struct ListRequest {
 pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
     let what = request.what;
     if what != Listed::Priors && !(request.columns.is_none() && request.ship.is_empty()) {
-        return Err(Failure::input(
-            "particulars of a ship change no list but that of `study list priors`; leave them out",
-        ));
+        return Err(Failure::input("particulars of a ship apply to `study list priors` only; leave them out"));
     }
     let table = match what {
         Listed::Identifiers => identifiers()?,
@@ -56,7 +54,7 @@ pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
         return documents::say(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
     }
-    // What stands before a list in Markdown, which is a page of the documentation.
+    // Head of a list in Markdown, which is a page of the documentation.
     let head = match what {
         _ if common.format != Format::Markdown => "",
         Listed::Identifiers => include_str!("../../templates/list-identifiers.md"),
@@ -91,7 +89,7 @@ fn effects() -> Table {
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect.in_file().map(|numbers| numbers.iter().map(|own| own.key).collect::<Vec<_>>().join(", "));
+        let keys = effect.in_file().map(|numbers| numbers.iter().map(|entry| entry.key).collect::<Vec<_>>().join(", "));
         let keys = keys.unwrap_or_else(|| MISSING.to_owned());
         table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
@@ -136,29 +134,29 @@ fn keys_below(part: &str) -> Table {
     table
 }
 
-/// What columns may be called.
+/// Names of columns by channel.
 fn columns() -> Table {
     let mut table = Table::new(TableHead::default().texts(["holds", "names", "understood as well"]));
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
-        let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
+        let names: Vec<&str> = names::names().filter(|(_, meaning)| wanted(*meaning)).map(|(name, _)| name).collect();
         names.join(", ")
     };
-    let time = usual(&|said| matches!(said, ColumnMeaning::Time(_)));
+    let time = usual(&|meaning| matches!(meaning, ColumnMeaning::Time(_)));
     table.push(["time", "t_s, t_ms, t_min", &format!("{time}; seconds, or stamps of date and time")]);
-    table.push(["date beside the time", "", &usual(&|said| said == ColumnMeaning::Date)]);
+    table.push(["date beside the time", "", &usual(&|meaning| meaning == ColumnMeaning::Date)]);
     for channel in Channel::ALL {
         let accepted = channel.accepted_names().replace(" or ", ", ");
-        let of_channel = |said| matches!(said, ColumnMeaning::Channel(found, _) if found == channel);
-        let over_ground = |said| channel == Channel::Speed && matches!(said, ColumnMeaning::OverGround(_));
+        let of_channel = |meaning| matches!(meaning, ColumnMeaning::Channel(held, _) if held == channel);
+        let over_ground = |meaning| channel == Channel::Speed && matches!(meaning, ColumnMeaning::OverGround(_));
         let holds = ::document::names::plain(channel.quantity());
-        table.push([&holds, &accepted, &usual(&|said| of_channel(said) || over_ground(said))]);
+        table.push([&holds, &accepted, &usual(&|meaning| of_channel(meaning) || over_ground(meaning))]);
     }
     table.push([
         "position, deg",
         "",
-        &usual(&|said| matches!(said, ColumnMeaning::Latitude | ColumnMeaning::Longitude)),
+        &usual(&|meaning| matches!(meaning, ColumnMeaning::Latitude | ColumnMeaning::Longitude)),
     ]);
-    table.push(["course over ground, not used", "", &usual(&|said| said == ColumnMeaning::Course)]);
+    table.push(["course over ground, not used", "", &usual(&|meaning| meaning == ColumnMeaning::Course)]);
     table
 }
 
@@ -170,7 +168,7 @@ fn sidecar() -> Table {
     table
 }
 
-/// What stands for particulars that are missing, and the prior of every coefficient.
+/// Values assumed for missing particulars, and the prior of every coefficient.
 fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Failure> {
     let declared = columns.as_deref().map(Sidecar::load).transpose().map_err(Failure::input)?;
     let mut hull = declared.map(|sidecar| sidecar.conditions.hull).unwrap_or_default();
@@ -194,9 +192,9 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
         let symbol = Particular::named(key).map_or("", |particular| particular.symbol);
         table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::SOURCE_OF_RATIOS]);
     }
-    for own in &prior.coefficients {
-        let Formula { key, symbol, text, source, .. } = *own.formula;
-        table.push([key, symbol, &digits(own.mean), &digits(own.sd), text, source]);
+    for coefficient in &prior.coefficients {
+        let Formula { key, symbol, text, source, .. } = *coefficient.formula;
+        table.push([key, symbol, &digits(coefficient.mean), &digits(coefficient.sd), text, source]);
     }
     Ok(table)
 }

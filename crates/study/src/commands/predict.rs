@@ -12,7 +12,7 @@ use trial::{Sidecar, Trial};
 
 use crate::documents::{self, PREDICT, draws, folder_for};
 use crate::options::{Common, PredictRequest};
-use crate::records::read_others;
+use crate::records::read_for_replay;
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
@@ -31,8 +31,8 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     if !request.ballast.is_empty() && request.replays.is_empty() {
         return Err(Failure::input(
-            "--ballast is the model of a ship as she was tried, and no trial is given; name the record that is to be \
-             corrected to full load with --replay",
+            "--ballast is the model of the ship in her trial condition, but no trial is given; name the record to correct to full load \
+             with --replay",
         ));
     }
     let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
@@ -43,7 +43,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
     let current = request.current_from.as_ref();
     let current = current.map(|path| current_from(path, request, &mut warnings)).transpose()?;
-    let records: Vec<Trial> = read_others(&request.replays, &request.reading(), &mut warnings)?;
+    let records: Vec<Trial> = read_for_replay(&request.replays, &request.reading(), &mut warnings)?;
     let columns = request.columns.as_deref().filter(|path| records.is_empty() && path.is_file());
     let declared = columns.map(Sidecar::load).transpose().map_err(Failure::input)?;
     let file = columns.map(|path| path.display().to_string());
@@ -79,9 +79,9 @@ pub fn show(
         folder.write(FORM, predict_form::page(form, remarks).to_markdown())?;
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
-    let [before, behind] = [predict_page::words(predicted), predict_page::rest(predicted)];
+    let [before, behind] = [predict_page::summary(predicted), predict_page::below_table(predicted)];
     let table = predict_tables::figures(predicted);
-    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
+    let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }
 
@@ -89,19 +89,18 @@ pub fn show(
 fn default_folder(model: &Path) -> PathBuf {
     let model = called(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
-    let own =
+    let name =
         model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
-    let own = own.filter(|name| !name.is_empty()).unwrap_or_else(|| String::from("model"));
-    PathBuf::from(format!("{own}-predict"))
+    let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| String::from("model"));
+    PathBuf::from(format!("{name}-predict"))
 }
 
 /// The current that a record shows.
 fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Current, Failure> {
-    let records = read_others(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
+    let records = read_for_replay(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
     records.first().and_then(turn::current_of).ok_or_else(|| {
         Failure::input(format!(
-            "--current-from {}: this record shows no current; give positions north_m and east_m of a circle in which the \
-             rudder is held for 720° or more",
+            "--current-from {}: no current can be read from this record; give a circle of 720° or more with positions north_m and east_m",
             path.display()
         ))
     })

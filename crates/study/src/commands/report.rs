@@ -1,5 +1,5 @@
 //! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark, from
-//! what is stored and nothing else. Of several studies also the page over them.
+//! its stored files alone. For several studies also the page over them.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -21,10 +21,10 @@ use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 use crate::views::studies_page;
 
-/// What `study report` is asked to do.
+/// Arguments of `study report`.
 #[derive(Debug, Clone, Args)]
 pub struct ReportRequest {
-    /// Folder of a finished study, a fit, a trace, a prediction or a benchmark; of several studies also one page over
+    /// Folder of a finished study, a fit, a trace, a prediction or a benchmark; for several studies also one page over
     /// all is written, README.md in the folder that holds them or in --out
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
@@ -45,14 +45,12 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
         return report(folder, request, common);
     }
     if common.format != Format::Text {
-        return Err(Failure::input(
-            "--format: an answer in this form is about one study; give one folder, or no --format",
-        ));
+        return Err(Failure::input("--format applies to one study; give one folder, or leave --format out"));
     }
     let place = common.out.clone().map_or_else(|| shared_folder(folders), Ok)?;
     studies_page::is_possible(folders, &place)?;
-    let own = Common { out: None, ..common.clone() };
-    folders.iter().try_for_each(|folder| report(folder, request, &own))?;
+    let in_place = Common { out: None, ..common.clone() };
+    folders.iter().try_for_each(|folder| report(folder, request, &in_place))?;
     let page = studies_page::write(folders, &ResultFolder::make(&place)?)?;
     if common.quiet { Ok(()) } else { screen::say(&format!("page over {} studies: {}", folders.len(), page.display())) }
 }
@@ -65,7 +63,7 @@ fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
     };
     let mut all = folders.iter().map(holding);
     let first = all.next().flatten().filter(|first| all.all(|other| other.as_ref() == Some(first)));
-    let problem = "the folders do not lie beside each other; say with --out DIR where the page over them is to be";
+    let problem = "the folders do not lie beside each other; give a place for the page over them with --out DIR";
     first.ok_or_else(|| Failure::input(problem))
 }
 
@@ -108,7 +106,7 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(
     publish(&stored, &folder, &theme, style.figures, common)
 }
 
-/// What opens a file with the program of the user's choice.
+/// Program that opens a file in the user's browser.
 #[cfg(target_os = "macos")]
 const OPENER: (&str, &[&str]) = ("open", &[]);
 #[cfg(windows)]
@@ -121,7 +119,7 @@ fn show(page: &Path) -> Result<(), Failure> {
     let shown = page.display();
     if !page.is_file() {
         return Err(Failure::input(format!(
-            "{shown}: there is no such page; run the command that made the folder again, it writes the page"
+            "{shown}: there is no such page; run the command that made the folder again to write it"
         )));
     }
     let (program, options) = OPENER;

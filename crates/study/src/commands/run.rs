@@ -30,7 +30,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     let manifest = collect_shard(&scenario, shard, &folder, request.restart, &terminal)?;
     let place = folder.path().display().to_string();
     let line = format!(
-        "shard {shard} of {} is in {place}; with the files of all {} in one folder, `study report` makes its page",
+        "shard {shard} of {} is in {place}; copy all {} shards into one folder and run `study report` on it",
         scenario.name, shard.of
     );
     reply(common, &ShardAnswer { folder: place, manifest: &manifest }, &line)

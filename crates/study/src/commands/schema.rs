@@ -29,7 +29,7 @@ use crate::documents::truth::TruthDocument;
 use crate::options::{Common, Described};
 use crate::screen;
 
-/// What `study schema` is asked to do.
+/// Arguments of `study schema`.
 #[derive(Debug, Clone, Args)]
 pub struct SchemaRequest {
     /// Which file

@@ -1,4 +1,4 @@
-//! `study score`: answers that were found elsewhere, as more methods of the scenario that the trials are of.
+//! `study score`: answers of an outside program, scored as further methods of the scenario of the trials.
 
 use std::path::PathBuf;
 
@@ -16,17 +16,17 @@ use crate::options::{Common, StudyFigureOptions};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
-/// What `study score` is asked to do.
+/// Arguments of `study score`.
 #[derive(Debug, Clone, Args)]
 pub struct ScoreRequest {
-    /// Answers to trials that `study simulate` wrote: record (or cell and replicate), K_per_s, T_s; as far as they are
-    /// known delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed; and of several methods `method`
+    /// Answers to trials that `study simulate` wrote, with the columns record (or cell and replicate), K_per_s, T_s;
+    /// optional: delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed; for several methods: method
     #[arg(value_name = "ANSWERS.csv")]
     pub answers: PathBuf,
     /// Scenario of the trials [default: that in trials.toml beside the answers]
     #[arg(long, value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
-    /// What the method behind the answers is called, where the table has no `method` [default: the name of the file]
+    /// Name of the method if the table has no column `method` [default: the name of the file]
     #[arg(long, value_name = "NAME")]
     pub label: Option<String>,
     /// Discard rows of an earlier run in the folder instead of going on with them
@@ -37,7 +37,7 @@ pub struct ScoreRequest {
     pub style: StudyFigureOptions,
 }
 
-/// A scenario and little beside it.
+/// Description of trials: a scenario and a few keys.
 const LIST: Kind = Kind { name: "a description of trials", largest: 1 << 22 };
 
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` would.
@@ -84,8 +84,8 @@ fn scenario_of(request: &ScoreRequest, common: &Common) -> Result<Scenario, Fail
         return Ok(scenario);
     }
     Err(Failure::input(format!(
-        "the trials beside {} are not those of the scenario, which was changed since, or has files that are not beside it \
-         or another seed; give the scenario they were simulated with (--scenario), or simulate them again",
+        "the trials beside {} are not those of the scenario: it was changed, has another seed, or lacks files beside it; give the \
+         scenario they were simulated with (--scenario), or simulate them again",
         request.answers.display()
     )))
 }

@@ -1,4 +1,4 @@
-//! `study completions SHELL` and `study man DIR`: what a shell and `man` know of the program, made from its options.
+//! `study completions SHELL` and `study man DIR`: completion scripts and manual pages, generated from the options.
 
 use std::path::PathBuf;
 
@@ -12,14 +12,14 @@ use crate::documents::answers::{CompletionsAnswer, ManAnswer};
 use crate::options::{Common, Format};
 use crate::screen;
 
-/// What `study completions` is asked to do.
+/// Arguments of `study completions`.
 #[derive(Debug, Clone, Args)]
 pub struct CompletionsRequest {
     /// The shell
     pub shell: Shell,
 }
 
-/// What `study man` is asked to do.
+/// Arguments of `study man`.
 #[derive(Debug, Clone, Args)]
 pub struct ManRequest {
     /// Folder for the pages, such as ~/.local/share/man/man1
@@ -27,7 +27,7 @@ pub struct ManRequest {
     pub folder: PathBuf,
 }
 
-/// Prints what a shell has to read to complete commands and options.
+/// Prints the completion script of a shell.
 pub fn completions(
     &CompletionsRequest { shell }: &CompletionsRequest,
     mut command: Command,
@@ -52,8 +52,8 @@ pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Co
     let pages = ResultFolder::make(folder)?;
     let mut files = Vec::new();
     let program = command.get_name().to_owned();
-    let below: Vec<Command> = command.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();
-    let below = below.into_iter().map(|one| (format!("{program}-{}", one.get_name()), one));
+    let below: Vec<Command> = command.get_subcommands().filter(|entry| entry.get_name() != "help").cloned().collect();
+    let below = below.into_iter().map(|entry| (format!("{program}-{}", entry.get_name()), entry));
     for (name, command) in std::iter::once((program.clone(), command.clone())).chain(below) {
         let file = format!("{name}.1");
         let path = folder.join(&file);

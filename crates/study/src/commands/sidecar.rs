@@ -13,7 +13,7 @@ use crate::documents::answers::SidecarAnswer;
 use crate::options::Common;
 use campaign::failure::{Failure, OnPath};
 
-/// What `study sidecar` is asked to do.
+/// Arguments of `study sidecar`.
 #[derive(Debug, Clone, Args)]
 pub struct SidecarRequest {
     /// The table

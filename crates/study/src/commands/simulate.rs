@@ -26,7 +26,7 @@ use crate::work::simulate::{RecordFiles, records, tasks};
 pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(&request.scenario, common.seed)?;
     let Some(out) = &common.out else {
-        return Err(Failure::input("no place for the records is given; add --out FILE.csv or --out DIR"));
+        return Err(Failure::input("no output is given; add --out FILE.csv or --out DIR"));
     };
     let tasks = tasks(&scenario, request)?;
     let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
@@ -38,12 +38,12 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         }
         (true, several) => {
             let cure = if tasks.len() == 1 { "" } else { ", or one trial with --cell and --replicate" };
-            let what = format!("--out {} is one file, and {several} records are asked for", out.display());
-            return Err(Failure::input(format!("{what}; name a folder{cure}")));
+            let problem = format!("--out {} is one file, and {several} records are asked for", out.display());
+            return Err(Failure::input(format!("{problem}; name a folder{cure}")));
         }
         (false, _) => (ResultFolder::make(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };
-    let bar = progress::of("records", tasks.len() as u64, common.quiet);
+    let bar = progress::bar("records", tasks.len() as u64, common.quiet);
     let work = tasks.par_iter().zip(&names).progress_with(bar);
     first_failure(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
     if !is_file {

@@ -11,7 +11,7 @@ use crate::documents::curves::TraceCurves;
 use crate::documents::{TRACE, folder_for_records};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
-use crate::records::{default_folder, read_all, read_others, repetitions};
+use crate::records::{default_folder, read_all, read_for_replay, repetitions};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
@@ -28,11 +28,11 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let priors = EarlierModel::of_files(&request.priors)?;
     let mut warnings = Warnings::default();
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
-    let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
-    warnings.extend(repetitions(&trials, &others));
+    let validation = without(request, read_for_replay(&request.validate, &request.reading, &mut warnings)?);
+    warnings.extend(repetitions(&trials, &validation));
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace"));
     let place = folder_for_records(TRACE, &place, &trials)?;
-    let traced = trace([&trials, &others], &settings, &priors, common.quiet, &mut warnings)?;
+    let traced = trace([&trials, &validation], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;
     show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
@@ -53,8 +53,8 @@ pub fn show(
 ) -> Result<(), Failure> {
     write_page(folder, trace_page::page(document, curves, steady::of_ship(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", folder.path().join(TRACE).display());
-    let [before, behind] = trace_page::words(document);
+    let [before, behind] = trace_page::around_table(document);
     let table = trace_page::all_errors(document);
-    let output = CommandOutput { words: [&before, &behind], table: &table, notes: &notes, document: text };
+    let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }

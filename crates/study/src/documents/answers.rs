@@ -1,4 +1,4 @@
-//! What commands without a file of their own answer to other programs, as `--format json` writes it.
+//! Answers of commands that write no file, as `--format json` prints them.
 
 use std::collections::BTreeMap;
 
@@ -19,15 +19,15 @@ pub trait CommandAnswer: Serialize + JsonSchema {
 pub struct Versioned<T> {
     /// Name and version of the document.
     pub schema: &'static str,
-    /// What it holds.
+    /// The answer.
     #[serde(flatten)]
     pub body: T,
 }
 
-/// What can be named.
+/// A list.
 #[derive(Serialize, JsonSchema)]
 pub struct ListAnswer {
-    /// What is listed.
+    /// Name of the list.
     pub what: String,
     /// The lines of the list, each by the heads of its columns.
     pub entries: Vec<Value>,
@@ -36,9 +36,9 @@ pub struct ListAnswer {
 /// Scenarios that were resolved.
 #[derive(Serialize, JsonSchema)]
 pub struct CheckAnswer {
-    /// Those that are right.
+    /// Valid scenarios.
     pub scenarios: Vec<CheckedScenario>,
-    /// How many are wrong.
+    /// Number of invalid scenarios.
     pub wrong: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct CheckedScenario {
     pub file: String,
     /// Its name.
     pub name: String,
-    /// What it asks.
+    /// Question of the scenario.
     pub question: String,
     /// The seed of a run.
     pub seed: u64,
@@ -61,7 +61,7 @@ pub struct CheckedScenario {
     pub cells: Vec<Vec<String>>,
     /// The methods.
     pub methods: Vec<MethodName>,
-    /// What it leaves to be assumed and can decide what it finds.
+    /// Assumptions for values left open that can affect the result.
     pub assumptions: Vec<String>,
     /// The scenario with nothing left out, where it was asked for.
     #[schemars(with = "Option<Map<String, Value>>")]
@@ -73,11 +73,11 @@ pub struct CheckedScenario {
 pub struct StudyAnswer<'a> {
     /// Where it is.
     pub folder: String,
-    /// What ran.
+    /// Manifest of the run.
     pub manifest: &'a Manifest,
     /// A line for every cell and method, by the heads of the columns of `summary.csv`.
     pub summary: Vec<Value>,
-    /// How many answers failed, and why.
+    /// Failed answers with their reasons.
     pub failures: Vec<String>,
 }
 
@@ -86,14 +86,14 @@ pub struct StudyAnswer<'a> {
 pub struct ShardAnswer<'a> {
     /// Where it is.
     pub folder: String,
-    /// What ran.
+    /// Manifest of the run.
     pub manifest: &'a Manifest,
 }
 
 /// Simulated records.
 #[derive(Serialize, JsonSchema)]
 pub struct SimulateAnswer {
-    /// How many there are.
+    /// Number of records.
     pub records: u64,
     /// The first of every trial.
     pub files: Vec<String>,
@@ -106,12 +106,12 @@ pub struct ManAnswer {
     pub files: Vec<String>,
 }
 
-/// What a shell reads.
+/// A completion script.
 #[derive(Serialize, JsonSchema)]
 pub struct CompletionsAnswer {
     /// The shell.
     pub shell: String,
-    /// What it reads.
+    /// The script.
     pub script: String,
 }
 
@@ -120,7 +120,7 @@ pub struct CompletionsAnswer {
 pub struct SidecarAnswer {
     /// The file; none where it was not written.
     pub file: Option<String>,
-    /// What it says.
+    /// Keys and values of the description.
     #[schemars(with = "Map<String, Value>")]
     pub sidecar: toml::Table,
 }
@@ -128,7 +128,7 @@ pub struct SidecarAnswer {
 /// The machine.
 #[derive(Serialize, JsonSchema)]
 pub struct DoctorAnswer {
-    /// What was found, by what was looked for.
+    /// Results of the checks, by their names.
     #[serde(flatten)]
     pub found: BTreeMap<String, String>,
 }

@@ -1,4 +1,4 @@
-//! Named columns of numbers as CSV: the curves of figures, so that anyone can draw them again, and the program too.
+//! Named columns of numbers as CSV: the curves of figures, from which they can be drawn again.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CurveTable(Vec<(String, Vec<f64>)>);
 
-/// Seven significant digits, as few as are needed; empty for what is no number.
+/// Up to seven significant digits, without trailing zeros; empty for a value that is not finite.
 fn digits(value: f64) -> String {
     let shown = format!("{value:.6e}").parse::<f64>().ok().filter(|value| value.is_finite());
     shown.map_or_else(String::new, |value| value.to_string())

@@ -1,5 +1,5 @@
-//! The curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the
-//! moment that the base lacks. They are written after the analysis, and figures are drawn from what is read back.
+//! Curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the
+//! moment that the base lacks. They are written after the analysis; figures are drawn from the tables read back.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,7 +18,7 @@ use trial::{Channel, Columns as Channels, Origin, Trial};
 use super::columns::CurveTable;
 use crate::records::names;
 
-/// A record with what the models make of it.
+/// A record with its replays by both models.
 pub struct TracedRecord {
     /// The record.
     pub trial: Trial,
@@ -41,17 +41,17 @@ pub struct TraceCurves {
     pub staircase: [Vec<Vec<f64>>; 2],
 }
 
-/// Names as parts of names of files: two names may make one slug.
-pub fn slugs(own: &[String]) -> Vec<String> {
-    names(own.iter().map(|name| slug(name)))
+/// Unique slugs of record names for file names: two names may make one slug.
+pub fn slugs(record_names: &[String]) -> Vec<String> {
+    names(record_names.iter().map(|name| slug(name)))
 }
 
-/// What the files of a record end with: nothing for the first.
+/// Suffix of the files of a record: empty for the first.
 pub fn suffix(names: &[String], number: usize) -> String {
     if number == 0 { String::new() } else { format!("-{}", slugs(names)[number]) }
 }
 
-/// What the models before and after are called in columns.
+/// Column prefixes of the models before and after.
 const MODELS: [&str; 2] = ["before", "after"];
 
 /// The table of a record.
@@ -87,12 +87,12 @@ fn column_of(step: usize) -> String {
     format!("step_{step}_residual_deg")
 }
 
-/// The entries of a staircase, and the table under its name of what its steps leave of the first record.
-pub fn staircase(own: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
-    let Some(own) = own else { return (Vec::new(), None) };
+/// Entries of a staircase, and the named table of the residuals of the first record after its steps.
+pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
+    let Some(staircase) = staircase else { return (Vec::new(), None) };
     let mut columns = CurveTable::default();
-    columns.push("t_s", own.time);
-    for (number, step) in own.steps.iter().enumerate() {
+    columns.push("t_s", staircase.time);
+    for (number, step) in staircase.steps.iter().enumerate() {
         columns.push(column_of(number), degrees(&step.residual));
     }
     let entry = |step: &StairStep| StairEntry {
@@ -100,16 +100,16 @@ pub fn staircase(own: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, St
         form: step.term.map(|(_, form, _)| form.to_owned()),
         heading_rmse_deg: to_deg(step.rmse),
     };
-    (own.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.text())))
+    (staircase.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.text())))
 }
 
 /// Columns of [`innovations`].
 const INNOVATIONS: [&str; 2] = ["t_s", "innovation_sd"];
 
 /// The table of the innovations of a record.
-pub fn innovations(own: &Innovations) -> String {
+pub fn innovations(series: &Innovations) -> String {
     let mut columns = CurveTable::default();
-    for (name, values) in INNOVATIONS.into_iter().zip([&own.time, &own.values]) {
+    for (name, values) in INNOVATIONS.into_iter().zip([&series.time, &series.values]) {
         columns.push(name, values.clone());
     }
     columns.text()
@@ -145,14 +145,14 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     Some(TracedRecord { trial, replays, band, innovations: None })
 }
 
-/// What a table of a trace holds. Fails when it is not what the analysis wrote; `place` is where it is.
+/// Content of a table of a trace. Fails for a table in another form; `place` is its path in messages.
 fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Result<T, Failure> {
-    let again = "this is no table of a trace; make it again with `study trace`";
+    let again = "this is not a table of a trace; run `study trace` again";
     parse(text).ok_or_else(|| Failure::input(format!("{place}: {again}")))
 }
 
 impl TraceCurves {
-    /// The curves that a document names, from the files in its folder.
+    /// Curves of a document, from the files in its folder.
     ///
     /// Fails when one cannot be read.
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
@@ -162,7 +162,7 @@ impl TraceCurves {
         })
     }
 
-    /// The same from tables by the names of their files, each with the place that a message names.
+    /// Curves of a document, from tables by file name, each with its path for messages.
     pub fn from_tables(
         document: &TraceDocument,
         table: impl Fn(&str) -> Result<(String, String), Failure>,
@@ -170,13 +170,13 @@ impl TraceCurves {
         let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CurveTable::read));
         let records = document.records.iter().map(|entry| {
             let (text, place) = table(&entry.curves)?;
-            let own = read(&text, &place, |text| record(entry, text))?;
+            let record = read(&text, &place, |text| record(entry, text))?;
             let numbers = |name: &String| {
                 let columns = columns(name)?;
                 Ok(INNOVATIONS.map(|name| columns.get(name).cloned().unwrap_or_default()))
             };
             let innovations = entry.innovations.as_ref().map(numbers).transpose()?;
-            Ok(TracedRecord { innovations, ..own })
+            Ok(TracedRecord { innovations, ..record })
         });
         let moments =
             document.missing_moment.iter().map(|entry| Ok([columns(&entry.moment)?, columns(&entry.curves)?]));
@@ -184,8 +184,8 @@ impl TraceCurves {
             0 => Default::default(),
             steps => {
                 let table = columns(STAIRCASE)?;
-                let of = |name: &str| table.get(name).cloned().unwrap_or_default();
-                [vec![of("t_s")], (0..steps).map(|step| of(&column_of(step))).collect()]
+                let column = |name: &str| table.get(name).cloned().unwrap_or_default();
+                [vec![column("t_s")], (0..steps).map(|step| column(&column_of(step))).collect()]
             }
         };
         Ok(Self {

@@ -1,4 +1,4 @@
-//! What `study fit --each` says of a log, for other programs: a line of JSON each.
+//! Answer of `study fit --each` for a log: one line of JSON.
 
 use document::Warning;
 use document::fit::VerdictEntry;

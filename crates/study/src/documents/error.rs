@@ -1,4 +1,4 @@
-//! What a failure is for programs: the message and its parts, as `--format json` writes them to standard error.
+//! JSON document of a failure: the message and its parts, as `--format json` writes them to standard error.
 
 use campaign::failure::{Blame, Failure, FailureParts};
 use serde::Serialize;
@@ -10,13 +10,13 @@ use crate::screen;
 pub struct ErrorDocument<'a> {
     /// Version of the document.
     pub schema: &'static str,
-    /// What went wrong.
+    /// The failure.
     pub error: ErrorEntry<'a>,
     /// Exit code of the program: 1 where the work could not be done, 2 where the input is wrong, 130 after Ctrl-C.
     pub exit_code: u8,
 }
 
-/// What went wrong.
+/// The failure.
 #[derive(Serialize, schemars::JsonSchema)]
 pub struct ErrorEntry<'a> {
     /// `error`: there is no answer, whatever the `severity` of warnings.
@@ -26,13 +26,13 @@ pub struct ErrorEntry<'a> {
     pub blame: Blame,
     /// The whole message, as a person reads it.
     pub message: &'a str,
-    /// The same in parts.
+    /// Parts of the message.
     #[serde(flatten)]
     pub parts: &'a FailureParts,
 }
 
 impl<'a> ErrorEntry<'a> {
-    /// What a failure says.
+    /// The entry of a failure.
     pub fn of(Failure { blame, message, parts }: &'a Failure) -> Self {
         Self { severity: "error", blame: *blame, message, parts }
     }

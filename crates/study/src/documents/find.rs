@@ -33,7 +33,7 @@ pub struct LogEntry {
     pub rows: usize,
     /// Length, s.
     pub duration_s: f64,
-    /// Its first day, where it has a clock with dates.
+    /// First day, where the clock has dates.
     pub date: Option<String>,
     /// Its manoeuvres in order of time.
     pub manoeuvres: Vec<ManoeuvreEntry>,
@@ -44,40 +44,40 @@ pub struct LogEntry {
 pub struct ManoeuvreEntry {
     /// Its number, as `--trial` takes it.
     pub trial: usize,
-    /// What it is, such as `zig-zag 10/10`.
+    /// Name, such as `zig-zag 10/10`.
     pub kind: String,
-    /// Its begin, s.
+    /// Beginning, s.
     pub from_s: f64,
-    /// Its end, s.
+    /// End, s.
     pub until_s: f64,
-    /// What the clock shows at both.
+    /// Clock readings at beginning and end.
     pub clock: Option<[String; 2]>,
-    /// How often the rudder is put over.
+    /// Number of executes.
     pub executes: usize,
     /// Rudder angle, deg.
     pub rudder_deg: Option<f64>,
     /// Heading angle at which it is put over, deg.
     pub heading_deg: Option<f64>,
-    /// What is odd about it.
+    /// Remarks on its quality.
     pub remarks: Vec<String>,
 }
 
 impl LogEntry {
     /// A log with its manoeuvres.
-    pub fn of(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Self {
+    pub fn of(file: &Path, log: &Log, manoeuvres: &[FoundManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
-        let manoeuvre = |(trial, one): (usize, &FoundManoeuvre)| {
-            let [rudder_deg, heading_deg] = one.angles().map(|angle| angle.map(to_deg));
+        let manoeuvre = |(trial, manoeuvre): (usize, &FoundManoeuvre)| {
+            let [rudder_deg, heading_deg] = manoeuvre.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
                 trial,
-                kind: one.name(),
-                from_s: one.from,
-                until_s: one.until,
-                clock: clock(one.from).zip(clock(one.until)).map(|(from, until)| [from, until]),
-                executes: one.executes,
+                kind: manoeuvre.name(),
+                from_s: manoeuvre.from,
+                until_s: manoeuvre.until,
+                clock: clock(manoeuvre.from).zip(clock(manoeuvre.until)).map(|(from, until)| [from, until]),
+                executes: manoeuvre.executes,
                 rudder_deg,
                 heading_deg,
-                remarks: one.quality.remarks(),
+                remarks: manoeuvre.quality.remarks(),
             }
         };
         let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
@@ -86,7 +86,7 @@ impl LogEntry {
             rows: log.time().len(),
             duration_s: last - first,
             date: log.clock.and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
-            manoeuvres: (1..).zip(found).map(manoeuvre).collect(),
+            manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a log holds, channel by channel, for other programs.
+//! Answer of `study inspect`: the channels of a log.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use trial::{Channel, Log};
 use super::answers::CommandAnswer;
 
 /// Time between two readings, in usual intervals, beyond which it is a gap.
-const GAP: f64 = 1.5;
+const MIN_GAP: f64 = 1.5;
 
 /// A log.
 #[derive(Serialize, JsonSchema)]
@@ -24,7 +24,7 @@ pub struct InspectAnswer {
     pub duration_s: f64,
     /// Its channels.
     pub channels: Vec<ChannelEntry>,
-    /// What the reader had to decide or doubts, the worst first.
+    /// Warnings of the reader, the worst first.
     pub warnings: Vec<Warning>,
 }
 
@@ -35,7 +35,7 @@ impl CommandAnswer for InspectAnswer {
 /// A channel of a log.
 #[derive(Serialize, JsonSchema)]
 pub struct ChannelEntry {
-    /// What it is, such as `yaw rate`.
+    /// Name, such as `yaw rate`.
     pub channel: String,
     /// The column or instrument it comes from; none where it was made of others.
     pub source: Option<String>,
@@ -43,9 +43,9 @@ pub struct ChannelEntry {
     pub readings: usize,
     /// Median time from one reading to the next.
     pub interval_s: Option<f64>,
-    /// Longest time from one reading to the next, where it is longer than one and a half times that.
+    /// Longest time from one reading to the next, where it exceeds one and a half times the median.
     pub longest_gap_s: Option<f64>,
-    /// Where that begins.
+    /// Beginning of the longest gap.
     pub longest_gap_from_s: Option<f64>,
     /// Unit of the four numbers below.
     pub unit: String,
@@ -59,11 +59,11 @@ pub struct ChannelEntry {
     pub wraps: Option<usize>,
     /// Where positive values turn the ship, `starboard` or `port`; none where nobody can tell.
     pub turns_to: Option<String>,
-    /// The channel that it is held against.
+    /// The channel that it is compared with.
     pub reference: Option<String>,
-    /// What it has to be multiplied with to be that: below zero where its sign is turned.
+    /// Factor from it to the reference: negative where its sign is reversed.
     pub scale: Option<f64>,
-    /// How far it is behind that.
+    /// Lag behind the reference.
     pub lag_s: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let shown = |value: f64| value / unit.to_si();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
         let spoken = |channel: Channel| names::plain(channel.spoken());
-        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > GAP * usual));
+        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),
             source: readings.source.clone(),
@@ -95,7 +95,7 @@ impl From<&ChannelInspection> for ChannelEntry {
 }
 
 impl InspectAnswer {
-    /// A log with what was said of it.
+    /// A log with its warnings.
     pub fn of(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
         Self {
             file: file.display().to_string(),

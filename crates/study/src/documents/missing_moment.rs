@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 
 use super::columns::CurveTable;
 
-/// The moment of one record as it is read from its tables; a column that is not there is empty.
+/// The moment of one record, read from its tables; an absent column is empty.
 pub struct MissingMomentCurves {
     /// Times, s.
     pub time: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct MissingMomentCurves {
     pub moment: Vec<f64>,
     /// The ends of its 95 % band, deg of rudder.
     pub band: [Vec<f64>; 2],
-    /// What the explanation makes of it, deg of rudder.
+    /// The moment by the explanation, deg of rudder.
     pub explained: Vec<f64>,
     /// The curves over the channels, in the order of the entry.
     pub over: Vec<ChannelCurve>,
@@ -37,27 +37,27 @@ pub struct ChannelCurve {
     pub moment: Vec<f64>,
     /// Half the width of its 95 % band, deg of rudder.
     pub half_width: Vec<f64>,
-    /// What the explanation makes of it, deg of rudder.
+    /// The moment by the explanation, deg of rudder.
     pub explained: Vec<f64>,
 }
 
 impl MissingMomentCurves {
     /// The curves of an entry from the tables of [`over_time`] and [`over_channels`].
     pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
-        let of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
+        let column_of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
         let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
             over: Over::ALL.into_iter().find(|over| column(*over).0 == name),
-            rows: of(time, name),
-            x: of(channels, name),
-            moment: of(channels, &format!("{name}_{MOMENT}")),
-            half_width: of(channels, &format!("{name}_{HALF_WIDTH}")),
-            explained: of(channels, &format!("{name}_{EXPLAINED}")),
+            rows: column_of(time, name),
+            x: column_of(channels, name),
+            moment: column_of(channels, &format!("{name}_{MOMENT}")),
+            half_width: column_of(channels, &format!("{name}_{HALF_WIDTH}")),
+            explained: column_of(channels, &format!("{name}_{EXPLAINED}")),
         };
         Self {
-            time: of(time, TIME),
-            moment: of(time, MOMENT),
-            band: BAND.map(|end| of(time, end)),
-            explained: of(time, EXPLAINED),
+            time: column_of(time, TIME),
+            moment: column_of(time, MOMENT),
+            band: BAND.map(|end| column_of(time, end)),
+            explained: column_of(time, EXPLAINED),
             over: entry.over.iter().map(channel).collect(),
         }
     }
@@ -85,7 +85,7 @@ fn shown(over: Over, values: &[f64]) -> Vec<f64> {
     if column(over).1 { degrees(values) } else { values.to_vec() }
 }
 
-/// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
+/// Table over time: moment with its band, the explanation, and every recorded channel.
 pub fn over_time(missing: &MissingMoment) -> String {
     let mut columns = CurveTable::default();
     columns.push(TIME, missing.time.clone());
@@ -103,7 +103,7 @@ pub fn over_time(missing: &MissingMoment) -> String {
     columns.text()
 }
 
-/// The curves over the channels: of each the places, the moment, the half width of its band, and the explanation.
+/// Table over the channels: for each its values, the moment, the half width of its band, and the explanation.
 ///
 /// A curve has mean zero over the rows; here it has the mean of the moment.
 pub fn over_channels(missing: &MissingMoment) -> String {
@@ -122,13 +122,13 @@ pub fn over_channels(missing: &MissingMoment) -> String {
     columns.text()
 }
 
-/// Effects of some explanations, every one once.
+/// Effects of some explanations, without repetition.
 fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
     let explanations = places.iter().filter_map(|place| missing.explanations.get(*place));
-    distinct(explanations.flat_map(|one| &one.effects).map(|(id, _)| (*id).to_owned()))
+    distinct(explanations.flat_map(|explanation| &explanation.effects).map(|(id, _)| (*id).to_owned()))
 }
 
-/// The entry of a record of this file and name, whose tables have this stem.
+/// Entry of a record of this file and name, whose tables have this stem.
 pub fn entry(
     missing: &MissingMoment,
     [file, name, stem]: [&str; 3],

@@ -1,6 +1,5 @@
-//! What commands leave for other programs beside the documents of the crate `document`: the types of other JSON files
-//! and of tables, from which pages and figures are made. The text of a file is also what `--format json` writes to
-//! standard output.
+//! Documents of the commands beside those of the crate `document`: types of further JSON files and tables, from which
+//! pages and figures are made. `--format json` writes the text of the file to standard output.
 
 pub mod answers;
 pub mod columns;
@@ -52,10 +51,10 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
 }
 
-/// A folder for the results of one command. Fails when those of another one are there: their page would be lost.
+/// Folder for the results of a command. Fails when it holds those of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let others = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|own| *own != document);
-    match others.map(|own| place.join(own)).find(|path| path.is_file()) {
+    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|name| *name != document);
+    match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",
             path.display()
@@ -64,8 +63,8 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// The same for the result of some records: fails, too, when that of other records is there. A record is the same by
-/// its file, which may have been mended, or by its content.
+/// Folder for the result of some records: fails also when it holds that of other records. Records are the same by file
+/// name (the file may have been corrected) or by content.
 pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Result<PathBuf, Failure> {
     let place = folder_for(document, place)?;
     let path = place.join(document);
@@ -76,7 +75,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
     };
     let is_same = |trial: &Trial| {
         let (file, sha256) = file_of(trial);
-        records.iter().any(|(own, hash)| own == file || hash == sha256)
+        records.iter().any(|(file_then, hash)| file_then == file || hash == sha256)
     };
     if records.len() == trials.len() && trials.iter().all(is_same) {
         return Ok(place);
@@ -90,7 +89,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
     )))
 }
 
-/// Files and hashes of the records that an earlier document was made from.
+/// Files and hashes of the fitted records of an earlier document.
 fn records_of(document: &Value) -> Vec<(String, String)> {
     let list = document["trials"].as_array().or_else(|| document["records"].as_array());
     let fitted = list.into_iter().flatten().filter(|record| record["held_out"] != true);
@@ -98,7 +97,7 @@ fn records_of(document: &Value) -> Vec<(String, String)> {
     fitted.filter_map(|record| Some((text(&record["file"])?, text(&record["sha256"])?))).collect()
 }
 
-/// The first of some files, and how many there are beside it.
+/// The first of some files and the number of further ones, as text.
 fn few(files: &[String]) -> String {
     match files {
         [only] => only.clone(),
@@ -108,13 +107,13 @@ fn few(files: &[String]) -> String {
     }
 }
 
-/// Keeps the document of a command in a folder; the text of its file. Fails when the file cannot be written.
+/// Writes the document of a command to a folder and returns its text. Fails when the file cannot be written.
 pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
     let text = text(document).on("describe", &folder.path().join(name))?;
     folder.keep(name, &text).map(|_| text)
 }
 
-/// The same with the curves of its figures beside it.
+/// Writes the document of a command and the curves of its figures to a folder.
 pub fn keep_with_curves(
     folder: &ResultFolder,
     name: &str,
@@ -128,7 +127,7 @@ pub fn keep_with_curves(
 
 /// A document that a command wrote, and its text.
 ///
-/// Fails when the file cannot be read or is none of this program.
+/// Fails when the file cannot be read or was not written by this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
     let text = read_text(path)?;
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
@@ -146,39 +145,39 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
     let command = schema.split('/').next().unwrap_or_default();
     let (stated, text): (Stated, String) = read_json(path, command)?;
     if stated.schema != schema {
-        let what = format!("schema = {:?}, expected {schema:?}", stated.schema);
-        let problem = format!("{what}; make it again with `study {command}`");
+        let mismatch = format!("schema = {:?}, expected {schema:?}", stated.schema);
+        let problem = format!("{mismatch}; make it again with `study {command}`");
         return Err(Failure::about(path, problem).with_code(ErrorCode::Document));
     }
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
     Ok((document, text))
 }
 
-/// Why a document is none of this program.
+/// Failure for a document that this program did not write.
 fn unread(path: &Path, error: serde_json::Error, command: &str) -> Failure {
     let problem = format!("{error}; make it again with `study {command}`");
     Failure::about(path, problem).with_code(ErrorCode::Document)
 }
 
-/// Most bytes of a document or a table of curves.
-pub const LARGEST: u64 = 1 << 30;
+/// Maximum size of a document or a table of curves, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
-/// The text of a file that a command wrote. Fails when there is none, and when it is too large or no file.
+/// Text of a file that a command wrote. Fails when it is missing, too large or not a file.
 fn read_text(path: &Path) -> Result<String, Failure> {
-    let bytes = disk::read(path, LARGEST).and_then(|bytes| bytes.ok_or_else(|| ErrorKind::NotFound.into()));
+    let bytes = disk::read(path, MAX_FILE_BYTES).and_then(|bytes| bytes.ok_or_else(|| ErrorKind::NotFound.into()));
     String::from_utf8(bytes.on("read", path)?).on("read", path)
 }
 
-/// The document of a command without a file of its own, with the version of what it holds first.
+/// Text of an answer without a file, with its schema version first.
 ///
 /// Fails where it cannot be written as JSON.
-pub fn of<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
+pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
     text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
 }
 
-/// Writes such a document to standard output.
+/// Writes an answer to standard output.
 ///
-/// Fails as [`of`] and [`screen::say`] do.
+/// Fails as [`answer_text`] and [`screen::say`] do.
 pub fn say(body: &impl CommandAnswer) -> Result<(), Failure> {
-    screen::say_document(&of(body)?)
+    screen::say_document(&answer_text(body)?)
 }

@@ -30,7 +30,7 @@ pub struct TruthDocument {
     pub nearest: Option<TrueIndices>,
     /// The base of a ship that has effects beside it.
     pub own: Option<TrueIndices>,
-    /// What a first-order base lacks.
+    /// Effects that a first-order base lacks.
     pub missing: Vec<String>,
     /// Drawn values in the units of their keys.
     pub drawn: BTreeMap<String, f64>,
@@ -68,8 +68,8 @@ pub struct TrueMotion {
 }
 
 impl TrueIndices {
-    fn of(own: FirstOrder) -> Self {
-        Self { K_per_s: own.K(), T_s: own.T(), delta_r_deg: to_deg(own.rudder_bias) }
+    fn of(response: FirstOrder) -> Self {
+        Self { K_per_s: response.K(), T_s: response.T(), delta_r_deg: to_deg(response.rudder_bias) }
     }
 }
 

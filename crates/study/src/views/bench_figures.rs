@@ -10,14 +10,14 @@ use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
 
 /// A score over that of the reference beyond which an arrow stands for it.
-const FAR: f64 = 100.0;
+const MAX_RATIO: f64 = 100.0;
 
 /// Beginning of the names of the figures.
 const RATIOS: &str = "ratios";
 
 /// A sentence that begins with a capital.
-pub fn capital(words: &str) -> String {
-    let mut letters = words.chars();
+pub fn capital(sentence: &str) -> String {
+    let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
@@ -26,8 +26,8 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
         let boards = results.boards.iter().filter(|board| board.field == field);
         let mut over = boards.flat_map(|board| &board.standings).filter_map(|standing| standing.ratio.as_ref());
-        let arrow = match over.any(|ratio| ratio.value.is_none_or(|value| value > FAR)) {
-            true => format!(" An arrow: more than {FAR} times, or no answer in half of the cases."),
+        let arrow = match over.any(|ratio| ratio.value.is_none_or(|value| value > MAX_RATIO)) {
+            true => format!(" An arrow: more than {MAX_RATIO} times, or no answer in half of the cases."),
             false => String::new(),
         };
         let caption = format!(
@@ -66,7 +66,7 @@ fn axis_title(task: BenchTask) -> &'static str {
     }
 }
 
-/// Which methods are better than the reference in which tasks, as far as chance can be ruled out.
+/// Finding: the methods that are significantly better than the reference, with the tasks.
 fn finding(boards: &[&Board], reference: &str) -> String {
     let is_better = |standing: &&LeaderboardRow| {
         let upper = standing.ratio.and_then(|ratio| ratio.ci95?[1]);
@@ -78,16 +78,16 @@ fn finding(boards: &[&Board], reference: &str) -> String {
         (!better.is_empty()).then(|| format!("{better} ({})", axis_title(board.task)))
     };
     match boards.iter().filter_map(of_task).collect::<Vec<_>>()[..] {
-        [] => format!("{reference} is clearly beaten by none"),
+        [] => format!("no method clearly beats {reference}"),
         ref some => format!("{reference} is clearly beaten by {}", some.join(", ")),
     }
 }
 
 fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
-    let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
+    let rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
-    if others.is_empty() || !has_ratios {
+    if rivals.is_empty() || !has_ratios {
         return None;
     }
     let column = |board: &&Board| {
@@ -103,7 +103,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             }
             let standing = board.standings.iter().find(|standing| standing.method == **method);
             let Some(ratio) = standing.and_then(|standing| standing.ratio) else { return Vec::new() };
-            let value = ratio.value.filter(|value| *value <= FAR).unwrap_or(f64::INFINITY);
+            let value = ratio.value.filter(|value| *value <= MAX_RATIO).unwrap_or(f64::INFINITY);
             let end = |end: Option<f64>| end.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
             let interval = ratio.ci95.map(|ends| ends.map(end)).filter(|_| value.is_finite());
             vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
@@ -111,16 +111,16 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         RowsColumn {
             x: Ruler::new(format!("score ratio, {} (n = {})", axis_title(board.task), board.cases), Division::Factors),
             reference: Some(Reference95::line(1.0)),
-            rows: others.iter().map(row).collect(),
+            rows: rivals.iter().map(row).collect(),
             ..RowsColumn::default()
         }
     };
     Some(NamedRows {
-        names: others.iter().map(|method| (*method).clone()).collect(),
+        names: rivals.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
-            "Score: rms heading error; of K and T the larger error. Left of the line a method is better than {}. Medians over the cases, hollow: single cases of fewer than {MIN_SUMMARISED}; bars: 95 % intervals, \
-             from six independent records on.",
+            "Score: rms heading error; for K and T the larger relative error. Left of the line a method is better than {}. Medians over \
+             the cases; hollow: single cases if fewer than {MIN_SUMMARISED}; bars: 95 %, for six independent records or more.",
             results.reference
         )),
         ..NamedRows::default()

@@ -72,7 +72,7 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     let page = MethodPage {
         results,
         method,
-        is_naming: results.naming.iter().any(|own| own.method == method),
+        is_naming: results.naming.iter().any(|line| line.method == method),
         failures: failures(results, method).into_iter().map(line).collect(),
     };
     Page::new(page.render(), PlacedFigures::<()>::default())
@@ -80,15 +80,15 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Page {
 
 /// Failures of a method by reason, task and set: how many, and the first.
 fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
-    let mut found = BTreeMap::new();
+    let mut failures = BTreeMap::new();
     for case in &results.cases {
         for answer in case.answers.iter().filter(|answer| answer.method == method) {
             let Some(reason) = &answer.failure else { continue };
             let place = (reason.as_str(), case.task.id(), case.set.as_str());
-            found.entry(place).or_insert_with(|| (0, example(case))).0 += 1;
+            failures.entry(place).or_insert_with(|| (0, example(case))).0 += 1;
         }
     }
-    found
+    failures
 }
 
 fn example(case: &BenchCase) -> String {

@@ -7,7 +7,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
 use report::{Table, TableHead};
 
-/// What stands for a figure that an answer which failed decides.
+/// Text in place of a figure that falls on a failed answer.
 const FAILED: &str = "failed";
 
 /// Digits of scores: no interval is so narrow that more of them would say anything.
@@ -50,7 +50,7 @@ fn columns(first: TableHead, reference: &str, indices: bool) -> TableHead {
 
 fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
     let paired =
-        |figure: Option<ScoreFigure>, of: fn(ScoreFigure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
+        |figure: Option<ScoreFigure>, text: fn(ScoreFigure) -> String| figure.map_or_else(|| MISSING.to_owned(), text);
     let mut cells = vec![
         standing.method.clone(),
         value(standing.median),
@@ -71,7 +71,7 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
     cells
 }
 
-/// One board.
+/// Table of one leaderboard.
 pub fn board(results: &BenchDocument, board: &Board) -> Table {
     let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
@@ -108,19 +108,19 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
             [value, low, high].map(text).to_vec()
         }
     };
-    for (board, own) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |own| (board, own))) {
-        let held = |place: usize| own.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
-        let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &own.method];
-        let figures = [Some(own.median), Some(own.high), own.ratio, own.better.map(percent)];
-        let line = head.map(str::to_owned).into_iter().chain([own.failed.to_string()]);
-        table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(own.rank), held(0), held(1)].map(text)));
+    for (board, row) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |row| (board, row))) {
+        let held = |place: usize| row.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
+        let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &row.method];
+        let figures = [Some(row.median), Some(row.high), row.ratio, row.better.map(percent)];
+        let line = head.map(str::to_owned).into_iter().chain([row.failed.to_string()]);
+        table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(row.rank), held(0), held(1)].map(text)));
     }
     table
 }
 
 /// The median of a set; of one that is not finite, what decides it.
-fn median(own: Option<(f64, usize)>) -> String {
-    own.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
+fn median(set_median: Option<(f64, usize)>) -> String {
+    set_median.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
 }
 
 /// Medians set by set, methods side by side.
@@ -133,29 +133,29 @@ pub fn sets(results: &BenchDocument) -> Table {
     table
 }
 
-/// One method on every set, beside the reference.
+/// Medians of one method on every set, beside the reference.
 pub fn of_method(results: &BenchDocument, method: &str) -> Table {
     let head = TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(["median"]).counts(["failed"]);
-    let place = |label: &str| results.methods.iter().position(|own| own == label);
+    let place = |label: &str| results.methods.iter().position(|name| name == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
     let mut table = Table::new(head.numbers(reference.map(|_| format!("median of {}", results.reference))));
-    let Some(own) = place(method) else { return table };
+    let Some(column) = place(method) else { return table };
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
-        let Some((_, failed)) = methods[own] else { continue };
-        let line = [task.id().to_owned(), set, cases.to_string(), median(methods[own]), count(failed)];
+        let Some((_, failed)) = methods[column] else { continue };
+        let line = [task.id().to_owned(), set, cases.to_string(), median(methods[column]), count(failed)];
         table.push(line.into_iter().chain(reference.map(|place| median(methods[place]))));
     }
     table
 }
 
-/// One method on every board.
+/// Rows of one method on every leaderboard.
 pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     let mut table = Table::new(columns(TableHead::default().texts(["task"]).counts(["n"]), &results.reference, true));
     for board in &results.boards {
-        for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
+        for (place, standing) in board.standings.iter().enumerate().filter(|(_, standing)| standing.method == method) {
             let mut line = cells(standing, board.task == BenchTask::Indices);
-            let (task, field, of) = (board.task.title(), &board.field, board.standings.len());
-            line[0] = format!("{task}, {field} ({} of {of})", place + 1);
+            let (task, field, methods) = (board.task.title(), &board.field, board.standings.len());
+            line[0] = format!("{task}, {field} ({} of {methods})", place + 1);
             line.insert(1, board.cases.to_string());
             table.push(line);
         }
@@ -173,7 +173,7 @@ fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLin
     table
 }
 
-/// What methods said of missing effects, all ships together.
+/// Outcomes of naming the missing effect, all ships together.
 pub fn naming_totals(results: &BenchDocument) -> Table {
     let kinds = [(true, "that lack one effect"), (false, "that lack nothing")];
     let all = results.methods.iter().flat_map(|method| kinds.map(|(is_missing, ships)| (method, is_missing, ships)));
@@ -182,10 +182,10 @@ pub fn naming_totals(results: &BenchDocument) -> Table {
     naming_table("ships", all.filter_map(line))
 }
 
-/// The same set by set, of one method or of all.
+/// Outcomes of naming the missing effect set by set, for one method or all.
 pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
-    let own = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
-    naming_table("set", own.map(|line| (line.set.as_str(), line.clone())))
+    let lines = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
+    naming_table("set", lines.map(|line| (line.set.as_str(), line.clone())))
 }
 
 /// The ranking over all predictions.
@@ -225,7 +225,7 @@ pub fn rows(results: &BenchDocument) -> Table {
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();
-            let said = answer.naming.map_or_else(String::new, |naming| naming.words().to_owned());
+            let judgement = answer.naming.map_or_else(String::new, |naming| naming.words().to_owned());
             table.push([
                 task.id().to_owned(),
                 field.clone(),
@@ -240,7 +240,7 @@ pub fn rows(results: &BenchDocument) -> Table {
                 truth(answer.holds.map(|holds| holds[0])),
                 truth(answer.holds.map(|holds| holds[1])),
                 missing.clone().unwrap_or_default(),
-                said,
+                judgement,
                 named.join(" + "),
                 answer.failure.clone().unwrap_or_default(),
             ]);

@@ -1,4 +1,4 @@
-//! The table of the sizes from which on effects are named: `blind-spots.csv`, and in the report.
+//! Table of the sizes from which effects are named: `blind-spots.csv`, and in the report.
 
 use report::number::{fixed, significant};
 use report::{Table, TableHead};
@@ -7,11 +7,10 @@ use super::tracing_table::has_several;
 use campaign::design::Design;
 use campaign::summary::{BlindSpot, axis_of_sizes};
 
-/// What stands over the table in the report.
+/// Legend over the table in the report.
 pub const READING: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
                            logistic regression on the logarithm of the size, with its 95 % interval by profile likelihood. \
-                           What lies beyond the sizes tried is given as more or less than the last of them; *at the \
-                           largest*: named at the largest size.";
+                           A size outside the tested range is given as more or less than its end; *at the largest*: share named at the largest size.";
 
 /// A line for every effect with sizes, called by its `name`, at every place of the other axes.
 pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
@@ -29,14 +28,14 @@ pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String
             size if size < smallest => format!("less than {smallest}"),
             size => significant(size, 3),
         };
-        let at_largest = spot.tried.iter().filter(|own| own.size == largest);
-        let [named, of] = at_largest.fold([0, 0], |[named, of], own| [named + own.seen, of + own.trials]);
+        let at_largest = spot.tried.iter().filter(|trial| trial.size == largest);
+        let [named, total] = at_largest.fold([0, 0], |[named, total], size| [named + size.seen, total + size.trials]);
         let mut cells = vec![name(&spot.effect)];
         cells.extend(spot.place.iter().cloned());
         cells.extend(several.then(|| design.methods[spot.method].label.clone()));
-        let trials: u64 = spot.tried.iter().map(|own| own.trials).sum();
+        let trials: u64 = spot.tried.iter().map(|trial| trial.trials).sum();
         cells.extend([spot.unit.clone(), smallest.to_string(), largest.to_string(), trials.to_string()]);
-        cells.push(fixed(100.0 * named as f64 / of as f64, 0));
+        cells.push(fixed(100.0 * named as f64 / total as f64, 0));
         let [low, high] = spot.size.ci95.unwrap_or([0.0, f64::INFINITY]);
         cells.extend([spot.size.value, low, high].map(within));
         table.push(cells);

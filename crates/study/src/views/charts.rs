@@ -1,4 +1,4 @@
-//! From a summary to figures over the axes of a study: what goes along which axis, what into panels, what is left out.
+//! Figures of a summary over the axes of a study: choice of axis and panels, and what is left out.
 
 use campaign::scenario::TRACE;
 use report::figures::{
@@ -12,14 +12,14 @@ use campaign::design::{CellFacts, Design};
 use campaign::statistics::{Statistic, grouped};
 use campaign::summary::{Performance, Summary};
 
-/// What a chart over the axes of a design shows.
+/// Quantity of a chart over the axes of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
-    /// The same over the Cramér–Rao bound.
+    /// Root mean square errors of K and T over the Cramér–Rao bound.
     OverBound,
-    /// Coverage of their intervals, and their width.
+    /// Coverage and width of the intervals of K and T.
     Coverage,
     /// Trials without an answer.
     Failures,
@@ -56,14 +56,14 @@ impl ErrorMeasure {
         Ruler::new(title, if is_log { Division::Factors } else { Division::Decimal })
     }
 
-    /// The figure of one panel.
+    /// The statistic of one panel.
     pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
         match self {
             Self::Rms | Self::OverBound => errors.rms,
-            // What a few answers quote says nothing of a method.
+            // A few answers with an interval say nothing about a method.
             Self::Coverage => {
-                let often = errors.quoting.is_some_and(|share| share.value >= OFTEN);
+                let often = errors.quoting.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
                 let figure = if panel > 1 { errors.width } else { errors.coverage.map(|share| share.times(100.0)) };
                 figure.filter(|_| often)
             }
@@ -72,33 +72,33 @@ impl ErrorMeasure {
         }
     }
 
-    /// Whether it is one of errors of K and T.
+    /// Whether it is an error of K and T.
     fn is_of_errors(self) -> bool {
         matches!(self, Self::Rms | Self::OverBound)
     }
 
-    /// What its values are held against.
+    /// Reference value of a panel.
     fn reference(self, panel: usize) -> Option<Reference95> {
         (self == Self::Coverage && panel < 2).then(|| Reference95::line(95.0))
     }
 }
 
-/// Smallest share of answers with an interval whose coverage is drawn.
-const OFTEN: f64 = 0.5;
+/// Minimum share of answers with an interval for their coverage to be drawn.
+const MIN_QUOTING_SHARE: f64 = 0.5;
 
-/// Error beyond which an answer is worth nothing, per cent: larger ones do not set an axis.
-const WORTHLESS: f64 = 100.0;
+/// Maximum error that sets an axis, per cent: answers beyond it are worthless.
+const MAX_ERROR: f64 = 100.0;
 
-/// Error below which an answer is exact, per cent.
-const EXACT: f64 = 1e-4;
+/// Minimum error that is drawn, per cent: smaller ones are exact.
+const MIN_ERROR: f64 = 1e-4;
 
-/// What is said of intervals.
-pub const BARS: &str = "Bars: 95 % intervals; none seen: within the mark.";
-/// What is said of the share that intervals promise to hold.
-const LINE: &str = "Line: 95 %.";
-/// What is said of errors that are worth nothing.
+/// Note on the bars of intervals.
+pub const BARS_NOTE: &str = "Bars: 95 % intervals; hidden where smaller than the mark.";
+/// Note on the nominal coverage.
+const LINE_NOTE: &str = "Line: 95 %.";
+/// Note on errors beyond the axis.
 pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
-/// What is said of errors that are exact.
+/// Note on exact errors.
 pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 
 /// The methods that can be compared in some cells, and whether they are held against a first-order response that is
@@ -158,7 +158,7 @@ impl<'a> ComparedMethods<'a> {
 
     /// Titles of the panels.
     fn titles(&self) -> Vec<String> {
-        let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol));
+        let of_both = |pattern: &str| ["K", "T"].map(|symbol| pattern.replace('#', symbol));
         match self.measure {
             ErrorMeasure::OverBound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
@@ -170,30 +170,29 @@ impl<'a> ComparedMethods<'a> {
         }
     }
 
-    /// What a person should see.
+    /// Caption: the quantity and how to read it.
     fn reading(&self) -> &'static str {
         match self.measure {
             ErrorMeasure::OverBound => {
-                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A bias that \
-                 stays falls here as the noise grows."
+                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A constant bias falls here as the noise grows."
             }
             ErrorMeasure::Rms if self.to_nearest => {
                 "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \
-                 intervals. It is no error: the ship has no K and T of its own."
+                 intervals. It is not an error: the ship has no K and T of its own."
             }
             ErrorMeasure::Rms => "Root mean square error of K and T, with 95 % bootstrap intervals.",
             ErrorMeasure::Coverage => {
-                "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals, and their median width. Below \
-                 the line at 95 % a method is too sure; above it its intervals are wider than they need be. Methods that \
-                 quote an interval in fewer than half of the trials are missing."
+                "Share of the 95 % intervals that contain the truth, with Wilson's intervals, and their median width. Below the line at \
+                 95 % a method is overconfident; above it its intervals are too wide. Methods that give an interval in fewer than \
+                 half of the trials are left out."
             }
             ErrorMeasure::Failures => {
                 "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The \
                  reasons are listed below."
             }
             ErrorMeasure::Validation => {
-                "Median error of the heading on the validation manoeuvre, its rudder replayed through the answer: what K \
-                 and T are worth for prediction. Where all methods agree, the error is that of the model."
+                "Median heading error on the validation manoeuvre, whose rudder is replayed with the answer: the value of K and T for \
+                 prediction. Where all methods agree, the model dominates the error."
             }
         }
     }
@@ -203,20 +202,20 @@ impl<'a> ComparedMethods<'a> {
         Some(covariance[panel][panel].sqrt())
     }
 
-    /// The figure, and whether it is too large to set an axis.
+    /// The statistic, and whether it is too large to set an axis.
     fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
         let figure = self.measure.of(self.summary.record(cell, method)?, panel)?;
-        let is_worthless = self.measure.is_of_errors() && figure.value > WORTHLESS;
+        let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
         let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
         let figure = figure.times(1.0 / unit);
-        match self.measure == ErrorMeasure::Rms && figure.value > 0.0 && figure.value < EXACT {
-            // What is left is the rounding of the arithmetic.
-            true => Some((Statistic { value: EXACT, ci95: None }, false)),
+        match self.measure == ErrorMeasure::Rms && figure.value > 0.0 && figure.value < MIN_ERROR {
+            // The remainder is rounding error.
+            true => Some((Statistic { value: MIN_ERROR, ci95: None }, false)),
             false => Some((figure, is_worthless)),
         }
     }
 
-    /// The value and the interval that are drawn: a value that is too large has no bound.
+    /// Value and interval as drawn; infinite for a value that is too large.
     fn drawn(&self, cell: usize, method: usize, panel: usize) -> Option<(f64, Option<[f64; 2]>)> {
         let (figure, is_worthless) = self.of(cell, method, panel)?;
         Some(if is_worthless { (f64::INFINITY, None) } else { (figure.value, figure.ci95) })
@@ -231,28 +230,28 @@ impl<'a> ComparedMethods<'a> {
         }
     }
 
-    /// What is said under a figure some of whose values are drawn elsewhere.
+    /// Note under a figure: meaning of line, bars, arrows and clipped values.
     fn note(&self, groups: &[ChartGroup]) -> Option<String> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
         let places = cells().flat_map(|&cell| self.methods.iter().map(move |&method| (cell, method)));
         let panels = 0..self.measure.panels();
-        let of = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
-        let figures: Vec<(Statistic, bool)> = places.flat_map(of).collect();
+        let figures_at = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
+        let figures: Vec<(Statistic, bool)> = places.flat_map(figures_at).collect();
         let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
-        let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
+        let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == MIN_ERROR);
         let has_bars = figures.iter().any(|(figure, is_worthless)| figure.ci95.is_some() && !is_worthless);
         let is_share = self.measure == ErrorMeasure::Coverage;
-        let remarks = [(is_share, LINE), (has_bars, BARS), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
-        let said: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
-        (!said.is_empty()).then(|| said.join(" "))
+        let remarks = [(is_share, LINE_NOTE), (has_bars, BARS_NOTE), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
+        let sentences: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
+        (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 }
 
-/// More groups than this do not go side by side.
-const MOST_COLUMNS: usize = 4;
+/// Maximum number of groups side by side.
+const MAX_GROUPS: usize = 4;
 
-/// A ratio of the ends of an axis above which it is divided by factors.
-const WIDE: f64 = 12.0;
+/// Minimum ratio of the ends of an axis for a logarithmic one.
+const MIN_LOG_AXIS_RATIO: f64 = 12.0;
 
 /// Charts of a measure over the last axis that is a number and leaves few points of the other axes, else over the last
 /// number, else over the names of the last axis; points of the other axes side by side where they are few, else one
@@ -267,7 +266,7 @@ pub fn over_axes(
     let has_several =
         |axis: &usize| design.cells.iter().any(|cell| cell.labels[*axis] != design.cells[0].labels[*axis]);
     let numbers: Vec<usize> = (0..design.axes.len()).rev().filter(has_several).filter(is_number).collect();
-    let leaves_few = |axis: &&usize| groups(design, **axis).len() <= MOST_COLUMNS;
+    let leaves_few = |axis: &&usize| groups(design, **axis).len() <= MAX_GROUPS;
     let number = numbers.iter().find(leaves_few).or(numbers.first()).copied();
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, says nothing.
@@ -276,7 +275,7 @@ pub fn over_axes(
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
     };
     let groups = groups(design, x);
-    let is_crowded = groups.len() > MOST_COLUMNS;
+    let is_crowded = groups.len() > MAX_GROUPS;
     // A design over two numbers is shown as maps; of many groups only the errors are shown one by one.
     let is_map = design.axes.len() == 2 && (0..2).all(|axis| is_number(&axis));
     if is_crowded && (is_map || !matches!(measure, ErrorMeasure::Rms | ErrorMeasure::Validation)) {
@@ -306,19 +305,19 @@ pub fn over_axes(
 struct ChartGroup {
     /// The labels of the other axes.
     name: String,
-    /// The same, numbers with the names of their axes.
+    /// Labels of the other axes, numbers with the names of their axes.
     head: String,
     cells: Vec<usize>,
 }
 
 fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
-    let others = |label: &dyn Fn(usize) -> String| {
+    let other_axes = |label: &dyn Fn(usize) -> String| {
         (0..design.axes.len()).filter(|axis| *axis != x).map(label).collect::<Vec<_>>().join(", ")
     };
-    let name = |cell: &usize| others(&|axis| design.cells[*cell].labels[axis].clone());
+    let name = |cell: &usize| other_axes(&|axis| design.cells[*cell].labels[axis].clone());
     let head = |cell: usize| {
         let CellFacts { labels, values, .. } = &design.cells[cell];
-        others(&|axis| match values[axis] {
+        other_axes(&|axis| match values[axis] {
             Some(_) => format!("{} = {}", design.axes[axis], labels[axis]),
             None => labels[axis].clone(),
         })
@@ -327,7 +326,7 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
     groups.map(|(name, cells)| ChartGroup { name, head: head(cells[0]), cells }).collect()
 }
 
-/// How a method is drawn.
+/// Colour and mark of a method.
 pub fn origin(design: &Design, method: usize) -> CurveOrigin {
     curves::origin(&design.methods, &design.methods[method].label)
 }
@@ -338,7 +337,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let values: Vec<f64> = design.cells.iter().filter_map(|cell| cell.values[x]).collect();
     let positive = || values.iter().copied().filter(|value| *value > 0.0);
     let (least, most) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let is_wide = values.iter().all(|value| *value >= 0.0) && most > WIDE * least;
+    let is_wide = values.iter().all(|value| *value >= 0.0) && most > MIN_LOG_AXIS_RATIO * least;
     let across = Ruler::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
     let height = if groups.len() == 1 && titles.len() < 3 { 0.3 } else { 0.24 };
     let row = |(panel, title): (usize, &String)| PanelRow {
@@ -380,7 +379,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
     let ComparedMethods { design, measure, .. } = *compared;
     let part = std::slice::from_ref(group);
     let column = |(panel, title): (usize, String)| {
-        let of = |&cell: &usize| {
+        let items_of = |&cell: &usize| {
             let dot = |&method: &usize| {
                 let (value, interval) = compared.drawn(cell, method, panel)?;
                 let origin = origin(design, method);
@@ -393,7 +392,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
         RowsColumn {
             x: measure.ruler(panel, title),
             reference: measure.reference(panel),
-            rows: group.cells.iter().map(of).collect(),
+            rows: group.cells.iter().map(items_of).collect(),
             ..RowsColumn::default()
         }
     };

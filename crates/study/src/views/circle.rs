@@ -27,16 +27,16 @@ pub fn sentence(name: &str, circle: &CircleEntry) -> String {
         ("transfer", transfer_lengths),
         ("tactical diameter", tactical_diameter_lengths),
     ];
-    let figure = |(what, lengths): (&str, &Option<f64>)| Some(format!("{what} {} L", fixed((*lengths)?, 2)));
+    let figure = |(quantity, lengths): (&str, &Option<f64>)| Some(format!("{quantity} {} L", fixed((*lengths)?, 2)));
     let figures: Vec<String> = figures.into_iter().filter_map(figure).collect();
     let figures = match figures.is_empty() {
-        true => String::from("without positions or a length neither advance nor diameter is known"),
+        true => String::from("without positions and a ship length, advance and diameter are unknown"),
         false => figures.join(", "),
     };
     format!("{name}, a turning circle to {side} with {}° of rudder: {figures}", fixed(rudder_deg.abs(), 1))
 }
 
-/// The same of every circle.
+/// Figures of merit of every circle, a sentence each.
 pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
     all(document, curves).map(|(name, circle, _)| sentence(&name, circle)).collect()
 }

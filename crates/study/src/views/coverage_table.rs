@@ -1,4 +1,4 @@
-//! Tables of predictions in a study: whether intervals hold, figure by figure.
+//! Tables of predictions in a study: coverage of the intervals, figure by figure.
 
 use document::names;
 use report::number::{fixed, optional, significant};
@@ -29,40 +29,40 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let head = head(design).counts(["figures", "trials"]).numbers(["inside 90 %", "lowest", "highest"]).unit("%");
     let mut table = Table::new(head.texts(["lowest of", "highest of"]));
-    for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
+    for group in lines.chunk_by(|a, b| (a.cell, a.method) == (b.cell, b.method)) {
         let [first, ..] = group else { continue };
         let mut cells = place(design, first.cell, first.method);
         cells.push(group.len().to_string());
         cells.push(group.iter().map(|line| line.trials).max().unwrap_or(0).to_string());
-        let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
+        let inside_percent = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
         let mut sorted: Vec<&PredictionSummary> = group.iter().collect();
-        sorted.sort_by(|one, other| of(one).total_cmp(&of(other)));
+        sorted.sort_by(|a, b| inside_percent(a).total_cmp(&inside_percent(b)));
         let ends = [sorted[0], sorted[sorted.len() - 1]];
-        let mean = group.iter().map(of).sum::<f64>() / group.len() as f64;
-        cells.extend([mean, of(ends[0]), of(ends[1])].map(|value| fixed(value, 1)));
+        let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
+        cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
         cells.extend(ends.map(|line| names::figure(&line.name).0));
         table.push(cells);
     }
     table
 }
 
-/// What was told of every criterion of IMO, over all cells; `None` where no figure is limited.
+/// Decisions on every criterion of IMO, over all cells; `None` where no figure has a limit.
 pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
-    let limited = grouped(limited, |(line, told)| (told.name.clone(), line.method));
+    let limited = grouped(limited, |(line, criterion)| (criterion.name.clone(), line.method));
     if limited.is_empty() {
         return None;
     }
     let head = TableHead::default().texts(["criterion", "method"]).counts(["trials", "ships within it"]);
-    let told = ["told rightly", "lower 95", "upper 95", "told wrongly", "lower 95", "upper 95"];
-    let mut table = Table::new(head.numbers(told).unit("%"));
-    for ((name, method), own) in limited {
-        let trials: u64 = own.iter().map(|(line, _)| line.trials).sum();
-        let count = |of: fn(&CriterionTally) -> u64| own.iter().map(|(_, told)| of(told)).sum::<u64>();
+    let columns = ["told rightly", "lower 95", "upper 95", "told wrongly", "lower 95", "upper 95"];
+    let mut table = Table::new(head.numbers(columns).unit("%"));
+    for ((name, method), lines) in limited {
+        let trials: u64 = lines.iter().map(|(line, _)| line.trials).sum();
+        let count = |pick: fn(&CriterionTally) -> u64| lines.iter().map(|(_, tally)| pick(tally)).sum::<u64>();
         let mut cells = vec![name.to_string(), design.methods[method].label.clone(), trials.to_string()];
-        cells.push(count(|told| told.kept).to_string());
-        cells.extend(percent(share(count(|told| told.right), trials)));
-        cells.extend(percent(share(count(|told| told.wrong), trials)));
+        cells.push(count(|tally| tally.kept).to_string());
+        cells.extend(percent(share(count(|tally| tally.right), trials)));
+        cells.extend(percent(share(count(|tally| tally.wrong), trials)));
         table.push(cells);
     }
     Some(table)

@@ -32,8 +32,8 @@ fn table(columns: Vec<NamedCurve>) -> String {
     let mut table = CurveTable::default();
     table.push("t_s", places.clone());
     for (name, curve) in columns {
-        let mut rest = finite(curve).peekable();
-        let value = |place: &f64| rest.next_if(|(x, _)| x == place).map_or(f64::NAN, |(_, y)| y);
+        let mut points = finite(curve).peekable();
+        let value = |place: &f64| points.next_if(|(x, _)| x == place).map_or(f64::NAN, |(_, y)| y);
         table.push(name, places.iter().map(value).collect());
     }
     table.text()
@@ -80,9 +80,9 @@ mod tests {
 
     #[test]
     fn columns_stand_beside_each_other_by_their_abscissae() {
-        let one = PlotCurve::new(vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, -1.0 / 3.0]);
-        let other = PlotCurve::new(vec![0.5, 1.0], vec![1e-9, 4.0]);
-        let text = table(vec![("one_deg".into(), &one), ("other_deg".into(), &other)]);
+        let first = PlotCurve::new(vec![0.0, 1.0, 2.0], vec![1.0, f64::NAN, -1.0 / 3.0]);
+        let second = PlotCurve::new(vec![0.5, 1.0], vec![1e-9, 4.0]);
+        let text = table(vec![("one_deg".into(), &first), ("other_deg".into(), &second)]);
         assert_eq!(text, "t_s,one_deg,other_deg\n0,1,\n0.5,,0.000000001\n1,,4\n2,-0.3333333,\n");
     }
 }

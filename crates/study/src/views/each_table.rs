@@ -18,22 +18,22 @@ pub fn table(fits: &[LogFit]) -> Table {
     let mut table = Table::new(head);
     for LogFit { file, verdict, warnings, error, .. } in fits {
         let verdict = verdict.as_ref();
-        let number = |own: Option<Quantity>| own.map_or_else(|| [missing(), missing()], |own| estimate(&own));
+        let number = |index: Option<Quantity>| index.map_or_else(|| [missing(), missing()], |index| estimate(&index));
         let mut codes: Vec<String> = warnings.iter().map(|warning| word(&warning.code)).collect();
         codes.dedup();
-        let mut cells = vec![file.display().to_string(), verdict.map_or_else(missing, |own| own.method.clone())];
-        cells.extend(number(verdict.and_then(|own| own.k_per_s)));
-        cells.extend(number(verdict.and_then(|own| own.t_s)));
-        cells.push(verdict.map_or_else(missing, |own| word(&own.believe)));
-        cells.push(verdict.and_then(|own| own.residual).map_or_else(missing, |own| word(&own)));
+        let mut cells = vec![file.display().to_string(), verdict.map_or_else(missing, |taken| taken.method.clone())];
+        cells.extend(number(verdict.and_then(|verdict| verdict.k_per_s)));
+        cells.extend(number(verdict.and_then(|verdict| verdict.t_s)));
+        cells.push(verdict.map_or_else(missing, |verdict| word(&verdict.believe)));
+        cells.push(verdict.and_then(|verdict| verdict.residual).map_or_else(missing, |residual| word(&residual)));
         cells.extend([warnings.len().to_string(), codes.join(" ")]);
         cells.push(match error {
-            // What to do about it is in the line of JSON.
+            // The line of JSON also says what to do.
             Some(Failure { parts, .. }) => {
                 let problem = parts.problem.split(['\n', ';']).next().unwrap_or_default();
                 format!("{}: {problem}", word(&parts.code))
             }
-            None => verdict.and_then(|own| own.because.clone()).unwrap_or_default(),
+            None => verdict.and_then(|verdict| verdict.because.clone()).unwrap_or_default(),
         });
         table.push(cells);
     }

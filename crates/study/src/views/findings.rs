@@ -1,11 +1,11 @@
-//! What figures show, one sentence each, from the data that they draw.
+//! Findings of figures, one sentence each, from the data that they draw.
 
 use report::figures::{CellMap, LayerKind, NamedRows, Outline, Panels, Plot, RowKind, ZigzagTrial};
 use report::number::{fixed, significant};
 
 use super::pooled_charts::HEAD_END;
 
-/// A value with the name of what has it.
+/// A value with its name.
 type Named = (String, f64);
 
 /// A number with its unit, which stands in brackets behind the name of an axis.
@@ -18,25 +18,25 @@ fn with_unit(value: f64, unit: &str) -> String {
     }
 }
 
-/// From which value to which an axis goes, and whose they are.
+/// Range of the values of an axis, with the names at both ends.
 pub fn range(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
     let axis = axis.replace(['*', '_'], "");
-    let (what, unit) =
-        axis.split_once(" [").map_or((axis.as_str(), ""), |(what, unit)| (what, unit.trim_end_matches(']')));
+    let (quantity, unit) =
+        axis.split_once(" [").map_or((axis.as_str(), ""), |(quantity, unit)| (quantity, unit.trim_end_matches(']')));
     let mut values: Vec<Named> = values.into_iter().filter(|(_, value)| value.is_finite()).collect();
-    values.sort_by(|one, other| one.1.total_cmp(&other.1));
-    let said = |(name, value): &Named| match name.as_str() {
+    values.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let value_words = |(name, value): &Named| match name.as_str() {
         "" => with_unit(*value, unit),
         name => format!("{} ({name})", with_unit(*value, unit)),
     };
     match &values[..] {
-        [] => format!("{what}: no answer"),
-        [only] => format!("{what}: {}", said(only)),
-        [least, .., most] => format!("{what} from {} to {}", said(least), said(most)),
+        [] => format!("{quantity}: no answer"),
+        [only] => format!("{quantity}: {}", value_words(only)),
+        [least, .., most] => format!("{quantity} from {} to {}", value_words(least), value_words(most)),
     }
 }
 
-/// What a figure of methods shows where they differ most; T where there is K beside it.
+/// Finding of a figure of methods where they differ most; for T where the figure has K and T.
 pub fn of_chart(plot: &Plot) -> String {
     match plot {
         Plot::Panels(data) => of_curves(data),
@@ -46,7 +46,7 @@ pub fn of_chart(plot: &Plot) -> String {
     }
 }
 
-/// At the end of the axis, in the last of its stacks.
+/// Range at the end of the axis, in the last column of panels.
 fn of_curves(data: &Panels) -> String {
     let Some(stack) = data.stacks.first().filter(|stack| !stack.rows.is_empty()) else {
         return String::from("No data");
@@ -86,18 +86,18 @@ fn of_clouds(data: &Panels) -> String {
     range("scatter of T [%]", stack.panels.iter().filter_map(spread))
 }
 
-/// In the row in which the values lie farthest apart.
+/// Range in the row with the widest spread.
 fn of_rows(data: &NamedRows) -> String {
     let Some(column) = data.columns.get(data.columns.len().min(2).wrapping_sub(1)) else {
         return String::from("No data");
     };
     let values = |row: usize| -> Vec<Named> {
-        let of = |item: &report::figures::RowItem| match &item.kind {
+        let named_value = |item: &report::figures::RowItem| match &item.kind {
             RowKind::Mark(_, value, _) => Some((item.name.clone().unwrap_or_default(), *value)),
             RowKind::Violin(_, _, quantiles) => Some((String::new(), quantiles[2])),
             _ => None,
         };
-        column.rows[row].iter().filter_map(of).filter(|(_, value)| value.is_finite()).collect()
+        column.rows[row].iter().filter_map(named_value).filter(|(_, value)| value.is_finite()).collect()
     };
     let name = |row: usize| data.names.get(row).cloned().unwrap_or_default();
     let rows = 0..column.rows.len();
@@ -110,11 +110,11 @@ fn of_rows(data: &NamedRows) -> String {
         let end = |pick: fn(f64, f64) -> f64| values.iter().map(|(_, value)| value.abs()).reduce(pick).unwrap_or(1.0);
         end(f64::max) / end(f64::min).max(f64::MIN_POSITIVE)
     };
-    let widest = rows.max_by(|one, other| spread(one).total_cmp(&spread(other))).unwrap_or(0);
+    let widest = rows.max_by(|a, b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
     format!("{}: {}", name(widest), range(&column.x.title, values(widest)))
 }
 
-/// Over all cells of a map: those that are right, where it says which.
+/// Range over the cells of a map; over the right ones where the map outlines them.
 fn of_map(data: &CellMap) -> String {
     let mut values = Vec::new();
     for (head, rows) in &data.panels {
@@ -130,14 +130,14 @@ fn of_map(data: &CellMap) -> String {
     }
     let right = values.into_iter().filter(|(.., is_right)| *is_right);
     let of_row = |row: &str| row.split(" (n").next().unwrap_or(row).to_owned();
-    range("what is right is said in [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
+    range("right answers [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
 }
 
 /// The overshoots of a zig-zag.
 pub fn of_trial(data: &ZigzagTrial) -> String {
-    let angles: Vec<String> = data.overshoots.iter().map(|own| format!("{}°", fixed(own.angle_deg, 1))).collect();
+    let angles: Vec<String> = data.overshoots.iter().map(|swing| format!("{}°", fixed(swing.angle_deg, 1))).collect();
     match &angles[..] {
-        [] => String::from("No overshoot is seen"),
+        [] => String::from("The trial has no overshoot"),
         [only] => format!("The only overshoot is {only}"),
         [first @ .., last] => format!("The overshoots are {} and {last}", first.join(", ")),
     }

@@ -26,14 +26,14 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
         [only] => names::record(&only.name),
         _ => format!("{} records together", fitted.len()),
     };
-    let caption = format!("{name}: K and T of every method with the intervals and regions it quotes.");
+    let caption = format!("{name}: K and T of every method with its intervals and regions.");
     let mut figures = vec![PageFigure::new("indices", agreement(document), caption, index_plane(document, curves))];
     figures.extend(document.single_records.as_ref().map(|all| {
         let caption = format!(
             "{name}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
         );
-        let of = |own: &SingleRecord| (format!("rudder {}°", fixed(own.amplitude.rudder_deg, 0)), own.k_per_s.value);
-        let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(of)));
+        let gain = |fit: &SingleRecord| (format!("rudder {}°", fixed(fit.amplitude.rudder_deg, 0)), fit.k_per_s.value);
+        let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(gain)));
         PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
     let shown = document.shown_method();
@@ -43,28 +43,28 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     figures
 }
 
-/// By how much two answers may differ that agree, as a share.
-const AGREE: f64 = 0.1;
+/// Relative tolerance for two answers to agree.
+const TOLERANCE: f64 = 0.1;
 
-/// K and T of the method that is shown, and how many others find the same.
+/// Finding: K and T of the shown method, and how many other methods agree.
 fn agreement(document: &FitDocument) -> String {
     let answer = |entry: &MethodEntry| Some([entry.parameters?.k_per_s.value, entry.parameters?.t_s.value]);
     let shown = document.shown_method();
-    let (of_shown, others): (Vec<_>, Vec<_>) =
+    let (of_shown, other_answers): (Vec<_>, Vec<_>) =
         document.methods.iter().partition(|entry| Some(entry.method.as_str()) == shown);
     let Some([k, t]) = of_shown.first().and_then(|entry| answer(entry)) else {
         return String::from("No method answers");
     };
     let is_near =
-        |[other_k, other_t]: &[f64; 2]| (other_k / k - 1.0).abs() < AGREE && (other_t / t - 1.0).abs() < AGREE;
-    let agreeing = others.iter().filter_map(|entry| answer(entry)).filter(is_near).count();
+        |[other_k, other_t]: &[f64; 2]| (other_k / k - 1.0).abs() < TOLERANCE && (other_t / t - 1.0).abs() < TOLERANCE;
+    let agreeing = other_answers.iter().filter_map(|entry| answer(entry)).filter(is_near).count();
     format!(
-        "{}: K = {} 1/s, T = {} s; {agreeing} of {} find the same within {:.0} %",
+        "{}: K = {} 1/s, T = {} s; {agreeing} of {} agree within {:.0} %",
         capital(shown.unwrap_or_default()),
         significant(k, 3),
         significant(t, 3),
-        counted(others.len() as u64, "other method"),
-        100.0 * AGREE
+        counted(other_answers.len() as u64, "other method"),
+        100.0 * TOLERANCE
     )
 }
 
@@ -72,38 +72,38 @@ fn agreement(document: &FitDocument) -> String {
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
     let FitRecord { replays, rejected, .. } = record;
     let name = names::record(&record.name) + if record.validation { " (validation)" } else { "" };
-    let figure = |kind: &str, finding: String, what: &str, plot: Plot| {
+    let figure = |kind: &str, finding: String, description: &str, plot: Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };
-        PageFigure::new(stem, finding, format!("{name}: {what}"), plot)
+        PageFigure::new(stem, finding, format!("{name}: {description}"), plot)
     };
     let mut figures = Vec::new();
     figures.extend(record.zigzag.as_ref().map(|data| {
-        let what = "heading and rudder, with the characteristics of the zig-zag.";
-        figure("trial", findings::of_trial(data), what, data.clone().into())
+        let description = "heading and rudder, with the characteristics of the zig-zag.";
+        figure("trial", findings::of_trial(data), description, data.clone().into())
     }));
     figures.extend(rejected.as_ref().map(|marks| {
-        let what = "the record as it was read, with marks at the readings that are left out or doubtful.";
+        let description = "the record as read, with marks at readings that are left out or doubtful.";
         let count = marks.iter().map(|curve| curve.x.len() as u64).sum();
         let finding = format!("{} left out or doubtful", counted(count, "reading"));
-        figure("raw", finding, what, raw(record, marks).into())
+        figure("raw", finding, description, raw(record, marks).into())
     }));
-    let what = "the recorded rudder replayed with the answer of every method, and what is left of the heading.";
-    figures.push(figure("replays", study_figures::left(replays), what, replays.panels().into()));
-    let own = replays.replays.iter().find(|own| shown == Some(own.origin.label()));
-    let own = own.or_else(|| replays.replays.first());
+    let description = "the recorded rudder replayed with the answer of every method, and the heading errors.";
+    figures.push(figure("replays", study_figures::left(replays), description, replays.panels().into()));
+    let replay = replays.replays.iter().find(|replay| shown == Some(replay.origin.label()));
+    let replay = replay.or_else(|| replays.replays.first());
     let extent = replays
         .record
         .finite()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, y)| [low.min(y), high.max(y)]);
-    let finding = own.and_then(|own| {
-        let (rms, swing) = (significant(own.rms_deg?, 2), significant(extent[1] - extent[0], 2));
-        Some(format!("{} leaves {rms}° (rms) of a heading that swings by {swing}°", capital(own.origin.label())))
+    let finding = replay.and_then(|replay| {
+        let (rms, swing) = (significant(replay.rms_deg?, 2), significant(extent[1] - extent[0], 2));
+        Some(format!("{}: heading error {rms}° (rms) of a swing of {swing}°", capital(replay.origin.label())))
     });
-    let model = own.map(|own| ModelOverTime {
-        origin: own.origin.clone(),
-        heading: own.heading.clone(),
-        residual: own.residual.clone(),
-        rms_deg: own.rms_deg,
+    let model = replay.map(|replay| ModelOverTime {
+        origin: replay.origin.clone(),
+        heading: replay.heading.clone(),
+        residual: replay.residual.clone(),
+        rms_deg: replay.rms_deg,
         band: None,
     });
     let data = over_time(replays.record.clone(), record.rudder.clone(), model.into_iter().collect());
@@ -126,7 +126,7 @@ fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
     Panels::over_time(rows)
 }
 
-/// What K and T are multiplied with in a figure.
+/// Factors of K and T in a figure: to prime values where the ship is known.
 fn factors(ship: Option<Particulars>) -> [f64; 2] {
     ship.map_or([1.0; 2], |ship| [ship.prime([-1, 0]), ship.prime([1, 0])])
 }
@@ -139,8 +139,9 @@ fn titles(ship: Option<Particulars>) -> [String; 2] {
     }
 }
 
-/// How many times the middle distance from the middle is drawn; what lies farther off is named below.
-const REACH: f64 = 4.0;
+/// Half the range of an axis as a multiple of the median distance from the median; methods farther off are listed
+/// below.
+const PLANE_REACH: f64 = 4.0;
 
 /// K and T of all methods that have an answer, with the regions that hold both with 95 %.
 fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
@@ -148,17 +149,17 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     let [by_k, by_t] = factors(ship);
     let scaled = |x: f64, y: f64| (by_k * x, by_t * y);
     let layers = |entry: &MethodEntry| -> Option<[Option<Layer>; 2]> {
-        let own = entry.parameters.as_ref()?;
+        let estimates = entry.parameters.as_ref()?;
         let look = CurveOrigin::Method(entry.method.clone()).look();
         let pen = Pen { dash: look.dash, ..Pen::new(look.colour) };
         let region = curves.regions.get(&entry.method).map(|region| {
             let (x, y) = region.pairs().map(|(k, t)| scaled(k, t)).unzip();
             Layer::line("", PlotCurve { x, y }, pen)
         });
-        let (k, t) = scaled(own.k_per_s.value, own.t_s.value);
+        let (k, t) = scaled(estimates.k_per_s.value, estimates.t_s.value);
         Some([region, Some(Layer::marks(entry.method.as_str(), look, vec![(k, t, None)]))])
     };
-    let [k, t] = titles(ship).map(|title| Ruler::decimal(title).within(REACH, None));
+    let [k, t] = titles(ship).map(|title| Ruler::decimal(title).within(PLANE_REACH, None));
     let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
     let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
     Panels {
@@ -169,7 +170,7 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
 }
 
 /// A value farther from zero than so many times the middle one is shown by an arrow.
-const FAR: f64 = 3.0;
+const AMPLITUDE_REACH: f64 = 3.0;
 
 /// K and T of every record alone over the amplitudes of its zig-zag, with those of all together.
 fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
@@ -179,10 +180,10 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     // Points are not joined: a cross or a star would hide its bar.
     let look = Look { marker: Marker::Circle, ..CurveOrigin::Method(all.method.clone()).look() };
     let name = format!("{}, every record alone, 95 %", all.method);
-    let panel = |of: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
-        let point = |own: &SingleRecord| {
-            let value = of(own).scaled(factor);
-            (amplitude(own), value.value, value.ci95)
+    let panel = |quantity: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
+        let point = |record: &SingleRecord| {
+            let value = quantity(record).scaled(factor);
+            (amplitude(record), value.value, value.ci95)
         };
         let marks = Layer::marks(name.as_str(), look, all.records.iter().map(point).collect());
         LayeredPanel { head: None, layers: vec![marks.apart()] }
@@ -190,16 +191,16 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let row = |title: String, joint: Option<Quantity>, factor: f64| {
         let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());
         PanelRow {
-            reference: joint.map(|own| Reference95 { value: own.value, band: own.ci95.unwrap_or([own.value; 2]) }),
-            ..PanelRow::new(Ruler::decimal(title).within(FAR, Some(0.0)), 0.3)
+            reference: joint.map(|all| Reference95 { value: all.value, band: all.ci95.unwrap_or([all.value; 2]) }),
+            ..PanelRow::new(Ruler::decimal(title).within(AMPLITUDE_REACH, Some(0.0)), 0.3)
         }
     };
     let ([by_k, by_t], [k, t]) = (factors(ship), titles(ship));
     let x = [format!("rudder {} [°]", symbol("δ")), format!("peak heading {} [°]", symbol("ψ"))];
-    let amplitudes: [fn(&SingleRecord) -> f64; 2] = [|own| own.amplitude.rudder_deg, |own| own.amplitude.heading_deg];
-    let mut panels: Vec<LayeredPanel> = amplitudes.map(|of| panel(|own| own.k_per_s, by_k, of)).into();
-    panels.extend(amplitudes.map(|of| panel(|own| own.t_s, by_t, of)));
-    let rows = vec![row(k, joint.map(|own| own.k_per_s), by_k), row(t, joint.map(|own| own.t_s), by_t)];
+    let amplitudes: [fn(&SingleRecord) -> f64; 2] = [|fit| fit.amplitude.rudder_deg, |fit| fit.amplitude.heading_deg];
+    let mut panels: Vec<LayeredPanel> = amplitudes.map(|of_axis| panel(|fit| fit.k_per_s, by_k, of_axis)).into();
+    panels.extend(amplitudes.map(|of_axis| panel(|fit| fit.t_s, by_t, of_axis)));
+    let rows = vec![row(k, joint.map(|fit| fit.k_per_s), by_k), row(t, joint.map(|fit| fit.t_s), by_t)];
     let stack = Stack { x: x.map(|title| Ruler::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
     Panels { note, ..Panels::of(stack) }

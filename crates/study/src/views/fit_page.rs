@@ -27,13 +27,13 @@ struct FitPage<'a> {
     verdict: Option<String>,
     /// Paragraphs below the verdict.
     lines: Vec<String>,
-    /// What the records measure of the criteria of IMO.
+    /// Measured IMO criteria.
     criteria: Option<Table>,
     /// A sentence for every turning circle.
     circles: Vec<String>,
     /// The form of MSC/Circ.1053: what is declared, the tests, and remarks.
     form: Option<(Vec<(&'a str, Table)>, Table)>,
-    /// What the form says beside its entries, and the mark of its headlines.
+    /// Remarks of the form, and the mark of its headings.
     form_remarks: &'a [String],
     mark: &'static str,
     answers: Table,
@@ -49,17 +49,17 @@ struct FitPage<'a> {
 
 /// `report.md` with its figures.
 pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
-    let (mut first, mut others) = (Vec::new(), Vec::new());
+    let (mut first, mut folded) = (Vec::new(), Vec::new());
     for figure in fit_figures::figures(document, curves) {
         // The answers over the first record tell most; every other figure can wait.
-        if figure.stem == FIRST { first.push(figure) } else { others.push(figure) }
+        if figure.stem == FIRST { first.push(figure) } else { folded.push(figure) }
     }
     let mut figures = PlacedFigures::default();
     figures.put("first", first);
-    figures.put("others", others);
+    figures.put("folded", folded);
     figures.put("circle", circle::figure(document, curves));
-    let words = verdict(document).unwrap_or_default() + "\n" + &headline(document, curves);
-    let mut lines = words.lines().map(str::to_owned);
+    let verdict_lines = verdict(document).unwrap_or_default() + "\n" + &headline(document, curves);
+    let mut lines = verdict_lines.lines().map(str::to_owned);
     let notes = notes(document, curves);
     let note = |line: &str| (if line.starts_with("  ") { "  " } else { "" }, line.trim().to_owned());
     let has_form = !document.form.is_empty();
@@ -93,13 +93,13 @@ fn title(document: &FitDocument, curves: &FitCurves) -> String {
     format!("{records}{ship}")
 }
 
-/// What follows the table on the screen.
-pub fn rest(document: &FitDocument, curves: &FitCurves) -> String {
-    let mut rest = notes(document, curves);
-    for (words, table) in scales(document) {
-        rest += &format!("\n{words}\n{}", table.map_or_else(String::new, |table| table.to_text()));
+/// Lines below the table on the screen: characteristics of the records, prime indices.
+pub fn below_table(document: &FitDocument, curves: &FitCurves) -> String {
+    let mut below_table = notes(document, curves);
+    for (scale_sentence, table) in scales(document) {
+        below_table += &format!("\n{scale_sentence}\n{}", table.map_or_else(String::new, |table| table.to_text()));
     }
-    rest
+    below_table
 }
 
 /// The answers of all methods.
@@ -108,13 +108,13 @@ pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
     method_table::table(&document.methods, &validated.map(|record| names::record(&record.name)).collect::<Vec<_>>())
 }
 
-/// Which answer to take, and whether to believe it.
+/// Verdict: K, T and δ_r to take, with the reason; or why none can be taken.
 pub fn verdict(document: &FitDocument) -> Option<String> {
     let verdict = document.verdict.as_ref()?;
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method)?;
-    let own = entry.parameters.as_ref()?;
-    let [k, t, bias] =
-        [own.k_per_s, own.t_s, own.delta_r_deg].map(|quantity| method_table::estimate(&quantity)[0].clone());
+    let estimates = entry.parameters.as_ref()?;
+    let [k, t, bias] = [estimates.k_per_s, estimates.t_s, estimates.delta_r_deg]
+        .map(|quantity| method_table::estimate(&quantity)[0].clone());
     if let Some(because) = &verdict.because {
         let trial = match &document.trials[..] {
             [only] if only.zigzag.is_some() => "this zig-zag",
@@ -124,89 +124,89 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         let advice = match &document.single_records {
             Some(all) if all.agree == Some(false) => {
                 format!(
-                    "{} Take those of each record, or have `study trace` fit them together.",
+                    "{} Use K and T of each record, or fit the records together with `study trace`.",
                     indices::of_records(all)
                 )
             }
             _ => String::from(
-                "Check rudder, heading and clock first, which the warnings may name; then give a zig-zag in calm weather.",
+                "Check rudder, heading and clock first (see the warnings); then record a zig-zag in calm weather.",
             ),
         };
         return Some(format!("No K and T can be taken from {trial}, because {because}.\n{advice}"));
     }
     let because = match verdict.reason {
-        Reason::NearestReplay => "its replay is the nearest to the headings",
-        Reason::RandomMoment => "a random moment acts on the ship that no term of a ship explains",
-        Reason::RudderNoise => "the recorded rudder is noisy",
-        Reason::HeadingJumps => "the heading jumps and stays off, which it estimates",
+        Reason::NearestReplay => "its replay is closest to the recorded headings",
+        Reason::RandomMoment => "random yaw moments (gusts, waves) act on the ship, and this method allows for them",
+        Reason::RudderNoise => "the recorded rudder is noisy, and this method allows for it",
+        Reason::HeadingJumps => "the recorded heading jumps, and this method estimates the jumps",
     };
-    let mut words = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
+    let mut text = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
     let amplitude = indices::of_amplitude(document.amplitude.as_ref());
-    words += &if amplitude.is_empty() { String::new() } else { format!("\n{amplitude}") };
-    words += &residual(document, verdict);
-    words +=
-        &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
-    words += &contradiction(document, verdict);
+    text += &if amplitude.is_empty() { String::new() } else { format!("\n{amplitude}") };
+    text += &residual(document, verdict);
+    text += &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
+    text += &contradiction(document, verdict);
     if !verdict.set_apart.is_empty() {
-        words += &format!("\nMore than ten times as far from the headings are: {}.", verdict.set_apart.join(", "));
+        text += &format!("\nReplay error more than ten times larger: {}.", verdict.set_apart.join(", "));
     }
-    Some(words)
+    Some(text)
 }
 
-/// What the residual of output error is, and whether most of it goes with a late rudder.
+/// Nature of the residual of output error: noise, a missing effect or random moments, and a late rudder that explains
+/// it.
 fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
-    let [residual, rest] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
-    let mut words = match verdict.residual {
+    let [residual, with_terms] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
+    let mut sentences = match verdict.residual {
         None => String::new(),
-        Some(ResidualKind::Noise) => String::from("\nThe residual of output error is noise of the heading."),
+        Some(ResidualKind::Noise) => String::from("\nThe output-error residual is noise of the heading sensor."),
         Some(ResidualKind::LacksEffect) if document.has_faulty_readings() => format!(
-            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull, but the readings are suspected \
-             before the ship: see the warnings."
+            "\nThe output-error residual falls from {residual}° to {with_terms}° with more hull terms, but check the readings before \
+             the ship: see the warnings."
         ),
         Some(ResidualKind::LacksEffect) if !verdict.falls_with_ship_terms() => format!(
-            "\nThe residual of output error, {residual}°, is no noise, and the records declare a calm: the model may lack an effect, which \
-             `study trace` looks for."
+            "\nThe output-error residual, {residual}°, is more than noise although a calm is declared: the model may lack an \
+             effect; run `study trace`."
         ),
         Some(ResidualKind::LacksEffect) => format!(
-            "\nThe residual of output error, {residual}°, falls to {rest}° with more terms of a hull: the model may lack an \
-             effect, which `study trace` looks for; it has K and T of small motions, too."
+            "\nThe output-error residual falls from {residual}° to {with_terms}° with more hull terms: the model may lack an \
+             effect; run `study trace`, which also gives K and T for small motions."
         ),
         Some(ResidualKind::Random) => {
-            format!("\nThe residual of output error, {residual}°, is random: more terms of a hull leave {rest}° of it.")
+            format!("\nThe output-error residual, {residual}°, looks random: more hull terms leave {with_terms}°.")
         }
     };
     if let Some(delay) = verdict.rudder_delay_s {
-        words += &match fixed(delay.abs(), 1) {
+        sentences += &match fixed(delay.abs(), 1) {
             late if delay < 0.0 => format!(
-                "\nMost of the residual goes with a rudder that was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
+                "\nMost of this residual disappears if the rudder was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
                  under [rudder] in the sidecar."
             ),
             later => format!(
-                "\nMost of the residual goes with a rudder that acts about {later} s later than it was recorded: a dead time or the second \
-                 order of the ship, a slow compass, or the order in place of the angle."
+                "\nMost of this residual disappears if the rudder acts about {later} s later than it was recorded. Possible causes: a dead \
+                 time, sway coupling of the ship, a slow compass, or the order in place of the angle."
             ),
         };
     }
-    words
+    sentences
 }
 
-/// Why the other one of output error and maximum likelihood has another answer.
+/// The method whose answer differs from the verdict, of output error and maximum likelihood, with the reason.
 fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let other = verdict.contradicted_by.as_ref();
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
     let name = &other.method;
     let has_moment = other.noise.is_some_and(|noise| !noise.moment.is_none());
     let why = match verdict.reason {
-        Reason::NearestReplay if has_moment => "a random moment explains part of the manoeuvre in it",
-        Reason::NearestReplay => "look at both replays",
-        Reason::RandomMoment => "it takes what the random moment does for the work of the rudder",
-        Reason::RudderNoise => "it knows no noise of the rudder",
+        Reason::NearestReplay if has_moment => "it explains part of the manoeuvre as random gusts",
+        Reason::NearestReplay => "its answer differs; compare both replays",
+        Reason::RandomMoment => "it attributes the random yaw moments to the rudder",
+        Reason::RudderNoise => "it does not allow for noise of the rudder",
         Reason::HeadingJumps => "it takes jumps of the heading for turns of the ship",
     };
-    format!("\n{name} contradicts this answer: {why}.")
+    format!("\nNot used: {name}, because {why}.")
 }
 
-/// What was read.
+/// Names, rows and duration of the records, their common scale, and the check against earlier trials.
 pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
     let rows: usize = document.trials.iter().map(|trial| trial.samples).sum();
     let head = match (&document.trials[..], curves.records.first()) {
@@ -218,7 +218,7 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
     sentences.fold(head, |head, sentence| format!("{head}\n{sentence}"))
 }
 
-/// Which record is meant where several have the same name, why methods failed, and the characteristics of the records.
+/// Files of renamed records, reasons of failed methods, and zig-zag characteristics of the records.
 fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let renamed = curves.records.iter().filter(|record| record.is_renamed);
     let renamed =
@@ -228,52 +228,52 @@ fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let mut notes: String =
         [renamed, failed].into_iter().filter(|lines| !lines.is_empty()).map(|lines| format!("\n{lines}")).collect();
     for (entry, record) in document.trials.iter().zip(&curves.records) {
-        let of = if document.trials.len() > 1 { format!("{}: ", names::record(&record.name)) } else { String::new() };
+        let head = if document.trials.len() > 1 { format!("{}: ", names::record(&record.name)) } else { String::new() };
         match (&entry.zigzag, &entry.no_zigzag) {
-            (Some(zigzag), _) => notes += &format!("\n{of}{}", characteristics(zigzag)),
+            (Some(zigzag), _) => notes += &format!("\n{head}{}", characteristics(zigzag)),
             (None, _) if entry.circle.is_some() => {
                 let circle = entry.circle.iter().map(|turn| circle::sentence(&names::record(&record.name), turn));
-                notes += &circle.map(|words| format!("\n{words}\n")).collect::<String>();
+                notes += &circle.map(|sentence| format!("\n{sentence}\n")).collect::<String>();
             }
-            (None, Some(why)) => notes += &format!("\n{of}no zig-zag characteristics: {why}\n"),
+            (None, Some(why)) => notes += &format!("\n{head}no zig-zag characteristics: {why}\n"),
             (None, None) => {}
         }
     }
     notes
 }
 
-/// K' and T' of every method, and which terms scale: words, and the table under them.
+/// Prime indices of every method and the terms that scale: sentences with their tables.
 fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
     let mut parts = Vec::new();
     let prime = |entry: &MethodEntry| entry.prime.map(|prime| (entry.method.clone(), prime.K, prime.T));
     let rows: Vec<(String, Quantity, Quantity)> = document.methods.iter().filter_map(prime).collect();
     if let Some(ship) = document.particulars().filter(|_| !rows.is_empty()) {
-        let words = format!("prime indices K′ = K L/V, T′ = T V/L with {}", scale_name(ship));
-        parts.push((words, Some(scale_tables::prime_table(&rows))));
+        let sentence = format!("prime indices K′ = K L/V, T′ = T V/L with {}", scale_name(ship));
+        parts.push((sentence, Some(scale_tables::prime_table(&rows))));
     }
     let Some(scales) = &document.scales else { return parts };
-    let speaker = PREFERRED_METHODS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
+    let speaker = PREFERRED_METHODS.iter().find_map(|id| scales.comparisons.iter().find(|model| model.model == *id));
     if let Some(model) = speaker.or(scales.comparisons.first()) {
-        let words = format!("every scale alone, {}: {}", model.model, scale_tables::sentence(model));
-        parts.push((words, Some(scale_tables::table(scales, model))));
-        let words = "a first-order response that lacks something differs between manoeuvres, too; `study trace` tells the \
-                     two apart";
-        parts.push((words.to_owned(), None));
+        let sentence = format!("each scale fitted alone ({}): {}", model.model, scale_tables::sentence(model));
+        parts.push((sentence, Some(scale_tables::table(scales, model))));
+        let sentence = "K and T of a first-order response also differ between manoeuvres where it lacks an effect; `study trace` separates the \
+                     two";
+        parts.push((sentence.to_owned(), None));
     }
     parts
 }
 
-/// Most overshoots that are written on the screen.
-const MOST_LISTED: usize = 12;
+/// Maximum number of overshoots on the screen.
+const MAX_LISTED_OVERSHOOTS: usize = 12;
 
-/// Characteristics in words, and the IMO criteria this record measures; of very many overshoots the first.
+/// Zig-zag characteristics and the IMO criteria that the record measures, as lines of text.
 fn characteristics(entry: &ZigZagEntry) -> String {
-    let overshoots = entry.overshoots_deg.iter().zip(&entry.overshoots_sd_deg).take(MOST_LISTED);
-    let words = |(&angle, &sd): (&Option<f64>, &Option<f64>)| {
+    let overshoots = entry.overshoots_deg.iter().zip(&entry.overshoots_sd_deg).take(MAX_LISTED_OVERSHOOTS);
+    let angle_text = |(&angle, &sd): (&Option<f64>, &Option<f64>)| {
         angle.map_or_else(|| MISSING.to_owned(), |angle| with_uncertainty(angle, sd))
     };
-    let overshoots: Vec<String> = overshoots.map(words).collect();
-    let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
+    let overshoots: Vec<String> = overshoots.map(angle_text).collect();
+    let overshoots = match entry.overshoots_deg.len().saturating_sub(MAX_LISTED_OVERSHOOTS) {
         0 if overshoots.is_empty() => "none".to_owned(),
         0 => format!("{} deg", overshoots.join(", ")),
         more => format!("{} deg, and {more} more in fit.json", overshoots.join(", ")),
@@ -281,10 +281,10 @@ fn characteristics(entry: &ZigZagEntry) -> String {
     let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
     text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
     if entry.imo.is_empty() && !entry.overshoots_deg.is_empty() {
-        text += "  IMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
+        text += "  IMO: not compared, length and speed of the ship are unknown; give --length-m and --speed-kn\n";
     }
     if !entry.imo.is_empty() && entry.imo.iter().all(|criterion| criterion.measured.is_none()) {
-        text += "  IMO: this record measures none of the criteria, which are for zig-zags 10/10 and 20/20 from a straight course\n";
+        text += "  IMO: not compared, because the criteria are for 10/10 and 20/20 zig-zags from a straight course\n";
     }
     let measured: Vec<_> = entry.imo.iter().filter(|criterion| criterion.measured.is_some()).collect();
     if let Some(caution) = entry.imo_caution.as_ref().filter(|_| !measured.is_empty()) {

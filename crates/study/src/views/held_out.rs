@@ -1,4 +1,4 @@
-//! Records that were not fitted: what the models before and after leave of them, and their errors.
+//! Records that were not fitted: residuals and errors of the models before and after.
 
 use ::trace::replay_errors::HORIZONS;
 use campaign::curves::curve;
@@ -17,63 +17,63 @@ use crate::documents::curves::{TraceCurves, TracedRecord};
 /// Panels side by side.
 const ACROSS: usize = 3;
 
-/// What both models leave of the heading of every record that was held out, the worst first; `None` where none was.
+/// Figure of the residuals of both models on every held-out record, the worst first; `None` without held-out records.
 pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
     let mut all: Vec<(&RecordEntry, &TracedRecord, &BeforeAfter)> =
         all.zip(&document.trace.error.validation).map(|((entry, record), errors)| (entry, record, errors)).collect();
     let size = |(_, _, errors): &(&RecordEntry, &TracedRecord, &BeforeAfter)| errors.after.heading_rmse_deg;
-    all.sort_by(|one, other| size(other).total_cmp(&size(one)));
+    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let [worst, best] = [all.first()?, all.last()?];
-    let said = |entry: &(&RecordEntry, _, _), degrees| {
+    let error_words = |entry: &(&RecordEntry, _, _), degrees| {
         format!("{} {}°", names::record(&entry.0.name), significant(degrees, 2))
     };
-    let [worst, best] = [worst, best].map(|own| said(own, size(own)));
+    let [worst, best] = [worst, best].map(|entry| error_words(entry, size(entry)));
     let finding = match all.len() {
-        1 => format!("The model leaves {worst}"),
-        count => format!("Of {} the model leaves from {best} to {worst}", counted(count as u64, "held-out record")),
+        1 => format!("Heading error: {worst}"),
+        count => format!("Heading error on {}: from {best} to {worst}", counted(count as u64, "held-out record")),
     };
     let panel = |(entry, record, errors): &(&RecordEntry, &TracedRecord, &BeforeAfter)| {
         let line = |(origin, replay): (CurveOrigin, &identify::replay::Replay)| {
             let pen = Pen::new(origin.look().colour).width(0.9);
             Layer::line(origin.label(), curve(&replay.time, &replay.residual), pen)
         };
-        let [before, after] = [&errors.before, &errors.after].map(|own| significant(own.heading_rmse_deg, 2));
+        let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
         let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
         LayeredPanel { head: Some(head), layers: models(record).map(line).into() }
     };
     let row = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.13);
     let plot = Panels::of(Stack::multiples(ACROSS.min(all.len()), Ruler::time(), row, all.iter().map(panel).collect()));
-    let caption = "What the best first-order response (before) and the model with the effects (after) leave of the headings of \
-                   records that were not fitted; degrees are root mean squares. The record that is foretold worst comes first.";
+    let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
+                   not fitted; degrees are root mean squares. The worst predicted record comes first.";
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
 }
 
 /// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` where there are none.
 pub fn errors(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
-    let column = |title: String, of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
+    let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
         let row = |errors: &BeforeAfter| -> Vec<RowItem> {
             let pairs = [(CurveOrigin::Before, &errors.before), (CurveOrigin::After, &errors.after)];
             let mark =
-                |(origin, own): (CurveOrigin, _)| Some(RowItem::below(origin.label(), origin.look(), of(own)?, None));
+                |(origin, all): (CurveOrigin, _)| Some(RowItem::below(origin.label(), origin.look(), pick(all)?, None));
             pairs.into_iter().filter_map(mark).collect()
         };
-        let rows = judged.iter().map(|one| row(one.errors)).collect();
+        let rows = judged.iter().map(|record| row(record.errors)).collect();
         RowsColumn { x: Ruler::decimal(title), rows, zero: true, ..RowsColumn::default() }
     };
-    let mut columns = vec![column(String::from("whole replay [°]"), &|own| Some(own.heading_rmse_deg))];
-    columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |own| horizon(own, length))));
+    let mut columns = vec![column(String::from("whole replay [°]"), &|error| Some(error.heading_rmse_deg))];
+    columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |all| horizon(all, length))));
     let count = judged.len();
     let records = if count == 1 { "record that was" } else { "records that were" };
     let title =
-        format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|one| one.errors)));
+        format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|line| line.errors)));
     let data = NamedRows {
-        names: judged.iter().map(|one| format!("{}, {}", names::record(one.name), one.used)).collect(),
+        names: judged.iter().map(|record| format!("{}, {}", names::record(record.name), record.used)).collect(),
         columns,
         ..NamedRows::default()
     };
     let caption = "Error of the heading on records that were not fitted, before and after: of the whole replay, and of \
-                   replays that begin anew every 20 and 60 s.";
+                   replays restarted every 20 and 60 s.";
     (!judged.is_empty()).then(|| PageFigure::new("held-out", title, caption, data))
 }

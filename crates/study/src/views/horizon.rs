@@ -1,4 +1,4 @@
-//! How the heading error grows with how far ahead a replay goes, on records that were not fitted.
+//! Growth of the heading error with the horizon of a replay, on records that were not fitted.
 
 use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
@@ -40,7 +40,7 @@ fn place(entries: &[&HorizonEntry]) -> f64 {
     entries.iter().map(|entry| entry.horizon_s).sum::<f64>() / entries.len() as f64
 }
 
-/// What the figure shows, in numbers.
+/// Finding: errors at one horizon and over the whole record.
 fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
     let errors = |entries: &[&HorizonEntry]| {
         let [before, after] = MODELS.map(|(_, error)| significant(pooled(entries, error), 2));
@@ -58,8 +58,8 @@ fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
 fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: usize) -> Vec<Layer> {
     let (origin, error) = &MODELS[number];
     let (look, x) = (origin.look(), horizons.iter().map(|entries| place(entries)).collect::<Vec<f64>>());
-    let over = |of: &dyn Fn(&[&HorizonEntry]) -> f64| {
-        PlotCurve::new(x.as_slice(), horizons.iter().map(|entries| of(entries)).collect::<Vec<f64>>())
+    let over = |pool: &dyn Fn(&[&HorizonEntry]) -> f64| {
+        PlotCurve::new(x.as_slice(), horizons.iter().map(|entries| pool(entries)).collect::<Vec<f64>>())
     };
     let end = |fold: fn(f64, f64) -> f64| {
         over(&|entries| entries.iter().map(|entry| error(entry)).reduce(fold).unwrap_or(f64::NAN))
@@ -95,8 +95,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
         _ => " Bands: the range of the records.",
     };
     let caption = format!(
-        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it begins anew \
-         from the best heading and yaw rate so often, and the last point is the whole record. Marks: the records together, as \
+        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it is restarted from the best heading and yaw rate at this interval; the last point is the whole record. Marks: the records together, as \
          far as half of them go.{each}"
     );
     let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;

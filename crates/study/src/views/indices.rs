@@ -8,29 +8,29 @@ use report::{Table, TableHead};
 
 use super::method_table::estimate;
 
-/// Which amplitude K and T of a first-order response belong to; nothing where the records are no zig-zags.
+/// Sentence on the amplitude at which K and T are valid; empty where the records are not zig-zags.
 pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
     amplitude.map_or_else(String::new, |Amplitude { rudder_deg, heading_deg }| {
         let [rudder, heading] = [rudder_deg, heading_deg].map(|angle| fixed(*angle, 0));
-        format!("They belong to this amplitude: rudder {rudder}°, heading to {heading}°.")
+        format!("They are valid at this amplitude: rudder {rudder}°, heading to {heading}°.")
     })
 }
 
-/// How far K and T go from record to record, and whether they agree.
+/// Sentence on the range of K and T over the records, and whether they agree.
 pub fn of_records(all: &SingleRecords) -> String {
-    let range = |of: fn(&SingleRecord) -> f64, unit: &str| {
-        let values = || all.records.iter().map(of);
+    let range = |value_of: fn(&SingleRecord) -> f64, unit: &str| {
+        let values = || all.records.iter().map(value_of);
         let ends = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
         let [from, to] = ends.map(|end| significant(end, 2));
         format!("from {from} to {to} {unit}")
     };
-    let [k, t] = [range(|own| own.k_per_s.value, "1/s"), range(|own| own.t_s.value, "s")];
+    let [k, t] = [range(|record| record.k_per_s.value, "1/s"), range(|record| record.t_s.value, "s")];
     let agree = match all.agree {
         Some(true) => "; they agree",
-        Some(false) => "; they do not agree, so K and T belong to each record and its amplitude, not to the ship",
+        Some(false) => "; they disagree: K and T depend on the record and its amplitude",
         None => "",
     };
-    format!("Record by record ({}) K goes {k} and T {t}{agree}.", all.method)
+    format!("Fitted one by one ({}), the records give K {k} and T {t}{agree}.", all.method)
 }
 
 /// K and T of every record alone.
@@ -52,7 +52,7 @@ pub fn of_trace(document: &TraceDocument) -> Table {
     let mut table = Table::new(head.numbers(["T"]).unit("s").interval().texts(["for"]));
     let amplitude = document.amplitude.as_ref().map_or_else(
         || String::from("motions as large as these"),
-        |own| format!("this amplitude (rudder {}°)", fixed(own.rudder_deg, 0)),
+        |amplitude| format!("this amplitude (rudder {}°)", fixed(amplitude.rudder_deg, 0)),
     );
     let trace = &document.trace;
     let is_same = trace.model.indices == trace.base;
@@ -60,9 +60,9 @@ pub fn of_trace(document: &TraceDocument) -> Table {
         (amplitude, &trace.base, "an autopilot at this rudder, comparing trials"),
         (String::from("small motions"), &trace.model.indices, "the model: its effects come on top"),
     ];
-    for (of, indices, purpose) in rows.into_iter().take(if is_same { 1 } else { 2 }) {
+    for (name, indices, purpose) in rows.into_iter().take(if is_same { 1 } else { 2 }) {
         let numbers = [&indices.K_per_s, &indices.T_s].into_iter().flat_map(estimate);
-        table.push([of].into_iter().chain(numbers).chain([purpose.to_owned()]));
+        table.push([name].into_iter().chain(numbers).chain([purpose.to_owned()]));
     }
     table
 }

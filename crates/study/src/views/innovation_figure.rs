@@ -10,12 +10,12 @@ use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
 use report::{PageFigure, PlotCurve};
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
-/// Fewest innovations that are judged.
-const FEWEST: usize = 8;
+/// Minimum number of innovations for the figure.
+const MIN_INNOVATIONS: usize = 8;
 
 /// Places between the ends at which the band is drawn, and places at either end that are all drawn.
-const PLACES: usize = 150;
-const ENDS: usize = 20;
+const MAX_DRAWN_RANKS: usize = 150;
+const END_RANKS: usize = 20;
 
 /// Distribution of the i-th smallest of n uniform numbers (David and Nagaraja 2003, 2.1).
 fn ordered(rank: usize, count: usize) -> Beta {
@@ -34,8 +34,8 @@ fn expected(rank: usize, count: usize) -> f64 {
 
 /// Ranks that are drawn, smallest first.
 fn ranks(count: usize) -> Vec<usize> {
-    let step = count.div_ceil(PLACES);
-    (1..=count).filter(|rank| *rank <= ENDS || *rank + ENDS > count || rank % step == 0).collect()
+    let step = count.div_ceil(MAX_DRAWN_RANKS);
+    (1..=count).filter(|rank| *rank <= END_RANKS || *rank + END_RANKS > count || rank % step == 0).collect()
 }
 
 /// The figure of the innovations of a record at times (s), in standard deviations of the noise that was found; `None`
@@ -43,7 +43,7 @@ fn ranks(count: usize) -> Vec<usize> {
 pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
     let spacing = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or_default();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    if time.len() != values.len() || sorted.len() < FEWEST || spacing <= 0.0 {
+    if time.len() != values.len() || sorted.len() < MIN_INNOVATIONS || spacing <= 0.0 {
         return None;
     }
     sorted.sort_by(f64::total_cmp);
@@ -91,9 +91,9 @@ fn correlation(series: &GappedSeries) -> Stack {
     let count = series.values.len();
     let points = autocorrelation(series, whiteness_lags(count));
     let bound = 1.96 / (count as f64).sqrt();
-    let outside = points.iter().filter(|one| one.value.abs() > bound).count();
+    let outside = points.iter().filter(|lag| lag.value.abs() > bound).count();
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
-    let places = points.iter().map(|one| (one.lag as f64 * series.spacing, one.value, None)).collect();
+    let places = points.iter().map(|lag| (lag.lag as f64 * series.spacing, lag.value, None)).collect();
     let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(Ruler::decimal("autocorrelation"), 0.32) };
     let thin = Pen::new(HEADING).width(0.6);
     let mut stack =
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(good[0].panels[0].head.as_deref(), Some("0 of 101 outside the band"), "{title}");
         let twice: Vec<f64> = normal.iter().map(|value| 2.0 * value).collect();
         let head = stacks(&twice).1[0].panels[0].head.clone().unwrap_or_default();
-        let outside: usize = head.split(' ').next().and_then(|own| own.parse().ok()).expect("a number");
+        let outside: usize = head.split(' ').next().and_then(|count| count.parse().ok()).expect("a number");
         assert!(outside > 50, "{head}");
         let mut slow = normal.clone();
         slow.sort_by(f64::total_cmp);

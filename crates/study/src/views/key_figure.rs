@@ -15,7 +15,7 @@ use campaign::statistics::{distinct, grouped};
 use super::charts::CUT_NOTE;
 use super::pooled_charts::{ALL, HEAD_END};
 
-/// How a method is drawn that the figure is not about.
+/// Look of a method that the figure does not highlight.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
 /// Share of the range of what a figure is about by which everything else may widen its axes.
@@ -65,7 +65,7 @@ fn is_of_k(title: &str) -> bool {
 
 fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
-    let (mut others, mut said) = (Vec::new(), Vec::new());
+    let (mut pale_names, mut notes) = (Vec::new(), Vec::new());
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
@@ -79,29 +79,31 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
-            others.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
+            pale_names.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
             panel.layers = quiet.into_iter().map(paled).collect();
             let values = point_values(&shown, &points);
             panel.layers.extend(shown.into_iter().chain(values));
         }
-        let own = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
-        let all = distinct(stack.panels.iter().flat_map(own));
+        let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
+        let all = distinct(stack.panels.iter().flat_map(marked));
         let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
-        let what = if is_of_intervals { "intervals" } else { "answers" };
+        let answers = if is_of_intervals { "intervals" } else { "answers" };
         for panel in &stack.panels {
-            let missing = all.iter().filter(|name| !own(panel).contains(name));
-            said.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {what}.")));
+            let missing = all.iter().filter(|name| !marked(panel).contains(name));
+            notes.extend(
+                missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {answers}.")),
+            );
         }
     }
-    let others = distinct(others).len();
-    if others > 0 {
-        said.push(format!("Pale: {}.", counted(others as u64, "other method")));
+    let pale_names = distinct(pale_names).len();
+    if pale_names > 0 {
+        notes.push(format!("Pale: {}.", counted(pale_names as u64, "other method")));
     }
     let is_arrow = |layer: &Layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY);
     let has_arrows = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers).any(is_arrow);
     let note = data.note.take().unwrap_or_default();
-    said.insert(0, if has_arrows { note } else { note.replace(CUT_NOTE, "").trim().to_owned() });
-    data.note = Some(said.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
+    notes.insert(0, if has_arrows { note } else { note.replace(CUT_NOTE, "").trim().to_owned() });
+    data.note = Some(notes.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
 }
 
 /// Values of marks at points of the axis, written beside them; of two that read alike the first.
@@ -187,8 +189,8 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
         row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
         let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
-        let own: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
-        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !own.contains(&value(item)));
+        let drawn_values: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
+        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !drawn_values.contains(&value(item)));
         let mut place = RowPlace::Below;
         for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
             if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {

@@ -33,7 +33,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     table
 }
 
-/// Most significant digits shown.
+/// Maximum number of significant digits.
 const DIGITS: i32 = 5;
 
 /// A value and its interval, with the digits the interval supports and no more than five significant ones.
@@ -103,9 +103,9 @@ mod tests {
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         };
-        let said = |stop, inverse_time| remark(&answer::answered("one", &estimate(stop, inverse_time), None));
-        assert_eq!(said(StopReason::Converged, 0.1), "");
-        assert_eq!(said(StopReason::RangeLimit, 0.1), "at a bound");
-        assert_eq!(said(StopReason::RangeLimit, -0.1), "course-unstable, at a bound");
+        let remark_at = |stop, inverse_time| remark(&answer::answered("one", &estimate(stop, inverse_time), None));
+        assert_eq!(remark_at(StopReason::Converged, 0.1), "");
+        assert_eq!(remark_at(StopReason::RangeLimit, 0.1), "at a bound");
+        assert_eq!(remark_at(StopReason::RangeLimit, -0.1), "course-unstable, at a bound");
     }
 }

@@ -13,7 +13,7 @@ use trace::missing_moment::Over;
 use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
 /// Panels of a figure at most.
-const PANELS: usize = 4;
+const MAX_PANELS: usize = 4;
 
 /// Times the usual size at which a moment is cut over time, and over a channel: a jump would set the axis.
 const REACHES: [f64; 2] = [8.0, 2.5];
@@ -32,7 +32,7 @@ fn title_of(over: Over) -> String {
 
 fn percent(share: Option<f64>) -> String {
     match share {
-        None => String::from("nothing to explain"),
+        None => String::from("has nothing to explain"),
         Some(share) if share > 0.99 => String::from("explains more than 99 % of the variance"),
         Some(share) if share < 0.01 => String::from("explains less than 1 % of the variance"),
         Some(share) => format!("explains {:.0} % of the variance", 100.0 * share),
@@ -40,52 +40,52 @@ fn percent(share: Option<f64>) -> String {
 }
 
 /// The moment with its band, and what the known explanation makes of it.
-fn banded(known: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
+fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
         Layer::band("95 % band", [lower, upper], HEADING, 0.2).within(0.3),
         Layer::line("missing moment (over a channel: its curve)", middle, Pen::new(HEADING)),
     ];
     let together = |names: &String| if names.contains(", ") { format!("{names} together") } else { names.clone() };
-    layers.extend(known.map(|names| Layer::line(together(names), explained, dashed)));
+    layers.extend(explanation.map(|names| Layer::line(together(names), explained, dashed)));
     layers
 }
 
 /// The figure of one record.
 pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
-    let known = entry.explanation.as_ref();
+    let cause = entry.explanation.as_ref();
     let over = |x: Ruler, height: f64, reach: f64, layers: Vec<Layer>| {
         let moment = Ruler::decimal("moment [° rudder]").within(reach, Some(0.0));
         Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |values: &Vec<f64>| PlotCurve::new(curves.time.clone(), values.clone());
     let [lower, upper] = &curves.band;
-    let moment = banded(known, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
+    let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
     let mut stacks = vec![over(Ruler::time(), 0.24, REACHES[0], moment)];
     let panels = entry.over.iter().zip(&curves.over);
-    let (shown, others): (Vec<_>, Vec<_>) = panels.partition(|(own, _)| own.shows);
-    stacks.extend(shown.into_iter().take(PANELS).map(|(own, channel): (&PanelEntry, &ChannelCurve)| {
+    let (shown, undrawn): (Vec<_>, Vec<_>) = panels.partition(|(panel, _)| panel.shows);
+    stacks.extend(shown.into_iter().take(MAX_PANELS).map(|(panel, channel): (&PanelEntry, &ChannelCurve)| {
         let ChannelCurve { moment, half_width, .. } = channel;
         let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
         let edge = |side: f64| curve(moment.iter().zip(half_width).map(|(m, half)| m + side * half).collect());
         let rows = PlotCurve::new(channel.rows.clone(), curves.moment.clone());
         let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
-        layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(channel.explained.clone())));
+        layers.extend(banded(cause, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(channel.explained.clone())));
         let mut stack =
-            over(Ruler::decimal(channel.over.map_or_else(|| own.channel.clone(), title_of)), 0.2, REACHES[1], layers);
-        (stack.panels[0].head, stack.is_half) = (Some(percent(own.variance_share)), true);
+            over(Ruler::decimal(channel.over.map_or_else(|| panel.channel.clone(), title_of)), 0.2, REACHES[1], layers);
+        (stack.panels[0].head, stack.is_half) = (Some(percent(panel.variance_share)), true);
         stack
     }));
-    let others: Vec<&str> = others.iter().map(|(own, _)| own.channel.as_str()).collect();
-    let others = match others.is_empty() {
+    let undrawn: Vec<&str> = undrawn.iter().map(|(panel, _)| panel.channel.as_str()).collect();
+    let undrawn = match undrawn.is_empty() {
         true => String::new(),
-        false => format!(" Not drawn, because zero lies inside the band: {}.", others.join(", ")),
+        false => format!(" Not drawn, because the band includes zero: {}.", undrawn.join(", ")),
     };
-    let note = Some(format!("Moments beyond {} times the usual size are cut.{others}", REACHES[1]));
+    let note = Some(format!("Moments beyond {} times the usual size are cut.{undrawn}", REACHES[1]));
     Panels { stacks, note, ..Panels::default() }
 }
 
-/// How large the moment of one record is, and what explains it.
+/// Finding: size of the moment of one record and the channel that explains it best.
 pub fn finding(entry: &MissingMomentEntry) -> String {
     let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
@@ -96,17 +96,17 @@ pub fn finding(entry: &MissingMomentEntry) -> String {
     }
 }
 
-/// What has the shape of the moment of one record.
+/// Caption: effects that have the shape of the moment of one record.
 pub fn sentence(entry: &MissingMomentEntry) -> String {
     let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
-    let Some(best) = telling().next() else { return String::from("Over time alone.") };
+    let Some(best) = telling().next() else { return String::from("The moment depends on time alone.") };
     let list =
         |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { names::effects(ids, ", ") };
-    let mut text = format!("Inside the band over the {}: {}", best.channel, list(&best.inside));
+    let mut text = format!("Effects inside the band over the {}: {}", best.channel, list(&best.inside));
     let count = telling().count();
     if count > 1 {
         let _ =
-            write!(text, "; inside the bands of all {count} channels that show something: {}", list(&entry.inside_all));
+            write!(text, "; inside the bands of all {count} channels with a dependence: {}", list(&entry.inside_all));
     }
     text + if entry.unlisted { ". No effect of the list has this shape." } else { "." }
 }

@@ -1,4 +1,4 @@
-//! What people and programs see: tables, figures, pages and JSON. Views read what was computed and compute nothing.
+//! Output: tables, figures, pages and JSON. Views only format results.
 
 pub mod bench_figures;
 pub mod bench_page;

@@ -1,4 +1,4 @@
-//! What traces said of ships whose scenario states what is right to say of them.
+//! Outcomes of traces for ships whose scenario states the right outcome.
 
 use campaign::design::Design;
 use campaign::scenario::MissingPhysics;
@@ -63,28 +63,26 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
     let cells: Vec<Vec<MapCell>> = cells.collect();
     let finding = format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"));
     let map = CellMap {
-        titles: [String::from("said by the trace"), String::from("ship")],
+        titles: [String::from("answer of the trace"), String::from("ship")],
         columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
         rows: ships.into_iter().map(|(name, _)| name).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells)],
         note: Some(String::from(
             "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
-             no list. Alias: not to be told from the truth. Elsewhere: by another dependence, or at another time.",
+             no list. Alias: indistinguishable from the truth. Elsewhere: with another dependence or at another time.",
         )),
     };
     (!judged.is_empty()).then_some((finding, map))
 }
 
-/// What the judgements mean.
+/// Legend of the judgements.
 pub fn reading() -> String {
     format!(
         "*named right*: an effect that the ship has or stands for, and no other; *located right*: a moment with the \
          dependence of the truth and, where this has times, within {NEAR_S:.0} s of a change (its beginning, end or \
-         middle) or {:.0} % of a period, or effects of time named there; *alias*: what the trace cannot tell from the \
-         truth; *located elsewhere*: with another dependence or time; *wrong*: any other name, and of a ship that lacks \
-         nothing a located moment. *Right* of a moment on no list is *unexplained*, too, and of a ship that chance \
-         turns *disturbed*.",
+         middle) or {:.0} % of a period, or effects of time named there; *alias*: an effect indistinguishable from the truth; *located elsewhere*: with another dependence or time; *wrong*: any other name, or a located moment for a ship that lacks nothing. For a moment on no list *unexplained* is \
+         *right*, too; for a ship that random moments turn, *disturbed* is.",
         100.0 * NEAR_PERIOD
     )
 }
@@ -97,14 +95,14 @@ pub fn table(design: &Design, summary: &Summary) -> Option<Table> {
     let mut table = Table::new(head.counts(Judgement::ALL.map(|judgement| judgement.to_string())));
     let judged = judged(design, &summary.tracing);
     for (line, physics) in &judged {
-        let one = [(*line, *physics)];
+        let line_alone = [(*line, *physics)];
         let failed = summary.record(line.cell, line.method).map_or(0, |record| record.failed());
-        let right = Statistic::flat(share(count(&one, Judgement::is_right), line.trials));
+        let right = Statistic::flat(share(count(&line_alone, Judgement::is_right), line.trials));
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
         cells.extend(several.then(|| design.methods[line.method].label.clone()));
         cells.extend([kind(physics).to_owned(), line.trials.to_string(), failed.to_string()]);
         cells.extend(right.map(|share| number::optional(share.map(|share| 100.0 * share), 1)));
-        cells.extend(Judgement::ALL.map(|judgement| count(&one, |other, _| other == judgement).to_string()));
+        cells.extend(Judgement::ALL.map(|judgement| count(&line_alone, |other, _| other == judgement).to_string()));
         table.push(cells);
     }
     (!judged.is_empty()).then_some(table)

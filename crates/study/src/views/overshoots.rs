@@ -46,17 +46,17 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
             all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder });
         }
     }
-    all.sort_by(|one, other| one.rudder.total_cmp(&other.rudder));
+    all.sort_by(|a, b| a.rudder.total_cmp(&b.rudder));
     all
 }
 
-/// How far the overshoots of a replay are from measured ones.
+/// Error of the overshoots of a replay.
 pub struct OvershootError {
     /// Median distance, degrees; `None` where the replay has none of them.
     pub median_deg: Option<f64>,
     /// Measured overshoots.
     pub measured: usize,
-    /// Those of them that the replay does not have.
+    /// Measured overshoots without a replayed one.
     pub missing: usize,
 }
 
@@ -64,7 +64,7 @@ pub struct OvershootError {
 pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
     let judged = || all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
     [0, 1].map(|model| {
-        let distance = |own: &ReplayedOvershoot| Some((own.replayed[model]? - own.measured).abs());
+        let distance = |overshoot: &ReplayedOvershoot| Some((overshoot.replayed[model]? - overshoot.measured).abs());
         let mut distances: Vec<f64> = judged().filter_map(distance).collect();
         let (measured, replayed) = (judged().count(), distances.len());
         OvershootError { median_deg: median(&mut distances), measured, missing: measured - replayed }
@@ -101,21 +101,20 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let data =
         NamedRows { names: all.iter().map(name).collect(), columns: vec![column], shaded, ..NamedRows::default() };
     let held_out = document.records.iter().filter(|record| record.held_out).count();
-    let said = |error: OvershootError| {
+    let error_words = |error: OvershootError| {
         let off = error.median_deg.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2)));
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
-        (format!("{off} off"), missing, error.measured)
+        (off, missing, error.measured)
     };
-    let [(before, no_before, count), (after, no_after, _)] = errors(all, held_out > 0).map(said);
+    let [(before, no_before, count), (after, no_after, _)] = errors(all, held_out > 0).map(error_words);
     let of_records = match held_out {
         0 => String::new(),
-        records => format!(" of {} that no model has seen", counted(records as u64, "record")),
+        records => format!(" of {} that were not fitted", counted(records as u64, "record")),
     };
     let finding = format!(
-        "{count} overshoots{of_records} are {before} with K and T alone{no_before}, {after} traced{no_after}, medians"
+        "Median error of {count} overshoots{of_records}: {before} with K and T alone{no_before}, {after} traced{no_after}"
     );
     let caption = "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced model, with the limits of IMO \
-                   MSC.137(76) where one is for this zig-zag and for a ship of this length. Without a mark: that \
-                   replay has no such overshoot, which counts as missing.";
+                   MSC.137(76) where one is for this zig-zag and for a ship of this length. No mark: the replay has no such overshoot; it counts as missing.";
     (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
 }

@@ -12,7 +12,7 @@ use crate::documents;
 /// The page as Markdown.
 pub const REPORT: &str = "report.md";
 
-/// The same page for a browser, in one file.
+/// The page for a browser, in one file.
 pub const BROWSER: &str = "report.html";
 
 /// Stem of the figure that stands for a page.
@@ -38,9 +38,9 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
 /// stay.
 fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
     let place = folder.path().join(REPORT);
-    let former = disk::read(&place, documents::LARGEST).on("read", &place)?.unwrap_or_default();
+    let former = disk::read(&place, documents::MAX_FILE_BYTES).on("read", &place)?.unwrap_or_default();
     let former = String::from_utf8_lossy(&former);
-    let images = former.split("](").filter_map(|rest| rest.split_once(')')?.0.strip_suffix(".png"));
+    let images = former.split("](").filter_map(|link| link.split_once(')')?.0.strip_suffix(".png"));
     let has = |stem: &str, kind: &str| folder.path().join(stem).with_extension(kind).is_file();
     let is_old = |stem: &&str| has(stem, "svg") && page.figures().iter().all(|figure| figure.stem != *stem);
     let old: Vec<&str> = images.filter(is_old).collect();
@@ -56,9 +56,9 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
     titles.sort_unstable();
     titles.dedup();
     if let Some(title) = theme.limits_without_axis(&titles).first() {
-        let known = titles.join("\", \"");
+        let axes = titles.join("\", \"");
         return Err(Failure::input(format!(
-            "[limits] \"{title}\": no figure of this page has an axis with this title; take one of \"{known}\" in the style, \
+            "[limits] \"{title}\": no figure of this page has an axis with this title; take one of \"{axes}\" in the style, \
              or a style of its own for this page"
         )));
     }

@@ -13,10 +13,10 @@ use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{BARS, ErrorMeasure, comparable, origin, rms_title};
+use super::charts::{BARS_NOTE, ErrorMeasure, comparable, origin, rms_title};
 
-/// Fewest points of an axis that make a map.
-const MAP: usize = 3;
+/// Minimum number of points of an axis for a map.
+const MIN_MAP_POINTS: usize = 3;
 
 /// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
 pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
@@ -25,10 +25,10 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         return Vec::new();
     }
     let (rows, columns) = (labels(0), labels(1));
-    if rows.len() < MAP || columns.len() < MAP {
+    if rows.len() < MIN_MAP_POINTS || columns.len() < MIN_MAP_POINTS {
         return Vec::new();
     }
-    let of = |(measure, panel, stem): (ErrorMeasure, usize, &str)| {
+    let map_of = |(measure, panel, stem): (ErrorMeasure, usize, &str)| {
         let (methods, to_nearest) = comparable(design, measure, design.cells.iter())?;
         let title = match measure {
             ErrorMeasure::Rms => rms_title(stem, to_nearest),
@@ -58,22 +58,23 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         map.panels.iter().flat_map(|(_, rows)| rows).flatten().any(|cell| cell.value.is_some())
     };
     let maps = [(ErrorMeasure::Rms, 0, "K"), (ErrorMeasure::Rms, 1, "T"), (ErrorMeasure::Validation, 0, "validation")];
-    maps.into_iter().filter_map(of).filter(is_there).collect()
+    maps.into_iter().filter_map(map_of).filter(is_there).collect()
 }
 
 /// Whiskers further out than this many times the middle one are cut.
-const SPREADS: f64 = 4.0;
+const MAX_SPREADS: f64 = 4.0;
 
 /// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
-    let column = |detail: &CellDetail, title: &str, of: Of| RowsColumn {
-        x: Ruler::decimal(title).within(SPREADS, Some(0.0)),
+    let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
+        x: Ruler::decimal(title).within(MAX_SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
-            .map(|(method, own)| {
+            .map(|(method, detail)| {
                 let look = origin(design, method).look();
-                let violin = |own: &summary::ErrorDensity| RowKind::Violin(look, own.density.clone(), own.quantiles);
-                of(own).as_ref().map(|own| RowItem::new("", violin(own))).into_iter().collect()
+                let violin =
+                    |shape: &summary::ErrorDensity| RowKind::Violin(look, shape.density.clone(), shape.quantiles);
+                density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
             })
             .collect(),
         zero: true,
@@ -81,15 +82,15 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     };
     let of_cell = |detail: &CellDetail| {
         let columns = vec![
-            column(detail, "error of K [%]", |own| &own.violin_k),
-            column(detail, "error of T [%]", |own| &own.violin_t),
+            column(detail, "error of K [%]", |detail| &detail.violin_k),
+            column(detail, "error of T [%]", |detail| &detail.violin_t),
         ];
         let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
-        let known = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
+        let is_drawn = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note =
             Some(String::from("Shape: density. Box: quartiles, with the median. Line, or numbers: 2.5 to 97.5 %."));
-        (trials >= 10 && known).then_some((detail.cell, NamedRows { names, columns, note, ..NamedRows::default() }))
+        (trials >= 10 && is_drawn).then_some((detail.cell, NamedRows { names, columns, note, ..NamedRows::default() }))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
@@ -108,11 +109,11 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
     let of_cell = |detail: &CellDetail| {
         let bound =
             design.cells[detail.cell].bound_percent2.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
-        let panel = |(method, own): (usize, &MethodDetail)| {
-            let (origin, cloud) = (origin(design, method), own.cloud.as_ref());
+        let panel = |(method, detail): (usize, &MethodDetail)| {
+            let (origin, cloud) = (origin(design, method), detail.cloud.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
-            let ellipse =
-                cloud.map_or_else(PlotCurve::default, |own| PlotCurve::contour95(own.centre.into(), own.covariance));
+            let ellipse = cloud
+                .map_or_else(PlotCurve::default, |cloud| PlotCurve::contour95(cloud.centre.into(), cloud.covariance));
             let mut layers = vec![
                 Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.look().colour)),
                 Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),
@@ -127,11 +128,11 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             });
             LayeredPanel { head: Some(format!("{}{scatter}", design.methods[method].label)), layers }
         };
-        let spread = |own: &MethodDetail| {
-            own.cloud.as_ref().map_or(0.0, |own| (own.covariance[0][0] + own.covariance[1][1]).sqrt())
+        let spread = |detail: &MethodDetail| {
+            detail.cloud.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())
         };
-        let usual = median(&mut detail.methods.iter().map(spread).filter(|own| *own > 0.0).collect::<Vec<_>>());
-        let is_near = |(_, own): &(usize, &MethodDetail)| usual.is_none_or(|usual| spread(own) <= FAR * usual);
+        let usual = median(&mut detail.methods.iter().map(spread).filter(|spread| *spread > 0.0).collect::<Vec<_>>());
+        let is_near = |(_, detail): &(usize, &MethodDetail)| usual.is_none_or(|usual| spread(detail) <= FAR * usual);
         let (near, far): (Vec<_>, Vec<_>) = detail.methods.iter().enumerate().partition(is_near);
         let far: Vec<&str> = far.iter().map(|(method, _)| design.methods[*method].label.as_str()).collect();
         let count = near.len();
@@ -139,17 +140,18 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
         let panels = near.into_iter().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
         let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
-        let points = detail.methods.iter().flat_map(|own| &own.cloud).map(|own| own.points.len()).max().unwrap_or(0);
+        let points =
+            detail.methods.iter().flat_map(|fit| &fit.cloud).map(|cloud| cloud.points.len()).max().unwrap_or(0);
         let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
         let mut note = format!(
-            "Outlines: ellipses of 95 % of the trials, solid as found, dotted at the bound. Points: {points} of {trials}."
+            "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}."
         );
         if !far.is_empty() {
-            note += &format!(" Not drawn, for they scatter more than {FAR} times as far: {}.", far.join(", "));
+            note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
         }
         let data = Panels { note: Some(note), ..Panels::of(Stack { zero: true, ..multiples }) };
-        let known = detail.methods.iter().any(|own| own.cloud.is_some());
-        known.then_some((detail.cell, bound.is_some(), data))
+        let is_drawn = detail.methods.iter().any(|detail| detail.cloud.is_some());
+        is_drawn.then_some((detail.cell, bound.is_some(), data))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
@@ -176,9 +178,9 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
         let row = |row: usize| {
             let dot = |(number, (label, cells)): (usize, &(String, Vec<usize>))| {
                 let first = answer(cells[0], panel)?;
-                let own = answer(cells[row], panel)?.times(1.0 / first.value);
+                let ratio = answer(cells[row], panel)?.times(1.0 / first.value);
                 let origin = CurveOrigin::Series { label: label.clone(), number };
-                Some(RowItem::below(origin.label(), origin.look(), own.value, own.ci95))
+                Some(RowItem::below(origin.label(), origin.look(), ratio.value, ratio.ci95))
             };
             series.iter().enumerate().filter_map(dot).collect()
         };
@@ -189,7 +191,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
         of: design.axes[last].clone(),
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(format!("Marks: means. {BARS}")),
+        note: Some(format!("Marks: means. {BARS_NOTE}")),
         ..NamedRows::default()
     };
     Some((rows, design.methods[summary.reference].label.clone()))
@@ -218,7 +220,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let rows = prediction_rows(design);
     let several = rows.len() > 1;
-    let column = |x: Ruler, of: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
+    let column = |x: Ruler, pick: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
         // Mean or median, and the ends of what lies around it.
         let summed = |mut values: Vec<f64>| {
             values.sort_by(f64::total_cmp);
@@ -242,7 +244,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             let is_of =
                 |line: &&PredictionSummary, cells: &[usize]| line.method == method && cells.contains(&line.cell);
             let of_cells = |cells: &[usize]| {
-                summed(summary.predictions.iter().filter(|line| is_of(line, cells)).map(of).collect())
+                summed(summary.predictions.iter().filter(|line| is_of(line, cells)).map(pick).collect())
             };
             // The first row is of the marks of all cells.
             let cells = (0..design.cells.len()).filter_map(|cell| of_cells(&[cell]));

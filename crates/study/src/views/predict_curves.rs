@@ -13,12 +13,12 @@ use campaign::scenario::name::slug;
 
 /// A stem of its own for every manoeuvre and record.
 pub fn stems(document: &PredictDocument) -> Vec<String> {
-    let own = document.manoeuvres.iter().map(|prediction| {
+    let kinds = document.manoeuvres.iter().map(|prediction| {
         let kind = prediction.kind.to_string();
         // A minus is no part of a slug.
         slug(&kind.replace(" -", " port "))
     });
-    names(own.chain(document.replays.iter().map(|own| format!("replay-{}", slug(&own.name)))))
+    names(kinds.chain(document.replays.iter().map(|kinds| format!("replay-{}", slug(&kinds.name)))))
 }
 
 /// The curves of every manoeuvre and replay: stem and table, angles in degrees.
@@ -54,6 +54,6 @@ fn bands(bands: &Bands, measured: Option<&[f64]>) -> String {
     for (place, percent) in ["05", "25", "50", "75", "95"].into_iter().enumerate() {
         table.push(format!("q{percent}_deg"), bands.quantiles.iter().map(|row| to_deg(row[place])).collect());
     }
-    measured.into_iter().for_each(|own| table.push("measured_deg", degrees(own)));
+    measured.into_iter().for_each(|heading| table.push("measured_deg", degrees(heading)));
     table.text()
 }

@@ -23,7 +23,7 @@ use super::predict_curves::stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
 /// Headings drawn along a track.
-const HEADINGS: usize = 12;
+const DRAWN_HEADINGS: usize = 12;
 
 /// All figures, in the order of the page.
 pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
@@ -34,12 +34,12 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
     }
     for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
         let caption =
-            format!("{}: the record and its rudder replayed, nothing fitted to it.", names::record(&replayed.name));
+            format!("{}: the record and the replay of its rudder, without a fit.", names::record(&replayed.name));
         figures.push(PageFigure::new(stem.as_str(), inside(replayed), caption, replay(replayed)));
         figures.extend(replayed.tracks.as_ref().map(|tracks| {
             let caption = format!(
-                "{}: the recorded turn from above, from the execute on, and what was predicted of it; nothing is fitted \
-                 to it, and a current that it shows is taken out. Thin: {} drawn ships.",
+                "{}: recorded and predicted track of the turn from the execute on; nothing is fitted to it, and its current is removed. \
+                 Thin: {} drawn ships.",
                 names::record(&replayed.name),
                 tracks.drawn.len()
             );
@@ -51,22 +51,24 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
         let criteria: Vec<&PredictedCriterion> = criteria.collect();
         let rows: Vec<_> = criteria.iter().map(|criterion| limit(criterion)).collect();
         if !rows.is_empty() {
-            let kept = criteria.iter().filter(|own| own.probability_of_passing >= SURE).count();
+            let kept = criteria.iter().filter(|criterion| criterion.probability_of_passing >= MIN_PROBABILITY).count();
             let finding = format!(
-                "{kept} of {} are kept with {:.0} % or more",
+                "{kept} of {} are met with a probability of {:.0} % or more",
                 counted(rows.len() as u64, "criterion"),
-                100.0 * SURE
+                100.0 * MIN_PROBABILITY
             );
-            let caption = "Criteria of IMO MSC.137(76): what is predicted and what is allowed.";
+            let caption = "Criteria of IMO MSC.137(76): predicted values and limits.";
             let unit = if unit == Unit::Degrees { "°" } else { unit.symbol() };
             figures.push(PageFigure::new(stem, finding, caption, intervals(unit, rows)));
         }
     }
     let measured = measured(document);
     if !measured.is_empty() {
-        let caption = "Overshoots of the records and what was predicted of them.";
-        let shown = || document.replays.iter().flat_map(|own| &own.figures).filter(|(name, _)| is_overshoot(name));
-        let inside = shown().filter(|(_, own)| (own.interval.ci90[0]..=own.interval.ci90[1]).contains(&own.measured));
+        let caption = "Measured and predicted overshoots of the records.";
+        let shown =
+            || document.replays.iter().flat_map(|replay| &replay.figures).filter(|(name, _)| is_overshoot(name));
+        let inside =
+            shown().filter(|(_, swing)| (swing.interval.ci90[0]..=swing.interval.ci90[1]).contains(&swing.measured));
         let finding =
             format!("{} of {} measured overshoots lie inside their 90 % interval", inside.count(), shown().count());
         figures.push(PageFigure::new("overshoots", finding, caption, intervals("°", measured)));
@@ -102,29 +104,29 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
 }
 
 /// Probability from which a criterion counts as kept.
-const SURE: f64 = 0.95;
+const MIN_PROBABILITY: f64 = 0.95;
 
 /// Figures that a finding says.
-const SAID: usize = 2;
+const MAX_NAMED_FIGURES: usize = 2;
 
 /// The first figures of a manoeuvre, with what 90 % of the drawn ships do.
 fn first_figures(prediction: &Prediction) -> String {
-    let of = |(name, own): (&String, &Predicted)| {
-        let [low, high] = own.interval.ci90.map(|end| significant(end, 3));
-        let (words, unit) = names::figure(name);
-        format!("{words} {}{unit} [{low}, {high}]", significant(own.interval.median, 3))
+    let figure_words = |(name, figure): (&String, &Predicted)| {
+        let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
+        let (quantity, unit) = names::figure(name);
+        format!("{quantity} {}{unit} [{low}, {high}]", significant(figure.interval.median, 3))
     };
-    let said: Vec<String> = prediction.figures.iter().take(SAID).map(of).collect();
-    match said.is_empty() {
-        true => format!("{}: no ship comes to its end", prediction.kind),
-        false => format!("{}: {}", prediction.kind, said.join(", ")),
+    let shown: Vec<String> = prediction.figures.iter().take(MAX_NAMED_FIGURES).map(figure_words).collect();
+    match shown.is_empty() {
+        true => format!("{}: no drawn ship completes it", prediction.kind),
+        false => format!("{}: {}", prediction.kind, shown.join(", ")),
     }
 }
 
-/// How near a replayed record is.
+/// Finding: coverage of the band and heading error of a replayed record.
 fn inside(replayed: &RecordReplay) -> String {
     let [share, rmse] = [fixed(100.0 * replayed.band_coverage_90, 0), significant(replayed.heading_rmse_deg, 2)];
-    format!("The band of 90 % holds {share} % of the headings; the most probable ship is {rmse}° (rms) off")
+    format!("The 90 % band holds {share} % of the headings; heading error of the most probable ship {rmse}° (rms)")
 }
 
 /// The tactical diameter of a recorded turn and of its prediction; else how near its heading is.
@@ -135,19 +137,19 @@ fn diameter(replayed: &RecordReplay) -> String {
     format!("Tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
 }
 
-/// How dense the outer band is, and the inner one, which lies on it.
+/// Opacity of the outer band and of the inner one drawn over it.
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band as far as there is room.
-fn bands(of: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
-    let curve = |values: Vec<f64>| PlotCurve::new(of.time.as_slice(), values);
-    let quantile = |place: usize| curve(of.quantiles.iter().map(|row| to_deg(row[place])).collect());
+fn bands(heading: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
+    let curve = |values: Vec<f64>| PlotCurve::new(heading.time.as_slice(), values);
+    let quantile = |place: usize| curve(heading.quantiles.iter().map(|row| to_deg(row[place])).collect());
     let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);
     let mut layers =
         vec![band("90 % of the drawn ships", [0, 4], BANDS[0]).within(1.0), band("50 %", [1, 3], BANDS[1])];
-    layers.extend(recorded.map(|own| Layer::new("recorded heading", own, LayerKind::Record)));
+    layers.extend(recorded.map(|heading| Layer::new("recorded heading", heading, LayerKind::Record)));
     let pen = Pen::new(HEADING).width(1.2);
-    layers.push(Layer::line("most probable ship", curve(degrees(&of.most_probable)), pen));
+    layers.push(Layer::line("most probable ship", curve(degrees(&heading.most_probable)), pen));
     let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
     let cut = Some(String::from("The band of 90 % is cut at the frame."));
     Panels { cut, ..Panels::over_time(rows) }
@@ -181,12 +183,12 @@ fn turn(tracks: &TurnTracks) -> Panels {
 
 fn track(prediction: &Prediction) -> Panels {
     let passage = prediction.curves.most_probable.as_ref();
-    let own = passage.and_then(|passage| passage.track()).unwrap_or_default();
-    let step = (own.len() / HEADINGS).max(1);
+    let places_m = passage.and_then(|passage| passage.track()).unwrap_or_default();
+    let step = (places_m.len() / DRAWN_HEADINGS).max(1);
     let (mut places, mut headings) = (PlotCurve::default(), Vec::new());
-    for row in (0..own.len()).step_by(step) {
-        places.x.push(own[row][1]);
-        places.y.push(own[row][0]);
+    for row in (0..places_m.len()).step_by(step) {
+        places.x.push(places_m[row][1]);
+        places.y.push(places_m[row][0]);
         headings.extend(passage.map(|passage| to_deg(passage.heading[row])));
     }
     let drawn = prediction
@@ -195,7 +197,7 @@ fn track(prediction: &Prediction) -> Panels {
         .iter()
         .map(|track| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.35));
     let layers = drawn.chain([
-        Layer::line("most probable ship", from_above(own), Pen::new(HEADING).width(1.2)),
+        Layer::line("most probable ship", from_above(places_m), Pen::new(HEADING).width(1.2)),
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
     ]);
     let row = PanelRow::new(Ruler::decimal("north [m]"), 0.7);
@@ -215,13 +217,13 @@ fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     }
 }
 
-fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
+fn interval(predicted: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
-        RowItem::new("90 %", RowKind::Thin(of.ci90)).softly(),
-        RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, of.ci50)),
-        RowItem::new(name, RowKind::Mark(look, of.median, None)),
+        RowItem::new("90 %", RowKind::Thin(predicted.ci90)).softly(),
+        RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, predicted.ci50)),
+        RowItem::new(name, RowKind::Mark(look, predicted.median, None)),
     ]
 }
 

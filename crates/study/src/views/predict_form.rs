@@ -10,7 +10,7 @@ use report::{Page, PlacedFigures, Table, TableHead};
 
 use super::bench_figures::capital;
 
-/// What stands for an entry that nobody can fill in.
+/// Text of an entry without a value.
 const EMPTY: &str = "–";
 
 /// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
@@ -25,7 +25,7 @@ fn filled(entry: &ImoFormEntry) -> String {
             fixed(number, entry.sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, supported))
         }
         Some(Ok(number)) => significant(number, if number.fract() == 0.0 { 1 } else { 3 }),
-        Some(Err(words)) => words.as_str().unwrap_or_default().to_owned(),
+        Some(Err(text_value)) => text_value.as_str().unwrap_or_default().to_owned(),
         None => EMPTY.to_owned(),
     }
 }
@@ -43,8 +43,8 @@ struct FormPage<'a> {
 /// The tables of the form: what is declared under the headings of its parts, and the tests.
 pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
-    let is_declared = |(section, own): &(&str, Vec<&ImoFormEntry>)| {
-        own.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
+    let is_declared = |(section, section_entries): &(&str, Vec<&ImoFormEntry>)| {
+        section_entries.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
     };
     let (declared, measured): (Vec<_>, Vec<_>) = sections.partition(is_declared);
     let declaration = |(section, entries): (_, Vec<&ImoFormEntry>)| {
@@ -56,7 +56,7 @@ pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     };
     let mut tested =
         Table::new(TableHead::default().texts(["test", "result", "side", "value", "unit", "IMO criterion", "source"]));
-    for entry in measured.into_iter().flat_map(|(_, own)| own) {
+    for entry in measured.into_iter().flat_map(|(_, section_entries)| section_entries) {
         tested.push([
             entry.section.clone(),
             entry.field.clone(),
@@ -70,14 +70,14 @@ pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     (declared.into_iter().map(declaration).collect(), tested)
 }
 
-/// What is measured of the criteria of MSC.137(76), to both sides.
+/// Table of the measured criteria of MSC.137(76), to both sides.
 pub fn criteria(entries: &[ImoFormEntry]) -> Table {
     let head = TableHead::default().texts(["test", "result"]).numbers(["to port", "to starboard"]).texts(["unit"]);
     let mut table = Table::new(head.numbers(["limit"]).texts(["kept"]));
     let tests = entries.iter().filter(|entry| entry.side.is_some());
     for ((test, result), sides) in grouped(tests, |entry| (entry.section.as_str(), entry.field.as_str())) {
-        let of = |side: &str| sides.iter().find(|entry| entry.side.as_deref() == Some(side));
-        let values = ["port", "starboard"].map(|side| of(side).map_or_else(|| EMPTY.to_owned(), |entry| filled(entry)));
+        let at = |side: &str| sides.iter().find(|entry| entry.side.as_deref() == Some(side));
+        let values = ["port", "starboard"].map(|side| at(side).map_or_else(|| EMPTY.to_owned(), |entry| filled(entry)));
         let limit = sides.iter().find_map(|entry| entry.limit);
         let measured: Vec<f64> = sides.iter().filter_map(|entry| entry.value.as_ref()?.as_f64()).collect();
         let kept = match limit {

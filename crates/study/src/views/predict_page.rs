@@ -14,91 +14,92 @@ use trial::{Manoeuvre, imo};
 
 use super::{predict_figures, predict_tables};
 
-/// What was predicted from what.
-pub fn words(document: &PredictDocument) -> String {
+/// Text above the table: models, number of draws, weather, hull, range of validity, incomplete manoeuvres.
+pub fn summary(document: &PredictDocument) -> String {
     let weather = match document.calm {
         true => "in a calm",
         false => "in the weather of the records",
     };
-    let mut words = format!("{}: {} ships drawn, {weather}\n", document.model_files(), document.draws);
+    let mut summary = format!("{}: {} ships drawn from the model, {weather}\n", document.model_files(), document.draws);
     if let Some(OtherLoading { draughts_at_trials_m: before, draught_m, factor, .. }) = &document.load {
         let before: Vec<String> = before.iter().map(|draught| ShortNumber(*draught).to_string()).collect();
-        words += &format!(
-            "the ship is the hull of the form mmg, taken from a draught of {} m to {} m by the formulas of \
-             `study list priors`, standard deviations × {factor}; this was checked against no measurement\n",
+        summary += &format!(
+            "the ship is the mmg hull, taken from a draught of {} m to {} m by the formulas of `study list priors`, with standard \
+             deviations × {factor}; no measurement confirms this step\n",
             before.join(", "),
             ShortNumber(*draught_m)
         );
     } else if document.hull {
-        words += "predicted with the fitted hulls of three degrees of freedom, not with the yaw response\n";
+        summary += "predicted with the fitted hulls of three degrees of freedom, not with the yaw response\n";
     }
-    document.earlier_trials.iter().for_each(|said| words += &format!("{said}\n"));
+    document.earlier_trials.iter().for_each(|sentence| summary += &format!("{sentence}\n"));
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
-        words += &format!(
-            "extrapolated: beyond the rudder of {}° or the yaw rate of {}°/s of the records\n",
+        summary += &format!(
+            "extrapolated: beyond the rudder of {}° or the yaw rate of {}°/s in the records\n",
             fixed(to_deg(document.seen.rudder_rad), 1),
             fixed(to_deg(document.seen.yaw_rate_rad_s), 2)
         );
     }
-    let turns = document.manoeuvres.iter().filter(|one| matches!(one.kind, Manoeuvre::TurningCircle { .. }));
-    if turns.filter_map(|one| one.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
-        words += "no track: the model has no hull; fit records with a speed or positions again, with the length of the ship\n";
+    let turns = document.manoeuvres.iter().filter(|turn| matches!(turn.kind, Manoeuvre::TurningCircle { .. }));
+    if turns.filter_map(|turn| turn.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
+        summary += "no track, because the model has no hull: fit the records again with the length of the ship and a column of speed or positions\n";
     }
     if !document.ballast.is_empty() {
-        words += &format!(
+        summary += &format!(
             "records are replayed with {}, manoeuvres are those of the ship above\n",
             document.ballast.join(", ")
         );
     }
     for prediction in document.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
         let lost = counted(prediction.lost as u64, "drawn ship");
-        words += &format!("{}: not completed by {lost}\n", prediction.kind);
+        summary += &format!("{}: {lost} did not complete it\n", prediction.kind);
     }
-    words
+    summary
 }
 
-/// What follows the table on the screen.
-pub fn rest(document: &PredictDocument) -> String {
-    let mut rest = String::new();
+/// Text below the table on the screen: replays, corrections to another loading, IMO criteria.
+pub fn below_table(document: &PredictDocument) -> String {
+    let mut below_table = String::new();
     for replayed in &document.replays {
-        rest += &format!("\n{}: {}\n", names::record(&replayed.name), coverage(replayed));
+        below_table += &format!("\n{}: {}\n", names::record(&replayed.name), coverage(replayed));
     }
     if !document.corrected.is_empty() {
         let table = predict_tables::corrected(document).to_text();
-        rest += &format!(
+        below_table += &format!(
             "\nCorrected to {}, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n{}\n{table}",
             OtherLoading::name(document.load.as_ref()),
             corrected_from(document)
         );
-        doubts(document).for_each(|doubt| rest += &format!("{doubt}\n"));
+        doubts(document).for_each(|doubt| below_table += &format!("{doubt}\n"));
     }
     if !document.imo.is_empty() {
         let caution = caution(document).map_or_else(String::new, |caution| format!("{caution}\n"));
-        rest += &format!("\nIMO MSC.137(76)\n{caution}{}", predict_tables::criteria(document).to_text());
+        below_table += &format!("\nIMO MSC.137(76)\n{caution}{}", predict_tables::criteria(document).to_text());
     } else if (document.length_m.is_none() || document.speed_m_s.is_none()) && !document.manoeuvres.is_empty() {
-        rest += "\nIMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
+        below_table +=
+            "\nIMO: not compared, length and speed of the ship are unknown; give --length-m and --speed-kn\n";
     }
-    rest
+    below_table
 }
 
-/// What the limits mean for a short ship.
+/// Caution on the IMO limits for a ship shorter than 100 m.
 fn caution(document: &PredictDocument) -> Option<String> {
     document.length_m.zip(document.speed_m_s).and_then(|(length, speed)| imo::caution(Particulars { length, speed }))
 }
 
-/// How near a record is to its replay.
+/// Agreement of a record with its replay: coverage of the 90 % band, heading error, current removed.
 fn coverage(replayed: &RecordReplay) -> String {
-    let mut words = format!(
-        "{} % of the headings are inside the 90 % band, rms {}°",
+    let mut sentence = format!(
+        "{} % of the headings are inside the 90 % band; heading error {}° (rms)",
         fixed(100.0 * replayed.band_coverage_90, 0),
         fixed(replayed.heading_rmse_deg, 2)
     );
     if let Some(current) = replayed.current {
         let doubt = current.north_sd_m_s.hypot(current.east_sd_m_s);
         let (speed, set) = (with_uncertainty(current.speed_m_s, Some(doubt)), fixed(current.set_deg, 0));
-        words += &format!("; a current of {speed} m/s that sets to {set}° is not part of its track");
+        sentence += &format!("; a current of {speed} m/s that sets to {set}° is removed from its track");
     }
-    words
+    sentence
 }
 
 /// The models of a correction.
@@ -106,9 +107,12 @@ fn corrected_from(document: &PredictDocument) -> String {
     format!("F from {}, B from {}", document.model_files(), document.ballast.join(", "))
 }
 
-/// What is to be said of whole records that were corrected, a line each.
+/// Warnings on the corrected records, a line each.
 fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
-    document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {}", own.name, doubt.text)))
+    document
+        .corrected
+        .iter()
+        .flat_map(|record| record.warnings.iter().map(|doubt| format!("{}: {}", record.name, doubt.text)))
 }
 
 /// `report.md`.
@@ -132,7 +136,7 @@ pub fn page(document: &PredictDocument) -> Page {
     let replay = |replay: &RecordReplay| format!("{}: {}", text(&names::record(&replay.name)), coverage(replay));
     let page = PredictPage {
         document,
-        lines: words(document).lines().map(str::to_owned).collect(),
+        lines: summary(document).lines().map(str::to_owned).collect(),
         caution: caution(document),
         replays: document.replays.iter().map(replay).collect(),
         loading: text(&OtherLoading::name(document.load.as_ref())),

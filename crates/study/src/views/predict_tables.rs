@@ -29,11 +29,11 @@ pub fn figures(document: &PredictDocument) -> Table {
     };
     for Prediction { kind, figures, .. } in &document.manoeuvres {
         for (name, figure) in figures {
-            let source = figure.shares.iter().max_by(|one, other| one.1.total_cmp(other.1)).map_or_else(
+            let source = figure.shares.iter().max_by(|a, b| a.1.total_cmp(b.1)).map_or_else(
                 || MISSING.to_owned(),
-                |(source, share)| format!("{source} {} %", fixed(100.0 * share, 0)),
+                |(source, share)| format!("{} {} %", source_name(source), fixed(100.0 * share, 0)),
             );
-            let in_some = || format!("in {} % of the draws", significant(100.0 * figure.defined, 3));
+            let in_some = || format!("reached in {} % of the draws", significant(100.0 * figure.defined, 3));
             let remarks =
                 [figure.extrapolated.then(|| String::from("extrapolated")), (figure.defined < 1.0).then(in_some)];
             let remark = remarks.into_iter().flatten().collect::<Vec<_>>().join(", ");
@@ -48,6 +48,17 @@ pub fn figures(document: &PredictDocument) -> Table {
         }
     }
     table
+}
+
+/// Plain name of a source of uncertainty.
+fn source_name(source: &str) -> &str {
+    match source {
+        "structure" => "choice of effects",
+        "process-noise" => "random yaw moment",
+        "steering-gear" => "rudder rate",
+        "initial-state" => "initial yaw rate",
+        source => source,
+    }
 }
 
 /// The criteria of IMO.

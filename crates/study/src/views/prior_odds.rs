@@ -1,4 +1,4 @@
-//! How the probabilities of effects move with their prior odds.
+//! Sensitivity of the probabilities of effects to their prior odds.
 
 use document::names;
 use document::trace::{Outcome, TraceDocument};
@@ -8,13 +8,13 @@ use report::number::{fixed, significant};
 use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
 
 /// Probability that an effect without a name reaches at some odds to be drawn.
-const DRAWN: f64 = 0.05;
+const MIN_DRAWN_PROBABILITY: f64 = 0.05;
 
-/// Most lines of the figure.
-const MOST: usize = 8;
+/// Maximum number of lines of the figure.
+const MAX_LINES: usize = 8;
 
 /// Change of a probability that is said.
-const MOVES: f64 = 0.1;
+const MIN_CHANGE: f64 = 0.1;
 
 const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION, BEFORE, INK, RECORD];
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up];
@@ -56,10 +56,10 @@ fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
         is_named: false,
         probability: &candidate.probability_by_prior_odds,
     });
-    let mut unnamed: Vec<OddsLine> = unnamed.filter(|line| line.ends()[1] >= DRAWN).collect();
+    let mut unnamed: Vec<OddsLine> = unnamed.filter(|line| line.ends()[1] >= MIN_DRAWN_PROBABILITY).collect();
     unnamed.sort_by(|first, second| second.ends()[1].total_cmp(&first.ends()[1]));
     let mut lines: Vec<OddsLine> = named.chain(unnamed).collect();
-    lines.truncate(MOST);
+    lines.truncate(MAX_LINES);
     lines
 }
 
@@ -82,9 +82,9 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
     parts.extend(weak.iter().map(|line| moves(line)));
     let most = unnamed.into_iter().max_by(|first, second| first.change().total_cmp(&second.change()));
     match most {
-        Some(line) if line.change() >= MOVES => parts.push(moves(line)),
+        Some(line) if line.change() >= MIN_CHANGE => parts.push(moves(line)),
         Some(line) => parts.push(format!("no other above {}", fixed((1e2 * line.ends()[1]).ceil() / 1e2, 2))),
-        None => parts.push(format!("no other above {}", fixed(DRAWN, 2))),
+        None => parts.push(format!("no other above {}", fixed(MIN_DRAWN_PROBABILITY, 2))),
     }
     parts.join("; ")
 }
@@ -95,13 +95,13 @@ pub fn sentence(document: &TraceDocument) -> Option<String> {
     unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
 }
 
-/// The same for the least factor of the odds.
+/// Sentence for the smallest factor of the odds.
 fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<String> {
     let fallen = lines.iter().filter(|line| line.is_named && line.probability[0] < named_from);
     let fallen: Vec<String> = fallen.map(|line| format!("{} ({})", line.name, fixed(line.probability[0], 2))).collect();
     (!fallen.is_empty()).then(|| {
         format!(
-            "With {} of the prior odds not named, from a probability of {}: {}.",
+            "With {} times the prior odds these effects would fall below a probability of {} and not be named: {}.",
             significant(least, 1),
             significant(named_from, 2),
             fallen.join(", ")
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(finding(&lines, 0.95), expected);
         assert_eq!(finding(&lines[..1], 0.95), "sway at 0.972 or more; no other above 0.05");
         assert_eq!(finding(&lines[4..], 0.95), "no other above 0.06");
-        let expected = "With 0.1 of the prior odds not named, from a probability of 0.95: speed loss (0.70).";
+        let expected = "With 0.1 times the prior odds these effects would fall below a probability of 0.95 and not be named: speed loss (0.70).";
         assert_eq!(unnamed_below(&lines, 0.1, 0.95).as_deref(), Some(expected));
         assert_eq!(unnamed_below(&lines[..2], 0.1, 0.95), None);
     }

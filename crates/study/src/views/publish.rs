@@ -60,9 +60,9 @@ fn table(summary: &Summary, design: &Design) -> Table {
     }
 }
 
-/// What was published, for other programs. Fails where it cannot be written as JSON.
+/// JSON document of a published study. Fails where it cannot be written as JSON.
 pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
-    documents::of(&StudyAnswer {
+    documents::answer_text(&StudyAnswer {
         folder: folder.path().display().to_string(),
         manifest: &stored.manifest,
         summary: table(summary, &stored.design).to_records(),
@@ -114,12 +114,12 @@ pub fn put(
             folder.write("criteria.csv", criteria.to_csv())?;
         }
     }
-    let brief = (design.cells.len() <= LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
+    let brief = (design.cells.len() <= MAX_LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
     }
     folder.write("summary.tex", for_paper(&summary, stored))?;
-    let figures = study_figures::of(stored, &summary, figures);
+    let figures = study_figures::figures(stored, &summary, figures);
     // The figure of an earlier scenario must not stand for this one.
     if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
         for kind in ["svg", "png"] {
@@ -135,7 +135,7 @@ pub fn put(
 /// `summary.tex`: the methods over all cells, and each beside the reference method on the same trials.
 fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
     let overall = tables::for_paper(summary, stored).to_latex();
-    match summary.pairs.is_empty() || stored.design.cells.len() > LISTED_CELLS {
+    match summary.pairs.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
         true => overall,
         false => format!("{overall}\n{}", tables::pairs_for_paper(summary, stored).to_latex()),
     }
@@ -144,13 +144,13 @@ fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
 const SUMMARY: &str = "summary.csv";
 
 /// Cells that are listed one by one for a person to read; more are in `summary.csv`.
-const LISTED_CELLS: usize = 500;
+const MAX_LISTED_CELLS: usize = 500;
 
 /// Lines that are turned into text at a time.
-const PIECE: usize = 250;
+const CHUNK_LINES: usize = 250;
 
 /// Pieces that are made in parallel.
-const PIECES: usize = 16;
+const PARALLEL_CHUNKS: usize = 16;
 
 /// Writes a long table as CSV, some pieces at a time.
 fn write_csv<T: Sync>(
@@ -163,8 +163,8 @@ fn write_csv<T: Sync>(
     let path = folder.path().join(name);
     let head = table(&[]).to_csv();
     file.write_all(head.as_bytes()).on("write", &path)?;
-    for pieces in lines.chunks(PIECE * PIECES) {
-        let texts: Vec<String> = pieces.par_chunks(PIECE).map(|piece| table(piece).to_csv()).collect();
+    for pieces in lines.chunks(CHUNK_LINES * PARALLEL_CHUNKS) {
+        let texts: Vec<String> = pieces.par_chunks(CHUNK_LINES).map(|piece| table(piece).to_csv()).collect();
         texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", &path)?;
     }
     file.put()

@@ -12,19 +12,19 @@ use ship::angle::to_deg;
 /// A model of a record over time: the heading and its residual in degrees, the root mean square of this, and half the
 /// width of its 95 % band.
 pub struct ModelOverTime {
-    /// Whose model.
+    /// The model drawn.
     pub origin: CurveOrigin,
-    /// RecordReplay heading.
+    /// Replayed heading.
     pub heading: PlotCurve,
     /// Recorded minus replayed heading.
     pub residual: PlotCurve,
-    /// Its root mean square, degrees.
+    /// Root mean square of the residual, degrees.
     pub rms_deg: Option<f64>,
     /// The lower and upper ends of the band about the heading and about no residual.
     pub band: Option<[[PlotCurve; 2]; 2]>,
 }
 
-/// How dense the area of a band is.
+/// Opacity of a band.
 const OPACITY: f64 = 0.2;
 
 /// The panel of a rudder.
@@ -68,13 +68,13 @@ pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOve
 }
 
 /// Drawn ships whose steady curves are shown.
-const CURVES: usize = 40;
+const MAX_CURVES: usize = 40;
 
 /// Whether the most probable of some ships is stable on a straight course.
 pub fn stability(curves: &[SteadyCurve]) -> String {
     match curves.first().and_then(SteadyCurve::instability) {
-        Some(own) => {
-            let width = significant(to_deg(own.width), 2);
+        Some(instability) => {
+            let width = significant(to_deg(instability.width), 2);
             format!("Unstable on a straight course: a loop {width}° of rudder wide has two steady turns")
         }
         None => String::from("Stable on a straight course: one steady turn for every rudder"),
@@ -85,31 +85,31 @@ pub fn stability(curves: &[SteadyCurve]) -> String {
 /// ship that is unstable on a straight course cannot stay dashed, the ships that may be meant just as well pale, over
 /// the field in which there are records.
 pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
-    let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
+    let curve = |ship: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let place = |row: usize| match keep(row) {
-            true => (to_deg(of.rudder[row]), to_deg(of.yaw_rate[row])),
+            true => (to_deg(ship.rudder[row]), to_deg(ship.yaw_rate[row])),
             false => (f64::NAN, f64::NAN),
         };
-        let (x, y): (Vec<f64>, Vec<f64>) = (0..of.rudder.len()).map(place).unzip();
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..ship.rudder.len()).map(place).unzip();
         PlotCurve::new(x, y)
     };
     let (rudder, rate) = (to_deg(seen.rudder_rad), to_deg(seen.yaw_rate_rad_s));
     let edge = |side: f64| PlotCurve::new([-rudder, rudder], [side * rate; 2]);
     let mut layers = vec![Layer::band("seen in the records", [edge(-1.0), edge(1.0)], RECORD, 0.2)];
-    if let Some((first, rest)) = curves.split_first() {
-        let drawn = rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true));
+    if let Some((first, others_drawn)) = curves.split_first() {
+        let drawn = others_drawn.iter().take(MAX_CURVES).map(|ship| curve(ship, &|_| true));
         layers.extend(drawn.map(|ship| Layer::line("drawn ships", ship, Pen::pale()).within(0.4)));
         // Where the rudder goes back while the yaw rate grows.
         let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
         let can_be_unstable = first.instability().is_some();
         let is_inside = |row: usize| can_be_unstable && falls(row) && row > 0 && falls(row - 1);
         let is_unstable = |row: usize| can_be_unstable && (falls(row) || (row > 0 && falls(row - 1)));
-        let own = Pen::new(HEADING).width(1.3);
+        let pen = Pen::new(HEADING).width(1.3);
         // A white edge keeps the curve apart from the drawn ones.
         layers.push(Layer::line("", curve(first, &|_| true), Pen::new(PAPER).width(2.4)));
-        layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), own));
+        layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), pen));
         if can_be_unstable {
-            let dashed = Pen { dash: SHORT_DASH, ..own };
+            let dashed = Pen { dash: SHORT_DASH, ..pen };
             layers.push(Layer::line("unstable branch", curve(first, &is_unstable), dashed));
         }
     }
@@ -126,11 +126,11 @@ mod tests {
     #[test]
     fn the_solid_line_is_broken_between_the_ends_of_an_unstable_branch() {
         let rates = (-4..=4).map(f64::from);
-        let own = SteadyCurve {
+        let unstable_ship = SteadyCurve {
             yaw_rate: rates.clone().map(|rate| 0.01 * rate).collect(),
             rudder: rates.map(|rate| 0.02 * (0.25 * rate.powi(3) - rate)).collect(),
         };
-        let data = steady_turns(&[own], ValidityRange { rudder_rad: 0.2, yaw_rate_rad_s: 0.03 });
+        let data = steady_turns(&[unstable_ship], ValidityRange { rudder_rad: 0.2, yaw_rate_rad_s: 0.03 });
         let finite = |name: &str| -> Vec<usize> {
             let layers = &data.stacks[0].panels[0].layers;
             let layer = layers.iter().find(|layer| layer.name.as_deref() == Some(name)).expect("it is drawn");

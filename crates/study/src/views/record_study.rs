@@ -30,7 +30,7 @@ const RECORDS: &str = "records.csv";
 /// The parameters of the effects named.
 const EFFECTS: &str = "effects.csv";
 
-/// Figure of the errors on the records that judge.
+/// Stem of the figure of errors on held-out records.
 const JUDGED: &str = "judged";
 
 /// A line for every cell and method, for a person.
@@ -47,8 +47,8 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
         let mut cells = tables::place(design, line.cell, line.method);
         cells.push(format!("{}/{}", line.failed, line.fits));
         for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
-            cells.push(figure.map_or_else(|| MISSING.into(), |own| number::supported(own.value, own.ci95)));
-            cells.push(number::interval(figure.and_then(|own| own.ci95)));
+            cells.push(figure.map_or_else(|| MISSING.into(), |figure| number::supported(figure.value, figure.ci95)));
+            cells.push(number::interval(figure.and_then(|figure| figure.ci95)));
         }
         let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect(id)));
         cells.push(named.collect::<Vec<_>>().join(", "));
@@ -57,7 +57,7 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     table
 }
 
-/// The same for other programs: `summary.csv`.
+/// `summary.csv`: a line for every cell and method, for other programs.
 pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["fits", "failed"]);
     for name in ["own error [deg]", "judged error [deg]", "ratio to the first method", "ratio in 60 s"] {
@@ -82,7 +82,7 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
     let head = tables::head(design).texts(["fitted", "judge"]);
     let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
     let mut table = Table::new(head.texts(["verdict", "named", "failure"]));
-    let number = |value: Option<f64>| value.map_or_else(String::new, |own| significant(own, 6));
+    let number = |value: Option<f64>| value.map_or_else(String::new, |number| significant(number, 6));
     for row in rows {
         let cell = &design.cells[row.cell as usize];
         let Some(record) = cell.records.get(row.replicate as usize) else { continue };
@@ -90,8 +90,8 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
         cells.extend([record.fitted.clone(), record.judge.clone().unwrap_or_default()]);
         cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
         let traced = row.traced.as_ref();
-        cells.push(traced.map_or_else(String::new, |own| own.verdict.to_string()));
-        let named = traced.map(|own| own.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
+        cells.push(traced.map_or_else(String::new, |trace| trace.verdict.to_string()));
+        let named = traced.map(|trace| trace.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
         cells.push(named.unwrap_or_default().join("+"));
         cells.push(row.failure.as_deref().unwrap_or_default().to_owned());
         table.push(cells);
@@ -117,7 +117,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
                 let mut cells = tables::place(design, row.cell as usize, row.method);
                 cells.extend([record.fitted.clone(), effect.id.to_string(), size.symbol.to_string()]);
                 cells
-                    .extend([Some(size.value), size.sd].map(|own| own.map_or_else(String::new, |x| significant(x, 6))));
+                    .extend([Some(size.value), size.sd].map(|end| end.map_or_else(String::new, |x| significant(x, 6))));
                 table.push(cells);
             }
         }
@@ -125,7 +125,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
     table
 }
 
-/// The heading error of every method on every record that judges, a line each.
+/// Figure of the heading error of every method on every held-out record, one row per cell and method.
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let mut names = Vec::new();
     let marks = lines.iter().map(|line| {
@@ -134,8 +134,8 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
         let look = CurveOrigin::Method(method.id.clone()).look();
         let pale = Look { hollow: true, ..look };
-        let own = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
-        let mut items: Vec<RowItem> = own
+        let trials = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
+        let mut items: Vec<RowItem> = trials
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
             .collect();
@@ -151,9 +151,8 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         rows: marks.collect(),
         ..RowsColumn::default()
     };
-    let caption = "Heading error of every method on the records that judge, which it has not seen: the recorded rudder is \
-                   replayed, and the initial state alone is fitted. Hollow marks: trials; full ones: medians, with 95 % intervals over \
-                   fits where there are six or more.";
+    let caption = "Heading error of every method on held-out records: the recorded rudder is replayed; only the initial state is fitted. \
+                   Hollow marks: trials; full marks: medians, with 95 % intervals over fits for six or more.";
     let plot = NamedRows {
         names,
         columns: vec![column],
@@ -170,22 +169,22 @@ fn degrees(value: f64) -> String {
     format!("{}°", significant(value, 2))
 }
 
-/// Cells that a finding names one by one.
-const NAMED_CELLS: usize = 3;
+/// Maximum number of cells that a finding names one by one.
+const MAX_NAMED_CELLS: usize = 3;
 
-/// What came out, in a sentence: of the method that is nearest over all cells.
+/// Finding: error ratio of the method with the smallest error over all cells.
 fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let first = &design.methods[0].label;
     let ratios = |method: usize| -> Vec<(usize, f64)> {
-        let own = lines.iter().filter(|line| line.method == method);
-        own.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
+        let method_lines = lines.iter().filter(|line| line.method == method);
+        method_lines.filter_map(|line| Some((line.cell, line.ratio?.value))).collect()
     };
     let mean = |method: &usize| {
         let all = ratios(*method);
         all.iter().map(|(_, ratio)| ratio.ln()).sum::<f64>() / all.len() as f64
     };
     let methods = (1..design.methods.len()).filter(|method| ratios(*method).len() == design.cells.len());
-    let Some(best) = methods.min_by(|one, other| mean(one).total_cmp(&mean(other))) else {
+    let Some(best) = methods.min_by(|a, b| mean(a).total_cmp(&mean(b))) else {
         return format!("Heading error of {first} on records that were not fitted");
     };
     let method = &design.methods[best].label;
@@ -194,26 +193,26 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
         line.and_then(|line| line.judged_deg).map_or(f64::NAN, |median| median.value)
     };
     let ratios = ratios(best);
-    if ratios.len() > NAMED_CELLS {
+    if ratios.len() > MAX_NAMED_CELLS {
         let end = |pick: fn(f64, f64) -> f64| ratios.iter().map(|(_, ratio)| *ratio).reduce(pick).unwrap_or(f64::NAN);
         let [least, most] = [f64::min, f64::max].map(|pick| significant(end(pick), 2));
         return format!("On records not fitted the error of {method} is {least} to {most} of that of {first}");
     }
     let errors = ratios.iter().map(|(cell, _)| {
         let labels = design.cells[*cell].labels.join(", ");
-        let of = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
-        format!("{} → {}{of}", degrees(median(*cell, 0)), degrees(median(*cell, best)))
+        let place = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
+        format!("{} → {}{place}", degrees(median(*cell, 0)), degrees(median(*cell, best)))
     });
     format!("On records not fitted {first} → {method}: {}", errors.collect::<Vec<_>>().join(", "))
 }
 
-/// What a person sees.
+/// Text of the screen: question, table, coverage of predictions.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
     let mut text = format!("{}: {}\n\n", stored.manifest.name, design.words.question.trim());
     text += &brief(&summary.records, design).to_text();
     if !summary.predictions.is_empty() {
-        text += "\nwhat 90 % intervals of predictions hold\n";
+        text += "\ncoverage of 90 % prediction intervals\n";
         text += &coverage_table::pooled(&summary.predictions, design).to_text();
     }
     text

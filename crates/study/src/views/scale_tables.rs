@@ -1,4 +1,4 @@
-//! What was found at each scale beside what was found at all of them together, in words and tables.
+//! Estimates at each scale beside the joint estimate, as a sentence and as tables.
 
 use document::scales::{ComparedModel, ScalesEntry, Scaling};
 use report::number::{MISSING, fixed, uncertain};
@@ -9,21 +9,21 @@ use trial::Quantity;
 use super::method_table::estimate;
 use crate::scales::scale_name;
 
-/// The terms of a model that do not scale, in a sentence.
+/// Sentence on which terms of a model scale.
 pub fn sentence(model: &ComparedModel) -> String {
-    let of = |verdict: Scaling| -> Vec<&str> {
+    let symbols_of = |verdict: Scaling| -> Vec<&str> {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
     };
-    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(of);
+    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(symbols_of);
     let mut parts = Vec::new();
-    for (symbols, words) in [
+    for (symbols, predicates) in [
         (differing, ["does not scale", "do not scale"]),
         (same, ["scales", "scale"]),
-        (open, ["cannot be told", "cannot be told"]),
+        (open, ["is undecided", "are undecided"]),
     ] {
         if !symbols.is_empty() {
-            parts.push(format!("{} {}", symbols.join(", "), words[usize::from(symbols.len() > 1)]));
+            parts.push(format!("{} {}", symbols.join(", "), predicates[usize::from(symbols.len() > 1)]));
         }
     }
     parts.join("; ")
@@ -42,7 +42,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     for term in &model.terms {
         let unit = if term.unit == "1" { String::new() } else { format!(" [{}]", term.unit) };
         let mut cells = vec![format!("{}{unit}", term.symbol), number(&term.joint)];
-        cells.extend(term.own.iter().map(|own| own.as_ref().map_or_else(|| MISSING.to_owned(), number)));
+        cells.extend(term.own.iter().map(|quantity| quantity.as_ref().map_or_else(|| MISSING.to_owned(), number)));
         cells.push(term.difference_sd.map_or_else(|| MISSING.to_owned(), |far| fixed(far, 1)));
         cells.push(term.verdict.to_string());
         table.push(cells);
@@ -74,15 +74,15 @@ mod tests {
 
     #[test]
     fn every_term_has_its_word_and_the_sentence_begins_with_what_does_not_scale() {
-        let of = |value: f64, sd: f64| Some(Quantity::new(value, Some(sd)));
+        let quantity = |value: f64, sd: f64| Some(Quantity::new(value, Some(sd)));
         let joint = Quantity::new(1.0, Some(0.01));
         let terms = vec![
-            term(["K′", "1"], joint, vec![of(1.0, 0.01), of(1.02, 0.01)]),
-            term(["n₃/T′", "1/rad²"], joint, vec![of(1.0, 0.01), of(1.5, 0.01)]),
-            term(["δ_r", "deg"], joint, vec![of(1.0, 0.5), None]),
+            term(["K′", "1"], joint, vec![quantity(1.0, 0.01), quantity(1.02, 0.01)]),
+            term(["n₃/T′", "1/rad²"], joint, vec![quantity(1.0, 0.01), quantity(1.5, 0.01)]),
+            term(["δ_r", "deg"], joint, vec![quantity(1.0, 0.5), None]),
         ];
         let model = ComparedModel { model: "traced".into(), terms };
-        assert_eq!(sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r cannot be told");
+        assert_eq!(sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r is undecided");
         let groups = [
             (Particulars { length: 7.0, speed: 1.18 }, vec![0, 2]),
             (Particulars { length: 320.0, speed: 7.97 }, vec![1]),

@@ -1,5 +1,5 @@
-//! From the residual of the base to that of the model, an effect a row: what is there before it, what it carries of the
-//! heading, and what is left.
+//! From the residual of the base to that of the model, one row per effect: residual before it, the part it explains,
+//! residual after it.
 
 use document::names;
 use document::trace::{StairEntry, TraceDocument};
@@ -10,14 +10,14 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 use super::trace_tables::term;
 use crate::documents::curves::TraceCurves;
 
-/// The way in numbers: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
+/// Heading errors along the steps: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
 pub fn sentence(steps: &[StairEntry]) -> String {
     let size = |step: &StairEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
-    let of = |step: &StairEntry| match &step.id {
+    let step_words = |step: &StairEntry| match &step.id {
         None => size(step),
         Some(id) => format!("{} ({})", size(step), names::effect(id)),
     };
-    steps.iter().map(of).collect::<Vec<_>>().join(" → ")
+    steps.iter().map(step_words).collect::<Vec<_>>().join(" → ")
 }
 
 /// The figure; `None` where the model adds nothing to the base.
@@ -41,16 +41,16 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
             _ => String::new(),
         };
         let size = |number: usize| significant(steps[number].heading_rmse_deg, 2);
-        panels.push(panel(format!("{}° are left", size(number)), pair[0].clone(), &CurveOrigin::Before));
-        panels.push(panel(format!("{name} carries"), carried, &CurveOrigin::Record));
-        panels.push(panel(format!("{}° are left", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
+        panels.push(panel(format!("error {}°", size(number)), pair[0].clone(), &CurveOrigin::Before));
+        panels.push(panel(format!("{name} explains"), carried, &CurveOrigin::Record));
+        panels.push(panel(format!("error {}°", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
     let row = PanelRow::zeroed(Ruler::new("heading [°]", Division::Angle), 0.085);
     let stack = Stack { unbroken: true, ..Stack::multiples(3, Ruler::time(), row, panels) };
     let plot = Panels::of(stack);
     let caption = format!(
-        "{}: what is left of the heading before an effect, what the effect carries of it, and what is left behind it. Every \
-         step is fitted anew for the nearest replay; degrees are root mean squares over all fitted records.",
+        "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \
+         the closest replay; degrees are root mean squares over all fitted records.",
         names::record(&document.records.first()?.name)
     );
     (!residuals.is_empty())

@@ -17,21 +17,21 @@ use super::page_files::KEY_FIGURE;
 /// Name of the page.
 const PAGE: &str = "README.md";
 
-/// How the page begins; one that begins otherwise belongs to somebody else.
+/// First line of the page; a file with another first line was not made by this program.
 const MARK: &str = "<!-- Made by `study report` of several studies, which writes it anew. -->\n";
 
-/// Largest page that is looked at, bytes.
-const LARGEST: u64 = 1 << 26;
+/// Maximum size of an existing page that is read, bytes.
+const MAX_PAGE_BYTES: u64 = 1 << 26;
 
-/// What the page says of a study.
+/// Section of a study.
 struct Section {
     /// Name of its folder.
     name: String,
-    /// Its folder, from where the page lies.
+    /// Path of its folder, relative to the page.
     folder: String,
-    /// What it asks.
+    /// Question of the study.
     question: String,
-    /// What came out.
+    /// Finding of the study.
     finding: String,
     /// File of the figure that stands for it.
     figure: Option<String>,
@@ -46,11 +46,11 @@ struct StudiesPage {
 /// Fails where a folder is not that of a study, and where a page of somebody else lies in the place of this one.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
-        let problem = format!("it holds no {}, and a page over several folders is one over studies", files::MANIFEST);
-        return Err(Failure::about(folder, format!("{problem}; run a scenario first, or give the folder alone")));
+        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
+        return Err(Failure::about(folder, format!("{problem}; give folders of studies, or this folder alone")));
     }
     let path = place.join(PAGE);
-    if disk::read(&path, LARGEST).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
+    if disk::read(&path, MAX_PAGE_BYTES).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
         let problem = "this page was not made by `study report`";
         return Err(Failure::about(&path, format!("{problem}; move it away, or give another folder with --out")));
     }
@@ -92,7 +92,7 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
 
 /// The way from one folder to another, as a link has it.
 fn way(from: &Path, to: &Path) -> String {
-    let shared = from.components().zip(to.components()).take_while(|(one, other)| one == other).count();
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let up = from.components().skip(shared).map(|_| "..".to_owned());
     let down = to.components().skip(shared).map(|part| part.as_os_str().to_string_lossy().into_owned());
     let parts: Vec<String> = up.chain(down).collect();
@@ -107,11 +107,11 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     }
     let file = format!("{stem}.png");
     let names = disk::names(folder).on("list", folder)?;
-    let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
-    let known = known.join(", ");
+    let stems: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
+    let stems = stems.join(", ");
     Err(Failure::about(
         folder,
-        format!("the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {known}"),
+        format!("the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {stems}"),
     ))
 }
 

@@ -1,4 +1,4 @@
-//! The figures of a finished study: which there are, what they say, and where they stand.
+//! The figures of a finished study, their findings and their places in the page.
 
 use campaign::scenario::name::slug;
 use campaign::stored_figures::{
@@ -29,7 +29,7 @@ use crate::screen;
 /// Where a figure stands in the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigurePlace {
-    /// Before everything else: the one that stands for the study.
+    /// At the top: the key figure of the study.
     Key,
     /// With the first trial of a cell.
     Showcase(usize),
@@ -37,7 +37,7 @@ pub enum FigurePlace {
     Traces,
     /// With all trials.
     AllTrials,
-    /// The same, of errors over the axes.
+    /// With all trials: errors over the axes.
     Chart,
 }
 
@@ -45,41 +45,41 @@ pub enum FigurePlace {
 pub type StudyFigure = (FigurePlace, PageFigure);
 
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
-/// A name of a figure that there is not is warned of.
-pub fn of(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
+/// Warns of a name that no figure has.
+pub fn figures(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
     chosen(|| all(stored, summary), &stored.design, choice)
 }
 
-/// Of all figures of a study those that are made: first the one that stands for it.
+/// The figures of a study that are made, the key figure first.
 pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: FigureChoice) -> Vec<StudyFigure> {
     if choice == FigureChoice::None {
         return Vec::new();
     }
-    let (words, mut figures) = (&design.words.output, all());
+    let (output, mut figures) = (&design.words.output, all());
     // Two titles may make one slug.
-    let known = names(figures.iter().map(|(_, figure)| &figure.stem));
-    figures.iter_mut().zip(&known).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
+    let stems = names(figures.iter().map(|(_, figure)| &figure.stem));
+    figures.iter_mut().zip(&stems).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
     let warn = |key: &str, name: &str| {
         let there =
-            if known.is_empty() { String::from("there is none") } else { format!("there are: {}", known.join(", ")) };
+            if stems.is_empty() { String::from("there is none") } else { format!("there are: {}", stems.join(", ")) };
         screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; {there}"));
     };
-    let key = words.figure.as_ref().and_then(|stem| {
-        let found = figures.iter().find(|(_, figure)| figure.stem == *stem);
-        if found.is_none() {
+    let key = output.figure.as_ref().and_then(|stem| {
+        let figure = figures.iter().find(|(_, figure)| figure.stem == *stem);
+        if figure.is_none() {
             warn("figure", stem);
         }
-        found.map(|(place, figure)| {
+        figure.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
-                plot = key_figure::of_chart(plot, &words.highlight);
+                plot = key_figure::of_chart(plot, &output.highlight);
             }
-            let finding = words.title.clone().unwrap_or_else(|| figure.finding.clone());
+            let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))
         })
     });
-    let named = words.figures.as_deref().filter(|_| choice == FigureChoice::Named);
-    for name in named.into_iter().flatten().filter(|name| !known.contains(name)) {
+    let named = output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
+    for name in named.into_iter().flatten().filter(|name| !stems.contains(name)) {
         warn("figures", name);
     }
     figures.retain(|(_, figure)| match choice {
@@ -94,39 +94,39 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
 fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     let mut figures = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
-        figures.extend(of_showcase(&slug(&showcase.title), showcase).map(|own| (FigurePlace::Showcase(index), own)));
+        figures.extend(of_showcase(&slug(&showcase.title), showcase).map(|plot| (FigurePlace::Showcase(index), plot)));
     }
-    figures.extend(of_traces(stored, summary).into_iter().map(|own| (FigurePlace::Traces, own)));
-    figures.extend(of_errors(stored, summary).into_iter().map(|own| (FigurePlace::Chart, own)));
-    figures.extend(of_all_trials(stored, summary).into_iter().map(|own| (FigurePlace::AllTrials, own)));
+    figures.extend(of_traces(stored, summary).into_iter().map(|figure| (FigurePlace::Traces, figure)));
+    figures.extend(of_errors(stored, summary).into_iter().map(|figure| (FigurePlace::Chart, figure)));
+    figures.extend(of_all_trials(stored, summary).into_iter().map(|figure| (FigurePlace::AllTrials, figure)));
     figures
 }
 
-/// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
-const MOST_TRACED: usize = 24;
+/// Maximum number of cells of a study with traces for which errors of K and T are drawn.
+const MAX_TRACED_CELLS: usize = 24;
 
-/// What one of several traces said: the first that the scenario calls what its figures are about, else the first.
+/// Summaries of one of several traces: the first that the scenario highlights, else the first.
 pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
     let about = &design.words.output.highlight.series;
     let is_about = |line: &&TraceSummary| about.contains(&design.methods[line.method].label);
-    let one = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
-    summary.tracing.iter().filter(|line| line.method == one).cloned().collect()
+    let method = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
+    summary.tracing.iter().filter(|line| line.method == method).cloned().collect()
 }
 
-/// A figure under what its data show.
-fn told(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> PageFigure {
+/// A figure with the finding read from its data as title.
+fn under_its_finding(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> PageFigure {
     let plot = plot.into();
     PageFigure::new(stem, capital(&findings::of_chart(&plot)), caption, plot)
 }
 
-/// The words that say of which of several things a figure is.
-fn here(of: &str) -> String {
-    if of.is_empty() { String::new() } else { format!(" Here: {of}.") }
+/// Caption suffix naming the part of the study that a figure shows.
+fn here(part: &str) -> String {
+    if part.is_empty() { String::new() } else { format!(" Here: {part}.") }
 }
 
-/// A stem of one of several figures.
-fn stem_of(stem: &str, of: &str) -> String {
-    if of.is_empty() { stem.to_owned() } else { format!("{stem}-{}", slug(of)) }
+/// Stem of a figure of one part of the study.
+fn stem_of(stem: &str, part: &str) -> String {
+    if part.is_empty() { stem.to_owned() } else { format!("{stem}-{}", slug(part)) }
 }
 
 /// Figures about what traces named.
@@ -134,26 +134,26 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     // Of several traces one is drawn: the others are in the tables.
     let lines = one_trace(design, summary);
-    let one = lines.first().map_or(0, |line| line.method);
-    let whose = if has_several(design) { here(&design.methods[one].label) } else { String::new() };
+    let method = lines.first().map_or(0, |line| line.method);
+    let whose = if has_several(design) { here(&design.methods[method].label) } else { String::new() };
     let are_hulls = !lines.is_empty() && lines.iter().all(TraceSummary::is_hull);
     let confusion = |(number, (group, map)): (usize, (String, _))| {
         let rows = match are_hulls {
             true => {
-                "A row is a hull in a calm: effects of weather (wind, waves, drift, a moment for a while) are wrong names; \
-                 of the others nobody knows."
+                "A row is a hull in a calm: effects of weather (wind, waves, drift, a transient moment) are wrong names; whether other \
+                 names are right is unknown."
             }
-            false => "A row is what the trials lack; an alias counts for its own name only.",
+            false => "A row is the missing effect; an alias counts only for its own name.",
         };
         let stem = if number == 0 { String::from("confusion") } else { format!("confusion-{}", slug(&group)) };
-        let of = match design.axes.get(1..).unwrap_or_default() {
-            axes if group.contains(|own: char| own.is_ascii_digit()) => here(&format!("{} {group}", axes.join(", "))),
+        let place = match design.axes.get(1..).unwrap_or_default() {
+            axes if group.contains(|sign: char| sign.is_ascii_digit()) => here(&format!("{} {group}", axes.join(", "))),
             _ => here(&group),
         };
         let caption = format!(
-            "How often each effect was named, in per cent of the trials, with 95 % intervals. {rows}{of}{whose}"
+            "How often each effect was named, in per cent of the trials, with 95 % intervals. {rows}{place}{whose}"
         );
-        told(stem, caption, Plot::Cells(map))
+        under_its_finding(stem, caption, Plot::Cells(map))
     };
     let power = traces::power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
@@ -172,44 +172,44 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let rules = traces::rules(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \
                        and nothing else, of those whose ship lacks something, with Wilson's 95 % intervals.";
-        told("rules", caption, plot)
+        under_its_finding("rules", caption, plot)
     });
     let false_names = traces::false_names(design, &summary.tracing).map(|plot| {
-        let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: how often every rule \
-                       invents an effect at most.";
-        told("false-names", caption, plot)
+        let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: the upper end bounds how often a rule \
+                       invents an effect.";
+        under_its_finding("false-names", caption, plot)
     });
     let outcomes = outcomes::figure(design, &lines).map(|(finding, map)| {
         let caption =
-            "What was said of every ship, in per cent of its trials, with 95 % intervals (Wilson). Outlined: right.";
+            "Outcomes for every ship, in per cent of its trials, with 95 % intervals (Wilson). Outlined: right.";
         PageFigure::new("outcomes", finding, format!("{caption}{whose}"), Plot::Cells(map))
     });
     let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
     rules.into_iter().chain(false_names).chain(outcomes).chain(confusions).chain(power).chain(reliability).collect()
 }
 
-/// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.
+/// Figures of errors over the axes; none for a study with traces in many cells, which would need a figure each.
 fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
     for measure in ErrorMeasure::ALL {
-        if !summary.tracing.is_empty() && design.cells.len() > MOST_TRACED {
+        if !summary.tracing.is_empty() && design.cells.len() > MAX_TRACED_CELLS {
             break;
         }
         for (group, reading, plot) in charts::over_axes(design, summary, measure) {
-            let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |own| stem_of(measure.stem(), own));
+            let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |group| stem_of(measure.stem(), group));
             let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
-            figures.push(told(stem, format!("{reading}{place}"), plot));
+            figures.push(under_its_finding(stem, format!("{reading}{place}"), plot));
         }
     }
     figures
 }
 
-/// Whether intervals of predictions hold.
+/// Coverage of prediction intervals.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
-    let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does, and \
-                   how wide it is. Left of the line a method is too sure; a wide interval holds more and says less.";
-    pooled_charts::predictions(design, summary).map(|data| told("predictions", caption, data))
+    let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the width of the interval. \
+                   Left of the line a method is overconfident; a wide interval covers more but says less.";
+    pooled_charts::predictions(design, summary).map(|data| under_its_finding("predictions", caption, data))
 }
 
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
@@ -218,37 +218,36 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     figures.extend(predictions(design, summary));
     figures.extend(pooled_charts::indices(design, summary).map(|(data, method)| {
         let caption = format!(
-            "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \
-             to the trial and not to the ship."
+            "Mean K and T of {method}, over those of the first row: where they change from row to row, K and T depend on the trial, \
+             not on the ship alone."
         );
-        told("indices", caption, data)
+        under_its_finding("indices", caption, data)
     }));
     for (stem, title, data) in pooled_charts::heat_maps(design, summary) {
-        figures.push(told(stem, format!("{title} of every method over both axes: dark is good."), data));
+        figures.push(under_its_finding(stem, format!("{title} of every method over both axes: dark is good."), data));
     }
     // A single cell needs no name.
     let name = |cell: usize| if design.cells.len() > 1 { design.cells[cell].labels.join(", ") } else { String::new() };
     for (cell, data) in pooled_charts::violins(design, summary) {
         let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
         let (stem, place) = (stem_of("violins", &name(cell)), here(&name(cell)));
-        figures.push(told(stem, format!("{caption}{place}"), data));
+        figures.push(under_its_finding(stem, format!("{caption}{place}"), data));
     }
     for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
-        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
-                       standard deviations drawn in)";
+        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust standard deviations are drawn at that distance)";
         // Trials with a bound each have none in common.
         let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
         let (stem, place) = (stem_of("scatter", &name(cell)), here(&name(cell)));
-        figures.push(told(stem, format!("{caption}{bound}.{place}"), data));
+        figures.push(under_its_finding(stem, format!("{caption}{bound}.{place}"), data));
     }
     figures
 }
 
-/// What a figure shows, and what is drawn.
+/// Finding and plot of a figure.
 type Shown = (String, Plot);
 
 fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Item = PageFigure> + use<'a> {
-    let fourier = |data: &CurveFit| format!("The series leaves {} of the heading", rms(&data.residual));
+    let fourier = |data: &CurveFit| format!("Heading error of the series: {}", rms(&data.residual));
     let figures: [(&str, &str, Option<Shown>); 5] = [
         (
             "trial",
@@ -257,13 +256,13 @@ fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Ite
         ),
         (
             "fourier-fit",
-            "The Fourier series fitted to the heading, and what it leaves.",
+            "The Fourier series fitted to the heading, and its residual.",
             showcase.fourier_fit.as_ref().map(|data| (fourier(data), data.panels().into())),
         ),
         (
             "derivatives",
-            "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
-             good acceleration.",
+            "Heading, yaw rate and yaw acceleration of the fitted series against the truth: an accurate heading does not imply an \
+             accurate acceleration.",
             showcase.derivatives.as_ref().map(|data| (accelerations(data), data.panels().into())),
         ),
         (
@@ -290,25 +289,25 @@ fn rms(curve: &PlotCurve) -> String {
     format!("{}° (rms)", significant(f64::sqrt(square / rows), 2))
 }
 
-/// How large yaw accelerations are.
+/// Finding: range of the largest yaw accelerations.
 fn accelerations(data: &DerivativeCurves) -> String {
-    let largest = |own: &MotionCurves| {
-        let name = own.name.clone().unwrap_or_else(|| own.origin.label().to_owned());
-        Some((name, own.yaw_acceleration.finite().map(|(_, y)| y.abs()).reduce(f64::max)?))
+    let largest = |curve: &MotionCurves| {
+        let name = curve.name.clone().unwrap_or_else(|| curve.origin.label().to_owned());
+        Some((name, curve.yaw_acceleration.finite().map(|(_, y)| y.abs()).reduce(f64::max)?))
     };
     capital(&findings::range("largest yaw acceleration [°/s²]", data.curves.iter().filter_map(largest)))
 }
 
-/// What replays leave of the heading.
+/// Finding: range of the replay errors.
 pub fn left(data: &Replays) -> String {
-    let of = |own: &ReplayCurves| Some((own.origin.label().to_owned(), own.rms_deg?));
-    capital(&findings::range("rms of what replays leave [°]", data.replays.iter().filter_map(of)))
+    let named_rms = |replay: &ReplayCurves| Some((replay.origin.label().to_owned(), replay.rms_deg?));
+    capital(&findings::range("replay error, rms [°]", data.replays.iter().filter_map(named_rms)))
 }
 
-/// What methods find of T.
+/// Finding: range of T over the methods.
 fn time_constants(data: &Intervals) -> String {
-    let of = |own: &MethodEstimate| Some((own.origin.label().to_owned(), own.t_s?.value));
+    let named_time = |estimate: &MethodEstimate| Some((estimate.origin.label().to_owned(), estimate.t_s?.value));
     let truth =
         data.truth.as_ref().map_or_else(String::new, |truth| format!("; the truth is {} s", significant(truth.t_s, 3)));
-    format!("{}{truth}", findings::range("T [s]", data.estimates.iter().filter_map(of)))
+    format!("{}{truth}", findings::range("T [s]", data.estimates.iter().filter_map(named_time)))
 }

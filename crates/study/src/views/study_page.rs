@@ -1,4 +1,4 @@
-//! What is said of a finished study: `report.md`, and the lines on the screen.
+//! Text of a finished study: `report.md`, and the lines on the screen.
 
 use askama::Template;
 use campaign::manifest::Manifest;
@@ -13,35 +13,35 @@ use report::{Page, PlacedFigures, Table, number};
 use super::study_figures::{FigurePlace, StudyFigure};
 use super::{blind_spots_table, coverage_table, outcomes, tables, tracing_table};
 
-/// Cells whose lines go on the screen; more are in the files.
-const SHOWN_CELLS: usize = 12;
+/// Maximum number of cells and failures on the screen; the files have all.
+const MAX_SHOWN_CELLS: usize = 12;
 
-/// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
+/// Text of the screen: the first trial of every cell in detail, all trials in brief, failures with their reasons.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let StoredStudy { manifest, design, showcases, .. } = stored;
     let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
     for showcase in showcases {
         text += &format!("{}\n{}\n", title(showcase, "first trial"), tables::showcase(showcase).to_text());
     }
-    if design.cells.len() <= SHOWN_CELLS {
+    if design.cells.len() <= MAX_SHOWN_CELLS {
         text += &tables::summary_in_brief(summary, design).to_text();
     } else {
-        text += &format!("over all {} cells, which are in the report one by one\n", design.cells.len());
+        text += &format!("all {} cells together; report.md lists them one by one\n", design.cells.len());
         text += &tables::overall(summary, design).to_text();
     }
     if !summary.tracing.is_empty() {
-        text += &format!("\nwhat traces named\n{}", tracing_table::kinds(&summary.tracing, design).to_text());
+        text += &format!("\neffects named by the traces\n{}", tracing_table::kinds(&summary.tracing, design).to_text());
     }
     if !summary.predictions.is_empty() {
         text += &format!(
-            "\nwhat 90 % intervals of predictions hold\n{}",
+            "\ncoverage of 90 % prediction intervals\n{}",
             coverage_table::pooled(&summary.predictions, design).to_text()
         );
     }
     let failures = tables::failures(summary, design);
-    failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
-    if failures.len() > SHOWN_CELLS {
-        text += &format!("\n… and {} lines more in the report", failures.len() - SHOWN_CELLS);
+    failures.iter().take(MAX_SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
+    if failures.len() > MAX_SHOWN_CELLS {
+        text += &format!("\n… and {} lines more in the report", failures.len() - MAX_SHOWN_CELLS);
     }
     text
 }
@@ -65,7 +65,7 @@ struct StudyPage<'a> {
     /// The cells one by one, where a person may read them all.
     brief: Option<Table>,
     cells: usize,
-    /// What errors of K and T are relative to.
+    /// Reference of the errors of K and T.
     relative: &'static str,
     times: Vec<String>,
     failures: Vec<String>,
@@ -80,7 +80,7 @@ struct FirstTrial<'a> {
     figures: String,
 }
 
-/// What traces named.
+/// Tables of the effects named by traces.
 struct NamedEffects {
     kinds: Table,
     blind_spots: Option<Table>,
@@ -127,14 +127,14 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
 }
 
 fn first_trial<'a>(showcase: &'a Showcase, figures: String) -> FirstTrial<'a> {
-    let warning = |own: &ShownAnswer, warning| format!("{}: {warning}", own.entry.method);
+    let warning = |answer: &ShownAnswer, warning| format!("{}: {warning}", answer.entry.method);
     FirstTrial {
         title: title(showcase, "The first trial"),
         table: tables::showcase(showcase),
         warnings: showcase
             .methods
             .iter()
-            .flat_map(|own| own.warnings.iter().map(move |said| warning(own, said)))
+            .flat_map(|answer| answer.warnings.iter().map(move |text| warning(answer, text)))
             .collect(),
         figures,
     }

@@ -1,4 +1,4 @@
-//! Tables of what was found, for the screen, `report.md` and other programs.
+//! Tables of results for the screen, `report.md` and other programs.
 
 use campaign::stored_figures::Reference;
 use report::number::{self, MISSING};
@@ -134,7 +134,7 @@ fn brief(record: &Performance) -> Vec<String> {
     cells
 }
 
-/// What errors of K and T are relative to. A trace is held against the ship's own K and T.
+/// Reference of the errors of K and T as text. A trace is compared with the ship's own K and T.
 pub fn relative_to(design: &Design) -> &'static str {
     let is_nearest = |cell: &CellFacts| cell.is_nearest;
     match () {
@@ -147,10 +147,10 @@ pub fn relative_to(design: &Design) -> &'static str {
     }
 }
 
-/// What errors of K and T of first-order ships are relative to.
+/// Reference of the errors of K and T of first-order ships.
 const TRUTH: &str = "the truth";
 
-/// A table of errors, with what they are relative to over it where that is not the truth alone.
+/// A table of errors, titled with their reference unless that is the truth alone.
 fn with_reference(table: Table, design: &Design) -> Table {
     match relative_to(design) {
         TRUTH => table,
@@ -183,11 +183,11 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
 /// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
 pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
-    let of = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
+    let scope = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
-        "Errors of K and T in {of}, relative to {}: trials that failed, median of the size of the error with its 95 % \
-         bootstrap interval, 90 % quantile of this size, share of the quoted 95 % intervals that hold the truth, and \
-         median error of the heading on a manoeuvre no method has seen.",
+        "Errors of K and T in {scope}, relative to {}: trials that failed, median of the size of the error with its 95 % \
+         bootstrap interval, 90 % quantile of this size, share of the 95 % intervals that contain the truth, and median \
+         heading error on an unseen manoeuvre.",
         relative_to(&stored.design)
     );
     overall(summary, &stored.design).titled(caption).labelled(name.as_str())

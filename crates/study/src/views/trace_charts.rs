@@ -24,23 +24,23 @@ const NOTHING: &str = "nothing";
 /// The confusion matrices with their names: a row is what the ships of one or more cells lack, one matrix for every
 /// combination of the other axes where the first decides what is missing, and one for ships that lack several effects.
 pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
-    let rest = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
+    let other_labels = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
     let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
-    let mut groups = grouped(lines, |line| rest(line));
+    let mut groups = grouped(lines, |line| other_labels(line));
     if groups.iter().any(|(_, group)| kinds(group) < 2) {
         groups = vec![(String::new(), lines.iter().collect())];
     }
-    let mut found = Vec::new();
+    let mut matrices = Vec::new();
     for (name, group) in groups {
         let (several, single): (Vec<_>, Vec<_>) = group.into_iter().partition(|line| line.missing.len() > 1);
         for (kind, lines) in [("", single), ("several", several)] {
             if lines.len() > 1 {
-                let words = [name.as_str(), kind].into_iter().filter(|word| !word.is_empty());
-                found.push((words.collect::<Vec<_>>().join(", "), confusion(design, &lines)));
+                let name_parts = [name.as_str(), kind].into_iter().filter(|word| !word.is_empty());
+                matrices.push((name_parts.collect::<Vec<_>>().join(", "), confusion(design, &lines)));
             }
         }
     }
-    found
+    matrices
 }
 
 fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
@@ -62,7 +62,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         };
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
         let named = share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
-        let is_right = lines[0].missing.iter().any(|own| own == id) || (id == NOTHING && lines[0].missing.is_empty());
+        let is_right = lines[0].missing.iter().any(|lack| lack == id) || (id == NOTHING && lines[0].missing.is_empty());
         let of_alias: u64 = lines.iter().filter_map(|line| line.aliases.get(id)).sum();
         let is_alias = 2 * of_alias > lines.iter().map(count).sum();
         MapCell {
@@ -91,17 +91,17 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
 /// was named, of those whose ship lacks something, over trials in which something else was. Nothing for one trace, and
 /// where no ship lacks anything.
 pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
-    let known: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
-    let rules = grouped(known, |line| line.method);
+    let listed: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
+    let rules = grouped(listed, |line| line.method);
     if rules.len() < 2 {
         return None;
     }
-    let share_of = |own: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
-        let own = || own.iter().filter(|line| !lacks || !line.missing.is_empty());
-        share(own().map(|line| count(line)).sum(), own().map(|line| line.trials).sum()).map(|own| own.times(100.0))
+    let share_of = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
+        let lines = || lines.iter().filter(|line| !lacks || !line.missing.is_empty());
+        share(lines().map(|line| count(line)).sum(), lines().map(|line| line.trials).sum()).map(|all| all.times(100.0))
     };
-    let of_rule = |(method, own): &(usize, Vec<&TraceSummary>)| {
-        let (wrong, exact) = (share_of(own, |line| line.wrong, false)?, share_of(own, |line| line.exact, true)?);
+    let of_rule = |(method, lines): &(usize, Vec<&TraceSummary>)| {
+        let (wrong, exact) = (share_of(lines, |line| line.wrong, false)?, share_of(lines, |line| line.exact, true)?);
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
@@ -115,9 +115,9 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         return None;
     }
     let look = CurveOrigin::Method(TRACE.to_owned()).look();
-    let counted = |(method, own): &(usize, Vec<&TraceSummary>)| {
+    let counted = |(method, lines): &(usize, Vec<&TraceSummary>)| {
         let counts = [|line: &&TraceSummary| line.wrong, |line: &&TraceSummary| line.trials];
-        (design.methods[*method].label.as_str(), counts.map(|count| own.iter().map(count).sum::<u64>()))
+        (design.methods[*method].label.as_str(), counts.map(|count| lines.iter().map(count).sum::<u64>()))
     };
     let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
     // Rules that differ nowhere share the rows of what stands behind the comma of their labels.
@@ -126,13 +126,14 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         Some((variant, kind, *counts))
     });
     let variants = grouped(parts, |(variant, ..)| *variant);
-    let kinds = distinct(variants.iter().flat_map(|(_, own)| own.iter().map(|(_, kind, _)| *kind)));
-    let is_same =
-        |own: &[(&str, &str, [u64; 2])]| own.len() == kinds.len() && own.iter().all(|(.., counts)| *counts == own[0].2);
+    let kinds = distinct(variants.iter().flat_map(|(_, rows)| rows.iter().map(|(_, kind, _)| *kind)));
+    let is_same = |rows: &[(&str, &str, [u64; 2])]| {
+        rows.len() == kinds.len() && rows.iter().all(|(.., counts)| *counts == rows[0].2)
+    };
     let mut note = String::from("Nothing is missing in any trial. Bars: 95 % intervals.");
-    if kinds.len() > 1 && variants.iter().all(|(_, own)| is_same(own)) {
-        rules = variants.iter().map(|(variant, own)| (*variant, own[0].2)).collect();
-        note += &format!(" The same for the rules {}.", kinds.join(", "));
+    if kinds.len() > 1 && variants.iter().all(|(_, rows)| is_same(rows)) {
+        rules = variants.iter().map(|(variant, rows)| (*variant, rows[0].2)).collect();
+        note += &format!(" The rules {} give the same.", kinds.join(", "));
     }
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
         let share = share(*wrong, *trials)?.times(100.0);
@@ -161,21 +162,21 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     let parts: Vec<(&str, &str)> =
         rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
     let mut layers = Vec::new();
-    for (number, (kind, own)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
+    for (number, (kind, variants)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
         let (colour, marker) = (COLOURS[number % COLOURS.len()], MARKERS[number % MARKERS.len()]);
         let pen = Pen::new(colour);
-        let points = || own.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value, exact.ci95));
+        let points = || variants.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value, exact.ci95));
         let look = Look { colour, marker, dash: SOLID, hollow: false };
         layers.push(Layer::marks(*kind, look, points().collect()).joined(pen));
-        for ((_, wrong, exact), _) in own {
+        for ((_, wrong, exact), _) in variants {
             let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
             layers.push(Layer::line(*kind, level, pen.width(0.7)).within(1.0));
         }
         let (x, y): (Vec<f64>, Vec<f64>) = points().map(|(x, y, _)| (x, y)).unzip();
         // The words before the last are those of all.
-        let words = own.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
-        let words = LayerKind::Words(colour, number % 2 == 0, words.collect());
-        layers.push(Layer::new(*kind, PlotCurve::new(x, y), words));
+        let labels = variants.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
+        let labels = LayerKind::Words(colour, number % 2 == 0, labels.collect());
+        layers.push(Layer::new(*kind, PlotCurve::new(x, y), labels));
     }
     let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
     let stack =
@@ -184,16 +185,16 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
 }
 
 /// Smallest expected likelihood ratio that is drawn.
-const SMALLEST: f64 = 1.0;
+const MIN_RATIO: f64 = 1.0;
 
 /// Points of a curve of theory.
 const POINTS: usize = 80;
 
 /// Support from which an effect is named: even odds among a dozen candidates become nineteen to one.
-const ODDS: f64 = 10.0;
+const NAMING_SUPPORT: f64 = 10.0;
 
 /// Rows of a usual record, whose logarithm every parameter pays.
-const ROWS: f64 = 300.0;
+const TYPICAL_ROWS: f64 = 300.0;
 
 /// Numbers of parameters whose power is drawn.
 const PARAMETERS: [u32; 3] = [1, 2, 3];
@@ -209,8 +210,8 @@ fn shares(
     theory: Vec<(String, PlotCurve)>,
 ) -> Panels {
     const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
-    const COLOURS: [RGBColor; FEW] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
-    const MARKERS: [Marker; FEW] =
+    const COLOURS: [RGBColor; MAX_SERIES] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
+    const MARKERS: [Marker; MAX_SERIES] =
         [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star];
     let looks = COLOURS.into_iter().zip(MARKERS);
     let line = |((name, curve), dash): ((String, PlotCurve), Dash)| {
@@ -224,24 +225,24 @@ fn shares(
     Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
-/// Most kinds of trial that are told apart by name, and most series of a figure.
-const FEW: usize = 6;
+/// Maximum number of kinds of trial with a name each, and of series in a figure.
+const MAX_SERIES: usize = 6;
 
 /// Ranges a decade of the expected ratio is divided in where kinds of trial are many.
-const RANGES: f64 = 3.0;
+const RANGES_PER_DECADE: f64 = 3.0;
 
 /// Power over the expected likelihood ratio, for cells with one missing effect: each by its name where they are few,
 /// else all in a range of that ratio together. Nothing where every one is named in every trial.
 pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
-        line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > SMALLEST)
+        line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
     };
     let shown: Vec<&TraceSummary> = lines.iter().filter(is_shown).collect();
     if shown.iter().all(|line| line.complete == line.trials) {
         return None;
     }
-    let are_few = shown.len() <= FEW;
-    let expected = |line: &TraceSummary| line.expected.unwrap_or(SMALLEST);
+    let are_few = shown.len() <= MAX_SERIES;
+    let expected = |line: &TraceSummary| line.expected.unwrap_or(MIN_RATIO);
     let name = |line: &&TraceSummary| match (are_few, is_of_time(&line.missing[0])) {
         (true, _) => names::effect(&line.missing[0]),
         (_, false) => String::from("an effect of the ship or its gear"),
@@ -255,7 +256,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     };
     let range = |line: &&TraceSummary| match are_few {
         true => line.cell,
-        false => (RANGES * expected(line).log10()) as usize,
+        false => (RANGES_PER_DECADE * expected(line).log10()) as usize,
     };
     let points = |(name, lines)| {
         let ranges = grouped::<_, &TraceSummary>(lines, range);
@@ -264,9 +265,9 @@ pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
     let series = grouped(shown.iter().copied(), name).into_iter().map(points).collect();
     let largest = shown.iter().map(|line| expected(line)).reduce(f64::max)?;
     let theory = PARAMETERS.map(|freedom| {
-        let limit = ODDS + f64::from(freedom) * ROWS.ln();
+        let limit = NAMING_SUPPORT + f64::from(freedom) * TYPICAL_ROWS.ln();
         let sizes: Vec<f64> =
-            (0..POINTS).map(|k| SMALLEST * (largest / SMALLEST).powf(k as f64 / (POINTS - 1) as f64)).collect();
+            (0..POINTS).map(|k| MIN_RATIO * (largest / MIN_RATIO).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let power: Vec<f64> = sizes.iter().map(|&size| 100.0 * exceeds(freedom, size, limit)).collect();
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
@@ -282,10 +283,10 @@ pub fn single(lines: &[TraceSummary]) -> [u64; 2] {
     [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
 }
 
-/// How often what was given the highest probabilities was there.
+/// Finding: how many of the effects with the highest probabilities were present.
 pub fn kept(lines: &[TraceSummary]) -> String {
     let ranges = calibration(lines);
-    let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, own)| own.effects > 0) else {
+    let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {
         return String::from("No effect has a probability");
     };
     let CalibrationBin { present, effects, .. } = surest;
@@ -303,21 +304,21 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
         Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
     };
     let ranges = calibration(lines);
-    let points = |few: bool| ranges.iter().filter(|own| (own.effects < MANY) == few).filter_map(point).collect();
+    let points = |few: bool| ranges.iter().filter(|bin| (bin.effects < MANY) == few).filter_map(point).collect();
     let series =
         [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
     let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = Ruler::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("calibrated"), diagonal)];
-    ranges.iter().any(|own| own.present > 0).then(|| shares(x, "present [%]", series, theory))
+    ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
 /// Effects by their probability, over all cells.
 pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
-        all.iter_mut().zip(line.calibration).for_each(|(all, own)| *all += own);
+        all.iter_mut().zip(line.calibration).for_each(|(all, bin)| *all += bin);
     }
     all
 }
@@ -354,9 +355,9 @@ mod tests {
         let layers = &data.stacks[0].panels[0].layers;
         let named = layers.iter().find(|layer| layer.name.as_deref() == Some("bic")).expect("one kind of rule");
         assert_eq!(named.curve, PlotCurve::new([25.0, 0.0], [50.0, 0.0]));
-        let words =
-            layers.iter().find_map(|layer| if let LayerKind::Words(.., own) = &layer.kind { Some(own) } else { None });
-        assert_eq!(words.expect("thresholds"), &["0.5", "0.9"]);
+        let thresholds =
+            layers.iter().find_map(|layer| if let LayerKind::Words(.., all) = &layer.kind { Some(all) } else { None });
+        assert_eq!(thresholds.expect("thresholds"), &["0.5", "0.9"]);
         assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
         assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
         // Of ships that lack nothing the bound is shown: Wilson's of 0 of 2.

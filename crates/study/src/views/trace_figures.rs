@@ -34,7 +34,7 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
     let figure = |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &BeforeAfter)| {
         let name = names::record(&entry.name);
         let share = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
-        let finding = format!("{name}: error of the heading × {share} over the whole replay");
+        let finding = format!("{name}: heading error of the whole replay × {share}");
         let caption = format!("{name}: heading, residual and rudder, with the 95 % band of the model after.");
         PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, record_fit(record, errors))
     };
@@ -83,8 +83,8 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
             let caption = format!(
                 "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
             );
-            let [before, after] = models(record).map(|(_, own)| significant(to_deg(own.rms()), 2));
-            let finding = format!("{name}: {before}° (rms) are left before, {after}° after");
+            let [before, after] = models(record).map(|(_, replay)| significant(to_deg(replay.rms()), 2));
+            let finding = format!("{name}: heading error {before}° (rms) before, {after}° after");
             figures.push(PageFigure::new(format!("residual{suffix}"), finding, caption, residual(record)));
         }
     }
@@ -108,7 +108,7 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
             curve(&after.time, &band.iter().enumerate().map(end).collect::<Vec<f64>>())
         })
     };
-    let band = record.band.as_ref().map(|own| [about(own, &|row| after.heading[row]), about(own, &|_| 0.0)]);
+    let band = record.band.as_ref().map(|half| [about(half, &|row| after.heading[row]), about(half, &|_| 0.0)]);
     let model = |(number, (origin, replay)): (usize, (CurveOrigin, &Replay))| ModelOverTime {
         band: band.clone().filter(|_| origin == CurveOrigin::After),
         origin,
@@ -141,12 +141,12 @@ pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
 }
 
 /// ΔBIC beyond which a bar is cut, as many times the median of all.
-const LONGEST_BAR: f64 = 30.0;
+const MAX_BAR_MEDIANS: f64 = 30.0;
 
 fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     let (name, colour) = match outcome {
         Outcome::Added => ("named", HEADING),
-        Outcome::Alias => ("not told from one that is named", RUDDER),
+        Outcome::Alias => ("indistinguishable from a named one", RUDDER),
         Outcome::Rejected => ("rejected", RGBColor(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
@@ -156,8 +156,8 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
 
 /// The effects that are named with their probabilities.
 fn named_effects(trace: &Document) -> String {
-    let of = |own: &EffectEntry| format!("{} (p = {})", names::effect(&own.id), fixed(own.probability, 3));
-    let named: Vec<String> = trace.effects.iter().map(of).collect();
+    let name = |effect: &EffectEntry| format!("{} (p = {})", names::effect(&effect.id), fixed(effect.probability, 3));
+    let named: Vec<String> = trace.effects.iter().map(name).collect();
     match &named[..] {
         [] => format!("None of {} effects is named", trace.candidates.len()),
         [only] => format!("Named of {} effects: {only}", trace.candidates.len()),
@@ -169,44 +169,44 @@ fn named_effects(trace: &Document) -> String {
 /// by their probability.
 pub fn evidence(document: &TraceDocument) -> PageFigure {
     let trace = &document.trace;
-    let own = |id: &str| trace.candidates.iter().find(|one| one.id == id).map(|one| one.probability);
-    let named = trace.effects.iter().map(|one| {
-        let (name, alone) = (term(&one.id, &one.form, one.only.as_ref()), own(&one.id).unwrap_or(one.probability));
-        let text = match one.aliases.is_empty() {
+    let single = |id: &str| trace.candidates.iter().find(|entry| entry.id == id).map(|entry| entry.probability);
+    let named = trace.effects.iter().map(|effect| {
+        let (name, alone) =
+            (term(&effect.id, &effect.form, effect.only.as_ref()), single(&effect.id).unwrap_or(effect.probability));
+        let text = match effect.aliases.is_empty() {
             true => fixed(alone, 3),
-            false => format!("{} ({})", fixed(alone, 3), fixed(one.probability, 3)),
+            false => format!("{} ({})", fixed(alone, 3), fixed(effect.probability, 3)),
         };
-        (name, (alone, text), Some(one.delta_bic), Outcome::Added)
+        (name, (alone, text), Some(effect.delta_bic), Outcome::Added)
     });
-    let others = trace.candidates.iter().filter(|one| trace.effects.iter().all(|effect| effect.id != one.id));
-    let mut others: Vec<_> = others
-        .map(|one| {
-            let best = one.forms.iter().max_by(|own, other| own.probability.total_cmp(&other.probability));
+    let silent = trace.candidates.iter().filter(|entry| trace.effects.iter().all(|effect| effect.id != entry.id));
+    let mut silent: Vec<_> = silent
+        .map(|entry| {
+            let best = entry.forms.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
             let name =
-                best.map_or_else(|| names::effect(&one.id), |best| term(&one.id, &best.form, best.only.as_ref()));
-            (name, (one.probability, fixed(one.probability, 3)), one.delta_bic, one.outcome)
+                best.map_or_else(|| names::effect(&entry.id), |best| term(&entry.id, &best.form, best.only.as_ref()));
+            (name, (entry.probability, fixed(entry.probability, 3)), entry.delta_bic, entry.outcome)
         })
         .collect();
-    others.sort_by(|one, other| other.1.0.total_cmp(&one.1.0));
-    let rows: Vec<_> = named.chain(others).collect();
+    silent.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
+    let rows: Vec<_> = named.chain(silent).collect();
     let bar = |value: f64, text: String, outcome: Outcome| {
         let (name, look) = outcome_look(outcome);
         vec![RowItem { text: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
     };
     let column = |x: Ruler, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
-    let probability = rows.iter().map(|(_, (own, text), _, outcome)| bar(*own, text.clone(), *outcome));
-    let change = rows.iter().map(|(_, _, own, outcome)| {
-        bar(own.unwrap_or(0.0), own.map_or_else(|| MISSING.to_owned(), |own| significant(own, 3)), *outcome)
+    let probability = rows.iter().map(|(_, (value, text), _, outcome)| bar(*value, text.clone(), *outcome));
+    let change = rows.iter().map(|(_, _, bic, outcome)| {
+        bar(bic.unwrap_or(0.0), bic.map_or_else(|| MISSING.to_owned(), |bic| significant(bic, 3)), *outcome)
     });
-    let has_group = trace.effects.iter().any(|one| !one.aliases.is_empty());
-    let cut = Ruler::decimal("ΔBIC (negative: it helps)").within(LONGEST_BAR, Some(0.0));
+    let has_group = trace.effects.iter().any(|effect| !effect.aliases.is_empty());
+    let cut = Ruler::decimal("ΔBIC (negative: it helps)").within(MAX_BAR_MEDIANS, Some(0.0));
     let room = if has_group { 0.5 } else { 0.25 };
     let columns =
         vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, change.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { names, columns, ..NamedRows::default() };
-    let group =
-        if has_group { " In brackets: that it, or one that the records cannot tell from it, is there." } else { "" };
+    let group = if has_group { " In brackets: probability of it or an indistinguishable effect." } else { "" };
     let caption = format!(
         "Probability of every effect with its most probable form, and ΔBIC beside all others: negative where it helps.{group}"
     );
@@ -217,18 +217,18 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
 fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
-    let stack = |x: Ruler, y: Ruler, joined: bool, of: &dyn Fn(&Replay) -> PlotCurve| {
+    let stack = |x: Ruler, y: Ruler, joined: bool, curve_of: &dyn Fn(&Replay) -> PlotCurve| {
         let layer = |(origin, replay): (CurveOrigin, &Replay)| {
             let colour = origin.look().colour;
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
-            Layer::new(origin.label(), of(replay), if joined { line } else { LayerKind::Dots(colour) })
+            Layer::new(origin.label(), curve_of(replay), if joined { line } else { LayerKind::Dots(colour) })
         };
         let row = PanelRow { zero: y.division != Division::Factors, ..PanelRow::new(y, 0.17) };
         Stack { is_half: true, ..Stack::over(x, vec![(row, models(record).map(layer).into())]) }
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
-        let of = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
-        stack(Ruler::decimal(x_title), Ruler::decimal("residual [°]"), false, &of)
+        let scatter = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
+        stack(Ruler::decimal(x_title), Ruler::decimal("residual [°]"), false, &scatter)
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
@@ -259,11 +259,11 @@ fn power(residual: &GappedSeries) -> PlotCurve {
     let lines = spectrum(residual);
     let width = 1.0 / (count * residual.spacing);
     let mut groups: Vec<&[SpectralLine]> = Vec::new();
-    let mut rest = &lines[..];
-    while let Some(first) = rest.first() {
-        let (group, others) = rest.split_at(rest.partition_point(|line| line.frequency <= LINE * first.frequency));
+    let mut tail = &lines[..];
+    while let Some(first) = tail.first() {
+        let (group, after) = tail.split_at(tail.partition_point(|line| line.frequency <= LINE * first.frequency));
         groups.push(group);
-        rest = others;
+        tail = after;
     }
     let points = groups.into_iter().map(|lines| {
         let count = lines.len() as f64;

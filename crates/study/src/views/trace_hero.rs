@@ -13,20 +13,20 @@ use super::trace_figures::{models_over_time, ratio};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// Names in a title at most.
-const NAMES: usize = 3;
+const MAX_NAMES: usize = 3;
 
 /// The finding: what is missing, and both ratios.
 fn finding(document: &TraceDocument) -> String {
-    let mut ids: Vec<String> = document.trace.effects.iter().map(|one| names::effect(&one.id)).collect();
+    let mut ids: Vec<String> = document.trace.effects.iter().map(|effect| names::effect(&effect.id)).collect();
     ids.dedup();
-    let more = ids.len().saturating_sub(NAMES);
+    let more = ids.len().saturating_sub(MAX_NAMES);
     if more > 0 {
-        ids.truncate(NAMES);
+        ids.truncate(MAX_NAMES);
         ids.push(format!("{more} more"));
     }
     let with = match &ids[..] {
         [] => String::from("No effect is named:"),
-        [one] => format!("With {one}"),
+        [only] => format!("With {only}"),
         [first @ .., last] => format!("With {} and {last}", first.join(", ")),
     };
     let error = &document.trace.error;
@@ -42,23 +42,23 @@ fn finding(document: &TraceDocument) -> String {
 /// Number of the held-out record whose ratio is nearest to that of all together, which the title says.
 fn nearest(held: &[BeforeAfter]) -> Option<usize> {
     let off = |number: &usize| (ratio(held[*number..=*number].iter()) / ratio(held.iter())).ln().abs();
-    (0..held.len()).min_by(|one, other| off(one).total_cmp(&off(other)))
+    (0..held.len()).min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// Heading and residual of a record, under what it is.
-fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], what: &str) -> Stack {
+fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role: &str) -> Stack {
     let name = record.trial.title();
     let trial = &record.trial;
     let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
     for name in upper.iter_mut().filter_map(|layer| layer.name.as_mut()) {
-        let words = [(CurveOrigin::Before, "first-order response"), (CurveOrigin::After, "with these effects")];
-        let own = words.iter().find(|(origin, _)| origin.label() == name);
-        if let Some((_, words)) = own {
-            *name = (*words).to_owned();
+        let labels = [(CurveOrigin::Before, "first-order response"), (CurveOrigin::After, "with these effects")];
+        let label = labels.iter().find(|(origin, _)| origin.label() == name);
+        if let Some((_, labels)) = label {
+            *name = (*labels).to_owned();
         }
     }
-    let [before, after] = [&errors.before, &errors.after].map(|own| significant(own.heading_rmse_deg, 2));
-    let heads = [format!("({}) {name}, {what}", letters[0]), format!("({}) rms {before}° → {after}°", letters[1])];
+    let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
+    let heads = [format!("({}) {name}, {role}", letters[0]), format!("({}) rms {before}° → {after}°", letters[1])];
     let heights = [0.21, 0.15];
     let rulers = [Ruler::heading(), Ruler::new("residual [°]", Division::Angle)];
     let rows = [PanelRow::new, PanelRow::zeroed].into_iter().zip(rulers).zip(heights);
@@ -75,13 +75,13 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let all = || document.records.iter().zip(&curves.records);
     let (_, fitted) = all().find(|(entry, _)| !entry.held_out)?;
     let (_, held) = all().filter(|(entry, _)| entry.held_out).nth(number)?;
-    let of = match error.validation.len() {
+    let role = match error.validation.len() {
         1 => String::from("held out"),
         count => format!("held out, nearest to the mean of {count}"),
     };
     let stacks = vec![
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
-        column(held, &error.validation[number], ['c', 'd'], &of),
+        column(held, &error.validation[number], ['c', 'd'], &role),
     ];
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \

@@ -1,4 +1,4 @@
-//! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
+//! Text of a trace from its document: the lines on the screen, and `report.md`.
 
 use askama::Template;
 use campaign::statistics::distinct;
@@ -24,11 +24,11 @@ use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
 
-/// Readings that are listed.
-const LISTED: usize = 8;
+/// Maximum number of times listed in a warning.
+const MAX_LISTED_TIMES: usize = 8;
 
-/// The words on the screen before and behind the table of errors.
-pub fn words(document: &TraceDocument) -> [String; 2] {
+/// Text on the screen before and after the table of errors.
+pub fn around_table(document: &TraceDocument) -> [String; 2] {
     let trace = &document.trace;
     let mut before = format!("{}\n", trace.headline);
     before += &document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}\n"));
@@ -47,11 +47,10 @@ pub fn words(document: &TraceDocument) -> [String; 2] {
     if let Some(signature) = &trace.unexplained.signature {
         behind += &format!("\nleft: {signature}");
     }
-    located(document, "").for_each(|words| behind += &format!("\n{words}"));
+    located(document, "").for_each(|sentence| behind += &format!("\n{sentence}"));
     behind += &odd(document);
     behind +=
         &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
-    behind += &prior_odds::sentence(document).map_or_else(String::new, |sentence| format!("\n{sentence}"));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -65,68 +64,68 @@ pub fn all_errors(document: &TraceDocument) -> Table {
     tables::errors(&[fitted, judged].concat())
 }
 
-/// A sentence for every effect that was typed, with `mark` around its text.
+/// Sentence for every effect given as a formula, with `mark` around its text.
 fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
-    let typed = document.trace.candidates.iter().filter_map(|own| Some((own, own.sides.as_ref()?)));
-    typed.map(move |(own, sides)| {
-        let text = own.forms.first().map_or_else(String::new, |form| format!(" = {}", form.form));
-        format!("{mark}{}{text}{mark} {sides}", own.id)
+    let typed = document.trace.candidates.iter().filter_map(|candidate| Some((candidate, candidate.sides.as_ref()?)));
+    typed.map(move |(candidate, sides)| {
+        let text = candidate.forms.first().map_or_else(String::new, |form| format!(" = {}", form.form));
+        format!("{mark}{}{text}{mark} {sides}", candidate.id)
     })
 }
 
-/// Departures of a hull, in standard deviations, that are said.
-const ODD: f64 = 2.0;
+/// Minimum departure of a hull coefficient that is reported, in standard deviations.
+const MIN_DEPARTURE: f64 = 2.0;
 
-/// What is odd about the ship: the farthest departure of the hull of her dimensions, else of any.
+/// Largest departure of a coefficient from its prior, in the hull made from the ship's dimensions, else in the first.
 fn odd(document: &TraceDocument) -> String {
     let hulls = &document.ship.hulls;
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };
-    let farthest =
-        hull.coefficients.iter().max_by(|one, other| one.departure().abs().total_cmp(&other.departure().abs()));
-    let told = farthest.filter(|own| own.departure().abs() >= ODD).map(|own| {
-        let means = meaning(&own.key).map_or_else(String::new, |means| format!(" ({means})"));
-        format!("{} is {} sd from its prior{means}", own.symbol, fixed(own.departure(), 1))
+    let farthest = hull.coefficients.iter().max_by(|a, b| a.departure().abs().total_cmp(&b.departure().abs()));
+    let departure = farthest.filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).map(|entry| {
+        let means = meaning(&entry.key).map_or_else(String::new, |means| format!(" ({means})"));
+        format!("{} is {} standard deviations off its prior{means}", entry.symbol, fixed(entry.departure(), 1))
     });
-    let what = told.unwrap_or_else(|| format!("no coefficient is more than {ODD} sd from its prior"));
+    let departure = departure
+        .unwrap_or_else(|| format!("no coefficient is more than {MIN_DEPARTURE} standard deviations off its prior"));
     let forms: Vec<&str> = hulls.iter().map(|hull| hull.form.as_str()).collect();
-    format!("\nhulls fitted: {}; of {}, {what}", forms.join(", "), hull.form)
+    format!("\nhulls fitted: {}; in {}, {departure}", forms.join(", "), hull.form)
 }
 
 /// The noise in one sentence.
 fn noise(document: &TraceDocument) -> String {
     let all = &document.trace.noise;
-    let sizes = || all.iter().map(|own| own.heading_sd_deg);
+    let sizes = || all.iter().map(|noise_entry| noise_entry.heading_sd_deg);
     let [least, most] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)].map(|x| significant(x, 2));
     let white = if least == most { least } else { format!("{least} to {most}") };
-    let largest = all.iter().max_by(|one, other| one.heading_sd_deg.total_cmp(&other.heading_sd_deg));
+    let largest = all.iter().max_by(|a, b| a.heading_sd_deg.total_cmp(&b.heading_sd_deg));
     let beside = largest.map(tables::coloured).unwrap_or_default();
-    let beside = beside.iter().map(|what| format!(", {what}")).collect::<String>();
-    let holds = match all.iter().all(|own| own.describes_what_is_left) {
-        true => "this describes what is left",
-        false => "this does not describe all that is left",
+    let beside = beside.iter().map(|noise_term| format!(", {noise_term}")).collect::<String>();
+    let holds = match all.iter().all(|noise_entry| noise_entry.describes_what_is_left) {
+        true => "this explains the remaining error",
+        false => "this does not explain all of the remaining error",
     };
-    format!("heading {white}° (white){beside}; {holds}")
+    format!("heading {white}° (uncorrelated){beside}; {holds}")
 }
 
 /// A sentence for every record with readings that were left out.
 fn outliers(document: &TraceDocument) -> Vec<String> {
-    let spoilt = document.trace.noise.iter().filter(|own| !own.outliers_s.is_empty());
-    let of = |(file, times): (&String, &Vec<f64>)| {
-        let mut shown: Vec<String> = times.iter().take(LISTED).map(|t| ShortNumber(*t).to_string()).collect();
-        shown.extend((times.len() > LISTED).then(|| String::from("…")));
+    let spoilt = document.trace.noise.iter().filter(|noise_entry| !noise_entry.outliers_s.is_empty());
+    let sentence = |(file, times): (&String, &Vec<f64>)| {
+        let mut shown: Vec<String> = times.iter().take(MAX_LISTED_TIMES).map(|t| ShortNumber(*t).to_string()).collect();
+        shown.extend((times.len() > MAX_LISTED_TIMES).then(|| String::from("…")));
         let (count, shown) = (times.len(), shown.join(", "));
-        format!("{file}: headings far from those around are left out ({count}), at t = {shown} s")
+        format!("{file}: outlying headings are left out ({count}), at t = {shown} s")
     };
-    spoilt.map(|own| of((&own.file, &own.outliers_s))).collect()
+    spoilt.map(|noise_entry| sentence((&noise_entry.file, &noise_entry.outliers_s))).collect()
 }
 
 /// A sentence for every parameter at an end of its range.
 fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
-    let of = |own: &ParameterEntry| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
-        format!("{}{only} is at its bound: the search ends there", tables::value(own))
+    let sentence = |parameter: &ParameterEntry| {
+        let only = parameter.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
+        format!("{}{only} is at the end of its search range; the true value may lie beyond", tables::value(parameter))
     };
-    parameters.iter().filter(|own| own.at_bound).map(of).collect()
+    parameters.iter().filter(|parameter| parameter.at_bound).map(sentence).collect()
 }
 
 /// `report.md`.
@@ -199,8 +198,8 @@ fn placed(
     placed.put("innovations", figures::innovations(document, curves));
     placed.put("moments", figures::moments(document, curves));
     placed.put("further", turns.map(|(curves, seen)| {
-        let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
-                       cannot tell from it; grey: the range of the records.";
+        let caption = "Steady yaw rate of the model against rudder, an unstable branch dashed; thin: ships that fit the records as well; grey: the \
+                       range of the records.";
         PageFigure::new("steady", stability(curves), caption, steady_turns(curves, *seen))
     }));
     placed.put("further", figures::further(document, curves));
@@ -245,7 +244,7 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     table
 }
 
-/// What the model is not for, a sentence each.
+/// Limits of validity of the model, a sentence each.
 fn limits(document: &TraceDocument) -> Vec<String> {
     let rudder = fixed(to_deg(document.ship.seen.rudder_rad), 0);
     let largest = document
@@ -253,68 +252,67 @@ fn limits(document: &TraceDocument) -> Vec<String> {
         .error
         .validation
         .iter()
-        .max_by(|one, other| one.after.heading_rmse_deg.total_cmp(&other.after.heading_rmse_deg));
+        .max_by(|a, b| a.after.heading_rmse_deg.total_cmp(&b.after.heading_rmse_deg));
     let worst = largest.and_then(|errors| {
         let name = document.records.iter().find(|record| record.file == errors.file).map(|record| &record.name)?;
         let degrees = significant(errors.after.heading_rmse_deg, 2);
-        Some(format!(" The record that it foretells worst is {}: {degrees}° of heading.", text(&names::record(name))))
+        Some(format!(" Worst prediction: {}, {degrees}° of heading error (rms).", text(&names::record(name))))
     });
     let speed = document.particulars().map_or_else(
-        || String::from("Another approach speed than that of the records."),
-        |ship| format!("Another approach speed than {} m/s.", ShortNumber(ship.speed)),
+        || String::from("Approach speeds other than that of the records."),
+        |ship| format!("Approach speeds other than {} m/s.", ShortNumber(ship.speed)),
     );
     vec![
-        format!("Rudder beyond {rudder}°, the largest of the fitted records.{}", worst.unwrap_or_default()),
+        format!("Rudder angles above {rudder}°, the largest in the fitted records.{}", worst.unwrap_or_default()),
         speed,
-        String::from("Weather of another kind than that of the records, and shallow water."),
+        String::from("Weather unlike that of the records, and shallow water."),
     ]
 }
 
-/// A sentence or two for every moment that is no effect of the list, with `mark` around what can be typed.
+/// Sentences on every located moment that is not on the list of effects, with `mark` around a formula.
 fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
-    document.trace.located.iter().map(move |own| {
-        let only = own.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
-        let or = if own.alternatives.is_empty() { "" } else { "; as near is " };
-        let typed = match &own.formula {
-            Some(line) => format!("To have it fitted and judged: {mark}--effect \"{line}\"{mark}."),
-            None => String::from("No formula says this moment, so it cannot be typed as an effect."),
+    document.trace.located.iter().map(move |moment| {
+        let only = moment.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
+        let or = if moment.alternatives.is_empty() { "" } else { "; equally close: " };
+        let typed = match &moment.formula {
+            Some(line) => format!("To fit and test it: {mark}--effect \"{line}\"{mark}."),
+            None => String::from("This moment has no formula, so it cannot be given as --effect."),
         };
         format!(
-            "Not part of the model: depends on {}{only}: {}, worth {}° of rudder (rms), {} nats better than any random \
-             moment{or}{}. {typed}",
-            own.depends_on,
-            own.form,
-            significant(own.rudder_deg, 2),
-            fixed(own.nats, 0),
-            own.alternatives.join(" or "),
+            "Not part of the model: a yaw moment that depends on {}{only} ({}), {}° of rudder (rms); it explains the headings better than \
+             a random moment{or}{}. {typed}",
+            moment.depends_on,
+            moment.form,
+            significant(moment.rudder_deg, 2),
+            moment.alternatives.join(" or "),
         )
     })
 }
 
-/// What is said under the table of parameters.
+/// Text under the table of parameters: equations, averages, prime values.
 fn model(document: &TraceDocument) -> String {
     let model = &document.trace.model;
     let equations: Vec<String> = model.equations.iter().map(|equation| format!("`{equation}`")).collect();
     let averaged =
-        "K, T and δ_r are averaged over the structures; the other parameters are those of the most probable one.";
+        "K, T and δ_r are averages over the models; the other parameters are those of the most probable model.";
     let prime = model.indices.prime.as_ref().and(document.particulars()).map_or_else(String::new, |ship| {
         format!(" Prime values are without dimension, with {}: K′ = K L/V, T′ = T V/L.", scale_name(ship))
     });
     format!("{}. {averaged}{prime}", equations.join(", "))
 }
 
-/// What these records cannot tell: effects from each other, and effects at all.
+/// Table of effects that these records cannot separate or cannot show.
 fn aliases(document: &TraceDocument) -> Table {
-    let mut table = Table::new(TableHead::default().texts(["effect", "these records cannot tell it from"]));
+    let mut table = Table::new(TableHead::default().texts(["effect", "indistinguishable in these records from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([
             tables::term(&effect.id, &effect.form, effect.only.as_ref()),
             tables::terms(&effect.alias_forms, ", "),
         ]);
     }
-    for one in document.trace.candidates.iter().filter(|one| one.outcome == Outcome::NotObservable) {
-        let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-        table.push([names::effect(&one.id), format!("nothing (not observable{why})")]);
+    for candidate in document.trace.candidates.iter().filter(|candidate| candidate.outcome == Outcome::NotObservable) {
+        let why = candidate.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+        table.push([names::effect(&candidate.id), format!("no effect at all (not observable{why})")]);
     }
     table
 }
@@ -326,7 +324,7 @@ mod tests {
 
     #[test]
     fn a_parameter_at_its_bound_is_a_warning() {
-        let own = |symbol: &str, value, at_bound| ParameterEntry {
+        let parameter = |symbol: &str, value, at_bound| ParameterEntry {
             key: String::new(),
             symbol: symbol.into(),
             quantity: Quantity::bare(value),
@@ -335,7 +333,7 @@ mod tests {
             only: None,
             at_bound,
         };
-        let all = [own("1/T", 10.0, true), own("K/T", 0.01, false)];
-        assert_eq!(bounds(&all), ["1/T = 10.000 1/s is at its bound: the search ends there"]);
+        let all = [parameter("1/T", 10.0, true), parameter("K/T", 0.01, false)];
+        assert_eq!(bounds(&all), ["1/T = 10.000 1/s is at the end of its search range; the true value may lie beyond"]);
     }
 }

@@ -46,13 +46,13 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
 
 /// Several of them, joined.
 pub fn terms(all: &[TermEntry], between: &str) -> String {
-    all.iter().map(|own| term(&own.id, &own.form, own.only.as_ref())).collect::<Vec<_>>().join(between)
+    all.iter().map(|entry| term(&entry.id, &entry.form, entry.only.as_ref())).collect::<Vec<_>>().join(between)
 }
 
 /// Named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
-    let mut table = Table::new(head.texts(["parameters", "not told from"]));
+    let mut table = Table::new(head.texts(["parameters", "indistinguishable from"]));
     for effect in &document.trace.effects {
         let asked = if effect.asked { ", asked for" } else { "" };
         let parameters: Vec<String> = effect.parameters.values().map(value).collect();
@@ -69,8 +69,8 @@ pub fn effects(document: &TraceDocument) -> Table {
 
 /// Errors before and after on some records.
 pub fn errors(records: &[RecordErrors]) -> Table {
-    let mut judged = records.iter().flat_map(|one| [&one.errors.before, &one.errors.after]);
-    let with_moments = judged.any(|own| own.with_own_bias_deg.or(own.with_own_moment_deg).is_some());
+    let mut judged = records.iter().flat_map(|record| [&record.errors.before, &record.errors.after]);
+    let with_moments = judged.any(|error| error.with_own_bias_deg.or(error.with_own_moment_deg).is_some());
     let moments = ["own bias", "own moment"].into_iter().filter(|_| with_moments);
     let head = TableHead::default().texts(["record", "use", "model"]).numbers(["heading"]).unit("deg");
     let head = head.numbers(moments).unit("deg").numbers(HORIZONS.map(|length| format!("every {length:.0} s")));
@@ -81,18 +81,18 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     for RecordErrors { name, used, errors } in records {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
         let models = [("before", &errors.before, None), ("after", &errors.after, Some(ratio))];
-        for (model, own, ratio) in models {
+        for (model, error, ratio) in models {
             let head = if model == "before" { [names::record(name), (*used).to_owned()] } else { Default::default() };
             let mut cells = head.to_vec();
             cells.push(model.to_owned());
-            cells.push(three(Some(own.heading_rmse_deg)));
-            let moments = [own.with_own_bias_deg, own.with_own_moment_deg].map(three);
+            cells.push(three(Some(error.heading_rmse_deg)));
+            let moments = [error.with_own_bias_deg, error.with_own_moment_deg].map(three);
             cells.extend(with_moments.then_some(moments).into_iter().flatten());
-            cells.extend(HORIZONS.map(|length| three(horizon(own, length))));
-            cells.extend([own.yaw_rate_rmse_deg_s, own.overshoot_error_deg].map(three));
+            cells.extend(HORIZONS.map(|length| three(horizon(error, length))));
+            cells.extend([error.yaw_rate_rmse_deg_s, error.overshoot_error_deg].map(three));
             cells.push(optional(ratio, 2));
-            cells.push(optional(own.band_coverage_95.map(|share| 100.0 * share), 1));
-            cells.push(three(own.band_width_95_deg));
+            cells.push(optional(error.band_coverage_95.map(|share| 100.0 * share), 1));
+            cells.push(three(error.band_width_95_deg));
             table.push(cells);
         }
     }
@@ -112,25 +112,25 @@ fn interval(ends: Option<[f64; 2]>) -> String {
     }
 }
 
-/// Departures from what was expected, in standard deviations, that are listed.
-const DEPARTS: f64 = 1.0;
+/// Minimum departure of a listed hull coefficient, in standard deviations.
+const MIN_DEPARTURE: f64 = 1.0;
 
-/// Coefficients of the hulls that are not as expected, the farthest first.
+/// Hull coefficients that depart from their expected value, the farthest first.
 pub fn hulls(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
         let mut far: Vec<&StoredCoefficient> =
-            hull.coefficients.iter().filter(|own| own.departure().abs() >= DEPARTS).collect();
-        far.sort_by(|one, other| other.departure().abs().total_cmp(&one.departure().abs()));
-        for own in far {
-            let expected = format!("{} ± {}", significant(own.expected, 2), significant(own.expected_sd, 2));
-            let meaning = meaning(&own.key).unwrap_or(MISSING).to_owned();
-            let departure = fixed(own.departure(), 1);
+            hull.coefficients.iter().filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).collect();
+        far.sort_by(|a, b| b.departure().abs().total_cmp(&a.departure().abs()));
+        for entry in far {
+            let expected = format!("{} ± {}", significant(entry.expected, 2), significant(entry.expected_sd, 2));
+            let meaning = meaning(&entry.key).unwrap_or(MISSING).to_owned();
+            let departure = fixed(entry.departure(), 1);
             table.push([
                 hull.form.clone(),
-                own.symbol.clone(),
-                significant(own.value, 3),
+                entry.symbol.clone(),
+                significant(entry.value, 3),
                 expected,
                 departure,
                 meaning,
@@ -148,12 +148,12 @@ pub fn parameters(document: &TraceDocument) -> Table {
     let prime = ["prime", "value", "95 % interval"].into_iter().filter(|_| is_prime);
     let head = TableHead::default().texts(["parameter", "value", "95 % interval", "unit"]).texts(prime);
     let mut table = Table::new(head.texts(["record"]).texts(remarks.then_some("remark")));
-    let mut push = |symbol: &str, (own, unit): (Quantity, String), prime: Option<Quantity>, rest: [&str; 2]| {
-        let mut cells = vec![symbol.to_owned(), uncertain(own.value, own.sd), interval(own.ci95), unit];
+    let mut push = |symbol: &str, (number, unit): (Quantity, String), prime: Option<Quantity>, tail: [&str; 2]| {
+        let mut cells = vec![symbol.to_owned(), uncertain(number.value, number.sd), interval(number.ci95), unit];
         let prime = prime.map(|prime| [primed(symbol), uncertain(prime.value, prime.sd), interval(prime.ci95)]);
         let prime = prime.unwrap_or_else(|| [MISSING, MISSING, MISSING].map(String::from));
         cells.extend(is_prime.then_some(prime).into_iter().flatten());
-        cells.extend(rest.into_iter().take(1 + usize::from(remarks)).map(String::from));
+        cells.extend(tail.into_iter().take(1 + usize::from(remarks)).map(String::from));
         table.push(cells);
     };
     let (indices, prime) = (&model.indices, model.indices.prime.as_ref());
@@ -161,52 +161,53 @@ pub fn parameters(document: &TraceDocument) -> Table {
     push("T", (indices.T_s, "s".into()), prime.map(|prime| prime.T), [MISSING, ""]);
     push("δ_r", (indices.delta_r_deg, "deg".into()), None, [MISSING, ""]);
     // The average above stands for the rudder bias of all records.
-    for own in model.parameters.iter().filter(|own| own.symbol != "δ_r" || own.only.is_some()) {
-        let shown = in_degrees(&own.symbol, own.quantity, &own.unit);
-        let rest = [own.only.as_deref().unwrap_or(MISSING), if own.at_bound { "at its bound" } else { "" }];
-        push(&own.symbol, shown, own.prime.as_ref().map(|prime| prime.quantity), rest);
+    for entry in model.parameters.iter().filter(|entry| entry.symbol != "δ_r" || entry.only.is_some()) {
+        let shown = in_degrees(&entry.symbol, entry.quantity, &entry.unit);
+        let tail = [entry.only.as_deref().unwrap_or(MISSING), if entry.at_bound { "at its bound" } else { "" }];
+        push(&entry.symbol, shown, entry.prime.as_ref().map(|prime| prime.quantity), tail);
     }
     table
 }
 
-/// What became of every candidate.
+/// Outcome, probability and ΔBIC of every candidate effect.
 pub fn candidates(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["candidate", "form", "outcome"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["p"]).numbers(["visibility"]));
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
-    for one in &document.trace.candidates {
-        if one.forms.is_empty() {
-            let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-            let outcome = format!("{}{why}", one.outcome.as_str());
-            let rest = [fixed(one.probability, 3), optional(one.delta_bic, 1), two(one.p_value), MISSING.into()];
-            table.push([names::effect(&one.id), MISSING.into(), outcome].into_iter().chain(rest));
+    for entry in &document.trace.candidates {
+        if entry.forms.is_empty() {
+            let why = entry.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+            let outcome = format!("{}{why}", entry.outcome.as_str());
+            let numbers =
+                [fixed(entry.probability, 3), optional(entry.delta_bic, 1), two(entry.p_value), MISSING.into()];
+            table.push([names::effect(&entry.id), MISSING.into(), outcome].into_iter().chain(numbers));
         }
-        for (number, own) in one.forms.iter().enumerate() {
-            let only = own.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
+        for (number, form) in entry.forms.iter().enumerate() {
+            let only = form.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
             table.push([
-                if number == 0 { names::effect(&one.id) } else { String::new() },
-                format!("{}{only}", own.form),
-                own.outcome.as_str().to_owned(),
-                fixed(own.probability, 3),
-                optional(own.delta_bic, 1),
-                two(own.p_value),
-                two(own.visibility),
+                if number == 0 { names::effect(&entry.id) } else { String::new() },
+                format!("{}{only}", form.form),
+                form.outcome.as_str().to_owned(),
+                fixed(form.probability, 3),
+                optional(form.delta_bic, 1),
+                two(form.p_value),
+                two(form.visibility),
             ]);
         }
     }
     table
 }
 
-/// Structures of less probability are not told.
-const NEGLIGIBLE: f64 = 1e-3;
+/// Minimum probability of a listed structure.
+const MIN_PROBABILITY: f64 = 1e-3;
 
 /// The structures with their probabilities.
 pub fn structures(document: &TraceDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["structure"]).numbers(["probability"]).texts(["in the average"]));
-    for one in document.trace.structures.iter().filter(|one| one.member || one.weight > NEGLIGIBLE) {
-        let name = if one.effects.is_empty() { "the base alone".into() } else { terms(&one.effects, " + ") };
-        table.push([name, fixed(one.weight, 3), if one.member { "yes" } else { "no" }.into()]);
+    for entry in document.trace.structures.iter().filter(|entry| entry.member || entry.weight > MIN_PROBABILITY) {
+        let name = if entry.effects.is_empty() { "the base alone".into() } else { terms(&entry.effects, " + ") };
+        table.push([name, fixed(entry.weight, 3), if entry.member { "yes" } else { "no" }.into()]);
     }
     table
 }
@@ -215,13 +216,14 @@ pub fn structures(document: &TraceDocument) -> Table {
 pub fn noise(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["record"]).numbers(["heading, white"]).unit("deg").texts(["beside it"]);
     let mut table = Table::new(head.texts(["headings left out at"]).unit("s"));
-    for own in &document.trace.noise {
-        let name = document.records.iter().find(|record| record.file == own.file).map_or(&own.file, |one| &one.name);
-        let beside = coloured(own);
-        let times: Vec<String> = own.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
+    for noise in &document.trace.noise {
+        let name =
+            document.records.iter().find(|entry| entry.file == noise.file).map_or(&noise.file, |entry| &entry.name);
+        let beside = coloured(noise);
+        let times: Vec<String> = noise.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
         table.push([
             names::record(name),
-            significant(own.heading_sd_deg, 2),
+            significant(noise.heading_sd_deg, 2),
             if beside.is_empty() { MISSING.into() } else { beside.join(", ") },
             if times.is_empty() { MISSING.into() } else { times.join(", ") },
         ]);
@@ -229,27 +231,27 @@ pub fn noise(document: &TraceDocument) -> Table {
     table
 }
 
-/// What there is beside the white noise of a record, in words.
-pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
+/// Correlated parts of the noise of a record, a phrase each: yaw moment, heading error, waves.
+pub fn coloured(noise: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
-    let size = two(own.moment_sd_rudder_deg);
-    let moment = match own.moment {
-        Moment::White => Some(format!("a white yaw moment of {size}° of rudder averaged over 1 s")),
+    let size = two(noise.moment_sd_rudder_deg);
+    let moment = match noise.moment {
+        Moment::White => Some(format!("a random yaw moment of {size}° of rudder (mean over 1 s)")),
         Moment::OrnsteinUhlenbeck => {
-            let time = two(own.moment_correlation_s);
+            let time = two(noise.moment_correlation_s);
             Some(format!("gusts of {size}° of rudder that last about {time} s"))
         }
-        Moment::Walk => Some(format!("a yaw moment that walks by {size}°/√s of rudder")),
+        Moment::Walk => Some(format!("a randomly drifting yaw moment ({size}° of rudder in 1 s, twice that in 4 s)")),
         Moment::None => None,
     };
-    let heading = own.heading_wander_sd_deg.map(|sd| {
-        let whose = own.heading_wander.unwrap_or(HeadingWander::Compass);
-        let time = two(own.heading_correlation_s);
+    let heading = noise.heading_wander_sd_deg.map(|sd| {
+        let whose = noise.heading_wander.unwrap_or(HeadingWander::Compass);
+        let time = two(noise.heading_correlation_s);
         format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
     });
-    let waves = own
+    let waves = noise
         .waves_sd_deg
-        .map(|sd| format!("waves of {}° at {} rad/s", significant(sd, 2), two(own.waves_frequency_rad_s)));
+        .map(|sd| format!("waves of {}° at {} rad/s", significant(sd, 2), two(noise.waves_frequency_rad_s)));
     [moment, heading, waves].into_iter().flatten().collect()
 }
 

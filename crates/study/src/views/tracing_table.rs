@@ -47,14 +47,14 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         cells.extend(line.verdicts.map(|count| count.to_string()));
         let records = [summary.reference, line.method].map(|method| summary.record(line.cell, method));
         let three = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 3);
-        for of in [|own: &Performance| own.heading_rmse_deg, |own: &Performance| own.validation_rmse_deg] {
-            cells.extend(records.map(|record| three(record.and_then(of).map(|figure| figure.value))));
+        for error in [|row: &Performance| row.heading_rmse_deg, |row: &Performance| row.validation_rmse_deg] {
+            cells.extend(records.map(|record| three(record.and_then(error).map(|figure| figure.value))));
         }
         cells.push(three(line.expected));
         let digits = if all_digits { 3 } else { 1 };
         cells.extend(line.band.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
-        named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));
+        named.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
         let most = if all_digits { usize::MAX } else { 4 };
         cells.push(
             named.iter().take(most).map(|(id, count)| format!("{} {count}", name(id))).collect::<Vec<_>>().join(", "),
@@ -104,12 +104,13 @@ pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let methods: BTreeSet<usize> = lines.iter().map(|line| line.method).collect();
     let kinds = ["nothing missing", "one effect missing", "several effects missing", "a hull"];
     for (name, number) in kinds.into_iter().flat_map(|name| methods.iter().map(move |&number| (name, number))) {
-        let own: Vec<&TraceSummary> = lines.iter().filter(|line| kind(line) == name && line.method == number).collect();
-        if own.is_empty() {
+        let part: Vec<&TraceSummary> =
+            lines.iter().filter(|line| kind(line) == name && line.method == number).collect();
+        if part.is_empty() {
             continue;
         }
-        let mut sum = TraceSummary { missing: own[0].missing.clone(), ..TraceSummary::default() };
-        for line in &own {
+        let mut sum = TraceSummary { missing: part[0].missing.clone(), ..TraceSummary::default() };
+        for line in &part {
             sum.trials += line.trials;
             sum.complete += line.complete;
             sum.wrong += line.wrong;
@@ -123,7 +124,7 @@ pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
         let label = several.then(|| design.methods[number].label.clone());
         table.push(label.into_iter().chain([
             name.to_owned(),
-            own.len().to_string(),
+            part.len().to_string(),
             sum.trials.to_string(),
             cell(sum.complete_share()),
             cell(sum.exact_share()),

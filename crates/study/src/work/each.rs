@@ -1,4 +1,4 @@
-//! Logs that are fitted one by one: each has an answer to take, or a reason why there is none.
+//! Logs fitted one by one: each has a verdict, or an error.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::fit::fit;
 use crate::options::ReadingOptions;
 use crate::records::read_all;
 
-/// What came out of one log.
+/// Result of one log.
 pub struct LogFit {
     /// The file as it was named.
     pub file: PathBuf,

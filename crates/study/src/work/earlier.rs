@@ -1,4 +1,4 @@
-//! Models of earlier trials that `--prior` names: read, and held against the records.
+//! Models of earlier trials (`--prior`): read, and compared with the records.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -31,40 +31,40 @@ pub struct EarlierModel {
 impl EarlierModel {
     /// The models of some files. Fails when one cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
-        let of = |path: &PathBuf| {
+        let read = |path: &PathBuf| {
             let shown = file::called(path).display().to_string();
             Self::of_document(&shown, &text_of(path)?)
         };
-        paths.iter().map(of).collect()
+        paths.iter().map(read).collect()
     }
 
-    /// The model in the text of a `fit.json` or `trace.json`; `shown` is what messages call it.
+    /// The model in the text of a `fit.json` or `trace.json`; `shown` is its name in messages.
     ///
     /// Fails when the text is no such document, and when it holds no hull.
     pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
         let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
-        let known = ships.into_values().find(|ship| !ship.hulls.is_empty());
-        let known = known.ok_or_else(|| {
-            let what = "it holds no hull, which a prior is made from; fit records of a known length and approach speed, with a \
-                        speed column, that begin on a steady approach";
-            Failure::about(shown, what)
+        let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
+        let ship = ship.ok_or_else(|| {
+            let problem = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \
+                        approach speed of the ship and a speed column";
+            Failure::about(shown, problem)
         })?;
-        let hulls = hulls_of(&known).map_err(|error| Failure::about(shown, error))?;
+        let hulls = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
         Ok(Self { file: shown.to_owned(), records, hulls })
     }
 
-    /// Its ship beside that of the records.
+    /// Document entry of the model, compared with the ship of the records.
     fn entry(&self, ship: &HullParticulars) -> PriorModelEntry {
-        let own = self.hulls[0].particulars;
-        let likeness = Likeness::of(&own, ship);
+        let earlier_ship = self.hulls[0].particulars;
+        let likeness = Likeness::of(&earlier_ship, ship);
         PriorModelEntry {
             file: self.file.clone(),
             records: self.records.clone(),
             likeness,
             factor: likeness.factor(),
-            differing: ship.differing(&own).into_iter().map(str::to_owned).collect(),
-            length_m: own.length,
-            speed_m_s: own.speed,
+            differing: ship.differing(&earlier_ship).into_iter().map(str::to_owned).collect(),
+            length_m: earlier_ship.length,
+            speed_m_s: earlier_ship.speed,
         }
     }
 }
@@ -74,15 +74,15 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails where a record is in two of the models, or in one and among those that were `seen`, files by their SHA-256.
+/// Fails where a record is in two models, or in one and among those `seen`, given as files by SHA-256.
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
-        if let Some((file, other)) = records.iter().find_map(|(own, file)| Some((file, seen.get(own.as_str())?))) {
-            let what =
-                format!("{file} is in this model and in {other}, and a record counts only once; leave one of them out");
-            return Err(Failure::about(model, what));
+        if let Some((file, other)) = records.iter().find_map(|(hash, file)| Some((file, seen.get(hash.as_str())?))) {
+            let problem =
+                format!("{file} is in this model and in {other}, but a record counts only once; leave one of them out");
+            return Err(Failure::about(model, problem));
         }
-        seen.extend(records.keys().map(|own| (own.as_str(), model.as_str())));
+        seen.extend(records.keys().map(|sha256| (sha256.as_str(), model.as_str())));
     }
     Ok(())
 }
@@ -93,10 +93,10 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
-        let what = "--prior cannot be used";
+        let problem = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
-        return Err(Failure::about(file_of(&trials[0]).0, format!("{what}: {error}; {cure}")));
+        return Err(Failure::about(file_of(&trials[0]).0, format!("{problem}: {error}; {cure}")));
     }
     Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
@@ -104,12 +104,12 @@ pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, 
 /// Warnings where the ship of a model sails at another Froude number.
 fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning> {
     let of_model = |model: &EarlierModel| {
-        let own = model.hulls[0].particulars;
-        is_other_froude_number(&own, ship).then(|| {
-            let [one, other] = [own, *ship].map(|ship| fixed(ship.froude_number(), 3));
+        let earlier_ship = model.hulls[0].particulars;
+        is_other_froude_number(&earlier_ship, ship).then(|| {
+            let [of_model, of_records] = [earlier_ship, *ship].map(|ship| fixed(ship.froude_number(), 3));
             Code::EarlierTrials.warning(format!(
-                "--prior {}: its ship sailed at a Froude number of {one}, that of the records at {other}; coefficients change with \
-                 the Froude number, so prefer trials near it",
+                "--prior {}: its ship sailed at a Froude number of {of_model}, that of the records at {of_records}; coefficients change with \
+                 the Froude number, so prefer trials at a similar one",
                 model.file
             ))
         })
@@ -119,9 +119,9 @@ fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning>
 
 /// A ship whose hulls were fitted without some models.
 pub struct LaterShip<'a> {
-    /// What messages call her model.
+    /// Name of her model in messages.
     pub file: &'a str,
-    /// What is known of her.
+    /// The identified ship.
     pub ship: &'a IdentifiedShip,
     /// The records that are in her model.
     pub records: &'a BTreeMap<String, String>,
@@ -129,44 +129,43 @@ pub struct LaterShip<'a> {
 
 /// A ship after earlier trials.
 pub struct ShipAfterTrials {
-    /// What is known of her.
+    /// The identified ship.
     pub ship: IdentifiedShip,
     /// The models beside her.
     pub earlier: EarlierTrials,
-    /// Where they contradict her, or are of another speed.
+    /// Warnings of a conflict, or of another Froude number.
     pub warnings: Vec<Warning>,
 }
 
-/// A ship with what the models tell of her.
+/// A ship whose hulls are updated with the models.
 ///
 /// Fails where she has no hull, where a record would count twice, and where the models have no form of hers.
 pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
-    let own = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
+    let before_trials = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
-    for (stored, own) in ship.hulls.iter_mut().zip(&own) {
-        let Some((after, check)) = hull::after_earlier(own, &earlier) else { continue };
+    for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
+        let Some((after, check)) = hull::after_earlier(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = rows_of(&after.covariance);
         drawable_hull::check(stored).map_err(|error| Failure::about(shown, error))?;
-        checks.extend(check.map(|check| (own.form.as_str(), check)));
+        checks.extend(check.map(|check| (hull_before.form.as_str(), check)));
     }
     if checks.is_empty() {
-        let what = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave \
-                    --prior out";
-        return Err(Failure::about(shown, what));
+        let problem = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave --prior out";
+        return Err(Failure::about(shown, problem));
     }
-    checks.sort_by(|one, other| other.1.p_value.total_cmp(&one.1.p_value));
-    let earlier = said(models, &own[0].particulars, &checks, |_| true);
-    let mut warnings = other_speeds(models, &own[0].particulars);
+    checks.sort_by(|a, b| b.1.p_value.total_cmp(&a.1.p_value));
+    let earlier = earlier_trials(models, &before_trials[0].particulars, &checks, |_| true);
+    let mut warnings = other_speeds(models, &before_trials[0].particulars);
     warnings.extend(prior::warning(&earlier));
     Ok(ShipAfterTrials { ship, earlier, warnings })
 }
 
-/// What is said of the models beside a ship after their check, the nearest hull first.
-fn said(
+/// Document entry of the models beside a ship after their check, the closest hull first.
+fn earlier_trials(
     models: &[EarlierModel],
     ship: &HullParticulars,
     checks: &[(&str, ExpectationCheck)],
@@ -187,9 +186,9 @@ fn said(
     }
 }
 
-/// What is said of the models beside the records; `None` without any.
+/// Document entry of the models beside the records; `None` without models.
 pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
-    let is_member = |form: &str| facts.hulls.iter().any(|own| own.form == form);
-    Some(said(models, &ship, &facts.checks, is_member))
+    let is_member = |form: &str| facts.hulls.iter().any(|hull| hull.form == form);
+    Some(earlier_trials(models, &ship, &facts.checks, is_member))
 }

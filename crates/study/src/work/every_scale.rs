@@ -1,4 +1,4 @@
-//! What every method says of the records of every scale alone.
+//! Estimates of every method at each scale alone, compared with the joint estimate.
 
 use document::method::MethodEntry;
 use document::scales::{ComparedModel, ComparedTerm, ScalesEntry};
@@ -12,11 +12,11 @@ use trial::{Quantity, Trial};
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
 
-/// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
-/// first.
+/// Methods in order of preference where one represents all: first the one whose errors include the uncertainty of the
+/// noise.
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
-/// A method with what it is called.
+/// A method with its label.
 pub type Named = (String, Box<dyn Identifier>);
 
 /// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
@@ -29,11 +29,11 @@ pub fn compared(
     let (first, groups) = (scales.particulars[0], scales.groups(together.trials.len()));
     let of_group = |records: &[usize]| records.iter().map(|&record| together.trials[record].clone()).collect();
     let trials: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
-    let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
+    let estimates_by_scale = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
         trials.par_iter().map(|trials| method.identify(trials).ok()).collect()
     };
     let compared = |((_, method), (entry, joint)): (&Named, &(MethodEntry, Option<Estimate>))| {
-        let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
+        let terms = terms(joint.as_ref()?, &estimates_by_scale(method.as_ref()), first);
         Some(ComparedModel { model: entry.method.clone(), terms })
     };
     let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
@@ -42,7 +42,7 @@ pub fn compared(
 }
 
 /// K', T', the regular 1/T' and K'/T', and δ_r.
-fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
+fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
     type Of = fn(&Estimate) -> Quantity;
     let all: [(&str, &str, [i32; 2], Of); 5] = [
         ("K′", "1", [-1, 0], Estimate::K),
@@ -51,19 +51,19 @@ fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<C
         ("K′/T′", "1", [-2, 0], |estimate| parameter(estimate, 1)),
         ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
     ];
-    let compared = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
-        let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
-        let own = own.iter().map(|own| own.as_ref().map(prime)).collect();
-        term([symbol, unit], prime(joint), own)
+    let compared = |&(symbol, unit, dimension, quantity_of): &(&str, &str, [i32; 2], Of)| {
+        let prime = |estimate: &Estimate| quantity_of(estimate).scaled(ship.prime(dimension));
+        let at_scales = by_scale.iter().map(|estimate| estimate.as_ref().map(prime)).collect();
+        term([symbol, unit], prime(joint), at_scales)
     };
     all.iter().map(compared).collect()
 }
 
-/// The term of this symbol and unit, with what was found at every scale compared.
-pub fn term([symbol, unit]: [&str; 2], joint: Quantity, own: Vec<Option<Quantity>>) -> ComparedTerm {
-    let values: Vec<Quantity> = own.iter().map(|own| own.unwrap_or(Quantity::bare(f64::NAN))).collect();
+/// Term of this symbol and unit: its joint value, its values at each scale, and whether it scales.
+pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Quantity>>) -> ComparedTerm {
+    let values: Vec<Quantity> = at_scales.iter().map(|value| value.unwrap_or(Quantity::bare(f64::NAN))).collect();
     let (difference_sd, verdict) = scaling(&values);
-    ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own, difference_sd, verdict }
+    ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own: at_scales, difference_sd, verdict }
 }
 
 /// 1/T or K/T with their errors.

@@ -1,5 +1,4 @@
-//! An identification: all methods asked for on the records together, its answer held against other records, and what is
-//! known of the ship.
+//! Identification: all requested methods on the records together, validation on other records, and the identified ship.
 
 use campaign::failure::Failure;
 use campaign::stored_figures::Replays;
@@ -35,22 +34,22 @@ use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
 
-/// What came out.
+/// Result of an identification.
 pub struct FitResult {
     /// The records, brought to one scale.
     pub together: RescaledRecords,
     /// The answers of the methods.
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
-    /// What other programs read.
+    /// `fit.json`.
     pub document: FitDocument,
 }
 
 impl FitResult {
-    /// What the figures show of the records and of the answers.
+    /// Curves of the figures: records, replays, and 95 % regions of K and T.
     pub fn curves(&self) -> FitCurves {
-        let RescaledRecords { trials, others, .. } = &self.together;
-        let stems = records::names(trials.iter().chain(others).map(Trial::name));
-        let records = trials.iter().chain(others).zip(stems).enumerate();
+        let RescaledRecords { trials, held_out, .. } = &self.together;
+        let stems = records::names(trials.iter().chain(held_out).map(Trial::name));
+        let records = trials.iter().chain(held_out).zip(stems).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
         let regions = self.answers.iter().filter_map(|(entry, estimate)| {
             let estimate = estimate.as_ref()?;
@@ -73,7 +72,7 @@ impl FitResult {
             file: file_of(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
-            zigzag: zigzag.map(|own| zigzag_figure(trial, &own)),
+            zigzag: zigzag.map(|zigzag| zigzag_figure(trial, &zigzag)),
             replays: Replays {
                 record: curve(trial.time(), trial.heading()),
                 truth: None,
@@ -90,30 +89,30 @@ impl FitResult {
     }
 }
 
-/// Identifies the records together by every method and replays the answers on `others`; the hull about what `priors`
-/// left. The document has `warnings` of the records and those of the fit.
+/// Identifies the records together by every method and replays the answers on `validation`; the hull has
+/// `priors`. The document has `warnings` of the records and those of the fit.
 ///
 /// Fails when the records cannot be brought to one scale, when no method can identify them, and when there are priors
 /// and no hull can be fitted: that is wrong input, not a result.
 pub fn fit(
-    [records, others]: [&[Trial]; 2],
+    [records, validation]: [&[Trial]; 2],
     methods: &[Named],
     priors: &[EarlierModel],
     quiet: bool,
     mut warnings: Warnings,
 ) -> Result<FitResult, Failure> {
-    let together = scales::together(records, others)?;
-    let (trials, others) = (&together.trials[..], &together.others[..]);
+    let together = scales::together(records, validation)?;
+    let (trials, held_out) = (&together.trials[..], &together.held_out[..]);
     warnings.extend(earlier::check(priors, trials)?);
     let ship = scales::particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
-        .progress_with(progress::of("methods", methods.len() as u64, quiet))
+        .progress_with(progress::bar("methods", methods.len() as u64, quiet))
         .map(|(label, method)| {
             let (mut entry, estimate) = entry(label, method.identify(trials), trials);
             entry.id = (method.id() != label).then(|| method.id().to_owned());
-            entry.prime = entry.parameters.zip(ship).map(|(own, ship)| PrimeIndices::of([own.k_per_s, own.t_s], ship));
-            entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
+            entry.prime = entry.parameters.zip(ship).map(|(fit, ship)| PrimeIndices::of([fit.k_per_s, fit.t_s], ship));
+            entry.validation = held_out.iter().map(|other| validate(other, estimate.as_ref())).collect();
             (entry, estimate)
         })
         .collect();
@@ -121,7 +120,7 @@ pub fn fit(
     if entries.iter().all(|entry| entry.parameters.is_none()) {
         return Err(unusable(&records[0], &entries, &warnings.ranked()));
     }
-    let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|own| own.K().sd.is_some());
+    let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
@@ -194,12 +193,12 @@ fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
 /// The entry of a zig-zag; criteria where length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
-    let criterion = |own: &imo::Criterion| CriterionEntry {
-        criterion: own.name.into(),
-        measured: own.measured.map(|measured| measured.value),
-        limit: own.limit,
-        unit: own.unit.symbol().into(),
-        verdict: own.verdict(),
+    let criterion = |criterion: &imo::Criterion| CriterionEntry {
+        criterion: criterion.name.into(),
+        measured: criterion.measured.map(|measured| measured.value),
+        limit: criterion.limit,
+        unit: criterion.unit.symbol().into(),
+        verdict: criterion.verdict(),
     };
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
@@ -211,10 +210,10 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     }
 }
 
-/// What a method says of its answer.
+/// Warnings of a method.
 fn of_answer((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
-    let own = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
-    Source::Method(entry.method.clone()).of(own).collect()
+    let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
+    Source::Method(entry.method.clone()).of(warnings).collect()
 }
 
 /// The warning of a ship of known draught that cannot be taken to another loading.
@@ -226,8 +225,7 @@ fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
 
 /// The warning of a record whose first overshoot cannot be read.
 fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
-    let text = "the record begins at a reversal of the rudder, so the overshoot there is not read; begin it earlier if the \
-                log does";
+    let text = "the record begins at a reversal of the rudder, so the first overshoot is not read; begin it earlier if the log allows";
     zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
 }
 
@@ -240,39 +238,38 @@ pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failur
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let place = |id: &str| registry::USUAL.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
-    let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
-    if let Some(unknown) = names.iter().find(|name| *name != ALL && !known.contains(&name.as_str())) {
-        let known = known.join(", ");
-        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {known}")));
+    let ids: Vec<&str> = all.iter().map(|method| method.id()).collect();
+    if let Some(unknown) = names.iter().find(|name| *name != ALL && !ids.contains(&name.as_str())) {
+        let ids = ids.join(", ");
+        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {ids}")));
     }
     let is_named = |id: &str| match names {
         [] => place(id).is_some(),
         names => names.iter().any(|name| name == id || name == ALL),
     };
-    let own = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
+    let chosen = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);
         (method.id().to_owned(), method)
     });
-    Ok(own.collect())
+    Ok(chosen.collect())
 }
 
-/// The methods that were used and gave an answer with an interval: that of the verdict, then those whose intervals hold
-/// most.
+/// Methods with an answer and an interval, in order of preference: that of the verdict, then [`PREFERRED_METHODS`].
 fn preferred<'a>(
     methods: &'a [Named],
     entries: &[MethodEntry],
     verdict: Option<&VerdictEntry>,
 ) -> Vec<&'a dyn Identifier> {
     let has_interval = |label: &str| {
-        let own = entries.iter().find(|entry| entry.method == label).and_then(|entry| entry.parameters);
-        own.is_some_and(|own| own.k_per_s.ci95.is_some())
+        let parameters = entries.iter().find(|entry| entry.method == label).and_then(|entry| entry.parameters);
+        parameters.is_some_and(|parameters| parameters.k_per_s.ci95.is_some())
     };
     let answered = methods.iter().filter(|(label, _)| has_interval(label));
-    let mut found: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
-    found.sort_by_key(|method| PREFERRED_METHODS.iter().position(|id| *id == method.id()).unwrap_or(usize::MAX));
-    found.truncate(PREFERRED_METHODS.len());
+    let mut ranked: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
+    ranked.sort_by_key(|method| PREFERRED_METHODS.iter().position(|id| *id == method.id()).unwrap_or(usize::MAX));
+    ranked.truncate(PREFERRED_METHODS.len());
     let taken = methods.iter().find(|(label, _)| verdict.is_some_and(|verdict| verdict.method == *label));
-    taken.map(|(_, method)| method.as_ref()).into_iter().chain(found).collect()
+    taken.map(|(_, method)| method.as_ref()).into_iter().chain(ranked).collect()
 }
 
 /// The message when no method gives an answer: every reason once.
@@ -282,8 +279,8 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
         ([only], [(reason, _)]) => format!("{} cannot identify this record: {reason}", only.method),
         (_, [(reason, _)]) => format!("no method can identify this record: {reason}"),
         _ => {
-            let line = |(reason, own): &(&str, Vec<&MethodEntry>)| {
-                let methods: Vec<&str> = own.iter().map(|entry| entry.method.as_str()).collect();
+            let line = |(reason, failed): &(&str, Vec<&MethodEntry>)| {
+                let methods: Vec<&str> = failed.iter().map(|entry| entry.method.as_str()).collect();
                 format!("\n  {}: {reason}", methods.join(", "))
             };
             format!("no method can identify this record{}", reasons.iter().map(line).collect::<String>())
@@ -298,5 +295,5 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
     let replay = estimate.and_then(|estimate| replay(other, &estimate.response));
-    Validation { file: file_of(other).0.to_owned(), heading_rmse_deg: replay.map(|own| to_deg(own.rms())) }
+    Validation { file: file_of(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
 }

@@ -1,5 +1,5 @@
-//! Models that `--load` takes to another loading of the ship: by what the formulas of her particulars say of it, and by
-//! how she departed from them at her trials. Only hulls of the MMG form are taken, since no other has a draught.
+//! Models converted to another loading of the ship (`--load`): by the formulas of her particulars, and by her departure
+//! from them at the trials. Only hulls of the MMG form are converted, since no other depends on the draught.
 
 use std::path::Path;
 
@@ -16,16 +16,16 @@ use trial::{Sidecar, file};
 /// The form that is made from particulars.
 const FORM: &str = "mmg";
 
-/// What is said where no hull of this form is among those of a ship.
-pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
-                                times that of another hull, or it cannot be replayed over them";
+/// Message where the records rule out a hull of this form.
+pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three times that of another hull, or its \
+                                replay fails";
 
 /// Whether records speak against a hull of this form: where one is fitted, all are.
 pub fn speak_against_form(hulls: &[StoredHull]) -> bool {
-    !hulls.is_empty() && hulls.iter().all(|own| own.form != FORM)
+    !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
 
-/// What has to be known of the ship at her trials; the displacement stands for the last.
+/// Required particulars of the ship at her trials; the displacement can replace the last.
 const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 
 /// A loading, as a file describes it.
@@ -33,12 +33,12 @@ const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 pub struct DescribedLoading {
     /// The file, as messages call it.
     pub file: String,
-    /// What it says; length and speed are 0 where it does not say them.
+    /// Particulars of the file; length and speed are 0 where it gives none.
     given: HullParticulars,
 }
 
 impl DescribedLoading {
-    /// What `[ship]` and `[form]` of a file say, read as those of a sidecar.
+    /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
     /// Fails as a sidecar does, and for a file without a draught.
     pub fn of_file(path: &Path) -> Result<Self, Failure> {
@@ -74,25 +74,26 @@ impl DescribedLoading {
     ) -> Result<(IdentifiedShip, f64), Failure> {
         let mut ship = only_hull(shown, ship)?;
         let earlier = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
-        let own = earlier[0].particulars;
-        let to = self.particulars(shown, &own)?;
+        let at_trials = earlier[0].particulars;
+        let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
-        let expected = ExpectedHull::of_ship(Some(&to), &earlier).into_iter().find(|own| own.form.as_str() == FORM);
-        let at_loading = |own: ExpectedHull| {
-            let hull = ship.hulls[0].at_loading(&to, &own.coefficients, own.law()?);
+        let expected = ExpectedHull::of_ship(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
+        let at_loading = |expected: ExpectedHull| {
+            let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.law()?);
             Some(StoredHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };
         let hull = expected.and_then(at_loading).filter(|hull| drawable_hull::check(hull).is_ok());
-        let none = || self.refused(format!("the hull of {shown} makes no ship at this loading; check the numbers"));
+        let none =
+            || self.refused(format!("the hull of {shown} gives no valid ship at this loading; check the numbers"));
         ship.hulls = vec![hull.ok_or_else(none)?];
-        let faster = to.speed / own.speed;
+        let faster = to.speed / at_trials.speed;
         ship.speed_m_s = ship.speed_m_s.map(|speed| speed * faster);
         ship.approach_yaw_rate_rad_s *= faster;
         ship.seen.yaw_rate_rad_s *= faster;
-        Ok((ship, own.draught.unwrap_or_default()))
+        Ok((ship, at_trials.draught.unwrap_or_default()))
     }
 
-    /// Warns of what is taken as at the trials, though it changes with the loading.
+    /// Warns of particulars kept from the trials although they change with the loading.
     fn warn_of_kept(&self, to: &HullParticulars, warnings: &mut Warnings) {
         let HullParticulars { block_coefficient, displacement, x_g, propeller_rate, .. } = self.given;
         let kept = [
@@ -108,11 +109,11 @@ impl DescribedLoading {
         }
     }
 
-    /// Particulars of the ship at this loading; `own` are those at the trials. What is not said stays, but for the
-    /// mass; revolutions stay in proportion to the speed, so that both are told by one formula. What is not known of
-    /// rudder and propeller is assumed once for both.
-    fn particulars(&self, shown: &str, own: &HullParticulars) -> Result<HullParticulars, Failure> {
-        let mut to = completed(own).map_err(|error| Failure::about(shown, error))?;
+    /// Particulars of the ship at this loading, from those `at_trials`. Values that the file does not give stay, except
+    /// the mass; revolutions stay in proportion to the speed. Unknown particulars of rudder and propeller are assumed
+    /// once for both loadings.
+    fn particulars(&self, shown: &str, at_trials: &HullParticulars) -> Result<HullParticulars, Failure> {
+        let mut to = completed(at_trials).map_err(|error| Failure::about(shown, error))?;
         to.displacement = None;
         to.block_coefficient = to.block_coefficient.filter(|_| self.given.displacement.is_none());
         for particular in &PARTICULARS {
@@ -121,19 +122,19 @@ impl DescribedLoading {
             }
         }
         if self.given.propeller_rate.is_none() {
-            to.propeller_rate = own.propeller_rate.map(|rate| rate * to.speed / own.speed);
+            to.propeller_rate = at_trials.propeller_rate.map(|rate| rate * to.speed / at_trials.speed);
         }
-        let differing = to.differing(own);
+        let differing = to.differing(at_trials);
         let cure = match () {
-            () if !to.has_length_of(own) => "length-m differs; give it at the scale of that model",
+            () if !to.has_length_of(at_trials) => "length-m differs; give it at the scale of that model",
             () if differing.contains(&"beam-m") => "beam-m differs; give a loading of the same ship",
             () if differing.is_empty() => "all is within 2 % of it; leave --load out, or give another draught-m",
             () => return completed(&to).map_err(|error| self.out_of_the_water(&to, error)),
         };
-        Err(self.refused(format!("this is no other loading of the ship of {shown}: {cure}")))
+        Err(self.refused(format!("this is not another loading of the ship of {shown}: {cure}")))
     }
 
-    /// What is wrong with the ship at this loading; at a light draught it is her rudder or propeller, not the scale.
+    /// Failure for an invalid ship at this loading; at a light draught the rudder or the propeller is out of the water.
     fn out_of_the_water(&self, to: &HullParticulars, error: ParticularsError) -> Failure {
         let parts = [("rudder-height-m", "rudder", "height"), ("propeller-diameter-m", "propeller", "diameter")];
         let part = parts.into_iter().find(|(key, ..)| *key == error.key && error.value > error.range[1]);
@@ -159,8 +160,8 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
         return Err(Failure::about(shown, format!("--load needs a hull of the form mmg: {AGAINST_FORM}; {cure}")));
     }
     let mut ship = ship.clone();
-    ship.hulls.retain(|own| own.form == FORM);
-    let knows = |key: &str| ship.hulls.iter().all(|own| own.particulars.contains_key(key));
+    ship.hulls.retain(|hull| hull.form == FORM);
+    let knows = |key: &str| ship.hulls.iter().all(|hull| hull.particulars.contains_key(key));
     let is_known = |key: &str| knows(key) || key == "block-coefficient" && knows("displacement-t");
     let lacks = match ship.hulls.is_empty() {
         true => format!("hull of the form {FORM}"),
@@ -174,12 +175,12 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
     Err(Failure::about(shown, format!("it has no {lacks}, so --load cannot take it to another loading; {cure}")))
 }
 
-/// Particulars with what is typical where nothing is given, the block coefficient by the displacement.
+/// Particulars with typical values for missing ones, and the block coefficient from the displacement.
 fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsError> {
     let mut all = *given;
-    for own in priors(given)?.assumed {
-        if let Some(particular) = Particular::named(own.key) {
-            particular.set(&mut all, own.value);
+    for assumed in priors(given)?.assumed {
+        if let Some(particular) = Particular::named(assumed.key) {
+            particular.set(&mut all, assumed.value);
         }
     }
     Ok(all)
@@ -199,7 +200,7 @@ mod tests {
         HullParticulars { length: 320.0, speed: 8.0, block_coefficient: Some(0.77), ..form }
     }
 
-    /// What the formulas say at some particulars.
+    /// Coefficients by the formulas at some particulars.
     fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
         HullForm::mmg(&priors(at).expect("a ship")).coefficients().to_vec()
     }
@@ -207,19 +208,19 @@ mod tests {
     /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known
     /// to a hundredth of one.
     fn taken(given: HullParticulars) -> (StoredHull, Vec<Warning>) {
-        let own = formulas(&at_trial());
-        let entry = |i: usize, j: usize| if i == j { (0.01 * own[i].sd).powi(2) } else { 0.0 };
-        let coefficient = |own: &HullCoefficient| {
-            let (key, symbol, value) = (own.key.into(), own.symbol.into(), own.mean + 0.5 * own.sd);
-            StoredCoefficient { key, symbol, value, expected: own.mean, expected_sd: own.sd }
+        let terms = formulas(&at_trial());
+        let entry = |i: usize, j: usize| if i == j { (0.01 * terms[i].sd).powi(2) } else { 0.0 };
+        let coefficient = |term: &HullCoefficient| {
+            let (key, symbol, value) = (term.key.into(), term.symbol.into(), term.mean + 0.5 * term.sd);
+            StoredCoefficient { key, symbol, value, expected: term.mean, expected_sd: term.sd }
         };
         let hull = StoredHull {
             form: FORM.into(),
             length_m: 320.0,
             speed_m_s: 8.0,
             particulars: by_keys(&at_trial()),
-            coefficients: own.iter().map(coefficient).collect(),
-            covariance: (0..own.len()).map(|i| (0..own.len()).map(|j| entry(i, j)).collect()).collect(),
+            coefficients: terms.iter().map(coefficient).collect(),
+            covariance: (0..terms.len()).map(|i| (0..terms.len()).map(|j| entry(i, j)).collect()).collect(),
             ..StoredHull::default()
         };
         let ship = IdentifiedShip { hulls: vec![StoredHull::default(), hull], ..IdentifiedShip::default() };
@@ -233,9 +234,9 @@ mod tests {
     /// belongs to the trial; three times as uncertain. Rudder and propeller that nobody knows are those of one ship.
     #[test]
     fn the_hull_is_that_of_the_formulas_with_her_departure() {
-        let at_load = |own: HullParticulars| {
+        let at_load = |ship: HullParticulars| {
             let (draught, block_coefficient) = (Some(20.8), Some(0.81));
-            HullParticulars { speed: 7.5, draught, block_coefficient, x_g: Some(11.0), ..own }
+            HullParticulars { speed: 7.5, draught, block_coefficient, x_g: Some(11.0), ..ship }
         };
         let (hull, warnings) = taken(at_load(HullParticulars::default()));
         let to = hull.particulars().expect("known");
@@ -248,9 +249,9 @@ mod tests {
                 key if is_of_friction(key) => (formula.mean, formula.sd),
                 _ => (formula.mean + 0.5 * before.sd, 0.03 * before.sd),
             };
-            let (value, found) = (hull.coefficients[place].value, hull.covariance[place][place].sqrt());
+            let (value, sd_found) = (hull.coefficients[place].value, hull.covariance[place][place].sqrt());
             assert!((value - truth).abs() < 2e-3 * before.sd, "{}: {value} {truth}", formula.key);
-            assert!((found / sd - 1.0).abs() < 0.01, "{}: {found} {sd}", formula.key);
+            assert!((sd_found / sd - 1.0).abs() < 0.01, "{}: {sd_found} {sd}", formula.key);
         }
     }
 
@@ -269,7 +270,7 @@ mod tests {
                 && warnings[1].text.contains("x-g-m = 3 is taken")
         );
         let (hull, warnings) = taken(HullParticulars { displacement: Some(3.2e8), ..bare });
-        let told = hull.particulars().expect("known").block_coefficient.expect("told");
-        assert!((told - 0.809).abs() < 1e-3 && warnings.len() == 2, "{told} {warnings:?}");
+        let block_coefficient = hull.particulars().expect("known").block_coefficient.expect("told");
+        assert!((block_coefficient - 0.809).abs() < 1e-3 && warnings.len() == 2, "{block_coefficient} {warnings:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a command works out before anything is drawn, written or said; what a program that calls this crate asks for.
+//! Computation of the commands, before anything is drawn, written or printed; also called by the Python package.
 
 pub mod each;
 pub mod earlier;

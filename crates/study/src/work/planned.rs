@@ -5,25 +5,25 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::Trial;
 
-/// Zig-zags that are considered: rudder and heading, deg, first execute to starboard.
+/// Candidate zig-zags: rudder and heading, deg, first execute to starboard.
 const ZIGZAGS: [[f64; 2]; 6] = [[5.0, 5.0], [10.0, 10.0], [10.0, 20.0], [20.0, 10.0], [20.0, 20.0], [30.0, 30.0]];
 
 /// Executes of a planned zig-zag.
 const EXECUTES: usize = 5;
 
 /// Rudder rates a steering gear can have, rad/s; outside, a recorded rudder says nothing about its gear.
-const RATES_DEG_S: [f64; 2] = [1.0, 20.0];
+const GEAR_RATES_DEG_S: [f64; 2] = [1.0, 20.0];
 
-/// Longest planned trial in lengths of the records.
-const LONGEST: f64 = 3.0;
+/// Maximum duration of a planned trial, in durations of the longest record.
+const MAX_LENGTH: f64 = 3.0;
 
 /// Every manoeuvre that the fitted ship can be steered through, with the sampling and the rudder rate of the records.
 pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
-        [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, words)| {
+        [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, suffix)| {
             let zigzag = Manoeuvre::zig_zag(from_deg(rudder), from_deg(heading)).to(first).until_execute(EXECUTES);
-            (format!("{rudder:.0}/{heading:.0} zig-zag{words}"), zigzag)
+            (format!("{rudder:.0}/{heading:.0} zig-zag{suffix}"), zigzag)
         })
     });
     let turn = Manoeuvre::turning_circle(from_deg(35.0)).lasting(0.5 * longest);
@@ -48,9 +48,9 @@ fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Optio
     let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
     simulation.recording.period = records[0].sampling_period();
-    simulation.longest_wait = LONGEST * longest;
+    simulation.longest_wait = MAX_LENGTH * longest;
     let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
-    let is_manoeuvre = trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
+    let is_manoeuvre = trial.duration() <= MAX_LENGTH * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
     is_manoeuvre.then_some(trial)
 }
 
@@ -61,6 +61,6 @@ fn rudder_rate(record: &Trial) -> f64 {
         (1..record.len()).map(|row| ((rudder[row] - rudder[row - 1]) / (time[row] - time[row - 1])).abs()).collect();
     rates.sort_by(f64::total_cmp);
     let high = rates[(rates.len() - 1) * 98 / 100];
-    let [slowest, fastest] = RATES_DEG_S;
+    let [slowest, fastest] = GEAR_RATES_DEG_S;
     from_deg(to_deg(high).clamp(slowest, fastest))
 }

@@ -1,4 +1,4 @@
-//! A prediction: the ships that models stand for, steered through manoeuvres and held against records.
+//! Prediction: ships drawn from models, steered through manoeuvres and compared with records.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,15 +27,15 @@ use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
 use crate::records::{file_of, rudder_logged_late, source_of};
 
-/// Methods of fit.json in the order in which they are asked; those that are not named come last.
+/// Methods of fit.json in order of preference; others come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
 
-/// What is known of a ship, and from where.
+/// An identified ship with its file and method.
 #[derive(Clone)]
 pub struct StoredModel {
     file: String,
-    known: IdentifiedShip,
-    /// How it was identified.
+    ship: IdentifiedShip,
+    /// Method of identification.
     method: String,
     /// The records that are in it: their files by their SHA-256.
     records: BTreeMap<String, String>,
@@ -50,10 +50,10 @@ fn files(models: &[StoredModel]) -> Vec<String> {
 fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
     let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
     for model in models {
-        let ship = at_scale(&model.known, scale).map_err(|error| Failure::about(&model.file, error))?;
-        let [first, own] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
-        if !first.zip(own).map_or(first == own, |(first, own)| is_alike(first, own)) {
-            return Err(of_two_scales([(&models[0].file, first), (&model.file, own)]));
+        let ship = at_scale(&model.ship, scale).map_err(|error| Failure::about(&model.file, error))?;
+        let [first, next] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
+        if !first.zip(next).map_or(first == next, |(first, next)| is_alike(first, next)) {
+            return Err(of_two_scales([(&models[0].file, first), (&model.file, next)]));
         }
         ships.push((ship, 1.0));
     }
@@ -61,7 +61,7 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 }
 
 impl StoredModel {
-    /// What is known of the ship in a file, as a request asks for it.
+    /// The identified ship in a file, by the method and weather of the request.
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
@@ -85,57 +85,56 @@ impl StoredModel {
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
-            let text = format!("the answer of {method} is used; --method names another");
+            let text = format!("the answer of {method} is used; choose another with --method");
             warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
         }
         if let Some(because) = disbelief {
-            let text =
-                format!("no K and T can be taken from its records, so its predictions are worth nothing: {because}");
+            let text = format!("no K and T can be taken from its records, so do not trust its predictions: {because}");
             warnings.push(Code::NotIdentified, Source::File(shown.to_owned()), text);
         }
-        let known = ships.remove(&method).expect("it was found there");
-        if let Some(late) = known.rudder_logged_late() {
+        let ship = ships.remove(&method).expect("it was found there");
+        if let Some(late) = ship.rudder_logged_late() {
             let text = format!("{}; she is steered without it", rudder_logged_late(late));
             warnings.push(Code::LateRudder, Source::File(shown.to_owned()), text);
         }
-        let known = if calm { known.in_calm() } else { Ok(known) };
-        let known = known.map_err(|error| Failure::about(shown, error))?;
-        Ok(Self { known, file: shown.to_owned(), method, records })
+        let ship = if calm { ship.in_calm() } else { Ok(ship) };
+        let ship = ship.map_err(|error| Failure::about(shown, error))?;
+        Ok(Self { ship, file: shown.to_owned(), method, records })
     }
 
-    /// The same after earlier trials that it has not seen, and what is said of them.
+    /// The model updated with earlier trials that it does not contain, and a sentence on them.
     fn after(&self, earlier: &[EarlierModel], warnings: &mut Warnings) -> Result<(Self, String), Failure> {
-        let own = LaterShip { file: &self.file, ship: &self.known, records: &self.records };
-        let after = with_earlier(earlier, own)?;
+        let later = LaterShip { file: &self.file, ship: &self.ship, records: &self.records };
+        let after = with_earlier(earlier, later)?;
         warnings.extend(after.warnings);
         let mut records = self.records.clone();
-        records.extend(earlier.iter().flat_map(|own| own.records.clone()));
-        let said = format!("{}: {}", self.file, prior::sentence(&after.earlier));
-        Ok((Self { known: after.ship, records, ..self.clone() }, said))
+        records.extend(earlier.iter().flat_map(|model| model.records.clone()));
+        let sentence = format!("{}: {}", self.file, prior::sentence(&after.earlier));
+        Ok((Self { ship: after.ship, records, ..self.clone() }, sentence))
     }
 
-    /// The same with what another function makes of the ship, which is given the name of the file.
+    /// The model with its ship replaced by `make`, which gets the name of the file.
     fn with(
         &self,
         make: impl FnOnce(&str, &IdentifiedShip) -> Result<IdentifiedShip, Failure>,
     ) -> Result<Self, Failure> {
-        Ok(Self { known: make(&self.file, &self.known)?, ..self.clone() })
+        Ok(Self { ship: make(&self.file, &self.ship)?, ..self.clone() })
     }
 }
 
-/// What a prediction is made from.
+/// Input of a prediction.
 pub struct PredictInput<'a> {
     /// The ship; several models are a mixture, all alike.
     pub models: &'a [StoredModel],
     /// Earlier trials of the ship, which the models have not seen.
     pub earlier: &'a [EarlierModel],
-    /// The same ship as she was loaded in the records; empty where they need no correction.
+    /// The same ship in the loading of the records; empty where they need no correction.
     pub ballast: &'a [StoredModel],
     /// Records that are held against their prediction.
     pub records: Vec<Trial>,
-    /// What is taken out of the tracks of their turns; `None` for what each shows itself.
+    /// Current removed from the tracks of their turns; `None` for the current of each track.
     pub current: Option<Current>,
-    /// What a sidecar says where there are no records.
+    /// Conditions declared by a sidecar without records.
     pub declared: Declared<'a>,
 }
 
@@ -154,9 +153,9 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
 /// The ships of a mixture that steer manoeuvres.
 struct SteeredShips<'a> {
     mixture: &'a ShipMixture,
-    /// How many are drawn.
+    /// Number of drawn ships.
     draws: usize,
-    /// What messages call the model.
+    /// Name of the model in messages.
     file: &'a str,
 }
 
@@ -178,8 +177,8 @@ impl SteeredShips<'_> {
                     warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
                         let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
                         warning(format!(
-                            "{kind}: {name} is left out: nine tenths of the drawn ships lie from {low} to {high}, so the \
-                             records do not tell it; fit records with positions (north_m, east_m) or sway_m_s"
+                            "{kind}: {name} is left out, because its 90 % interval is {low} to {high}: the records do not determine it; fit \
+                             records with positions (north_m, east_m) or sway_m_s"
                         ))
                     }));
                     predictions.push(prediction);
@@ -207,11 +206,11 @@ pub fn predict(
     warnings: &mut Warnings,
 ) -> Result<PredictDocument, Failure> {
     let PredictInput { models, earlier, ballast, records, current, declared } = input;
-    let (told, said) = after_earlier(models, earlier, warnings)?;
-    let models = if earlier.is_empty() { models } else { &told };
+    let (updated, sentences) = after_earlier(models, earlier, warnings)?;
+    let models = if earlier.is_empty() { models } else { &updated };
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
-    warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|own| validates_nothing(models, own)));
+    warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|trial| validates_nothing(models, trial)));
     let (draws, scale) = (request.draws as usize, TargetScale::of(&request.scale, &records, declared)?);
     let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
@@ -238,14 +237,14 @@ pub fn predict(
         draws,
         drawn: (0..draws as u64).filter(|_| request.draws_file).map(|number| mixture.parameters(number)).collect(),
         calm: request.calm,
-        length_m: particulars.map(|own| own.length),
-        speed_m_s: particulars.map(|own| own.speed),
-        imo: particulars.map(|own| imo::criteria(&predictions, own)).unwrap_or_default(),
+        length_m: particulars.map(|ship| ship.length),
+        speed_m_s: particulars.map(|ship| ship.speed),
+        imo: particulars.map(|ship| imo::criteria(&predictions, ship)).unwrap_or_default(),
         manoeuvres: predictions,
         replays,
         corrected: corrections.iter().flatten().cloned().collect(),
         ballast: files(ballast),
-        earlier_trials: said,
+        earlier_trials: sentences,
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
         seen: mixture.first().seen,
@@ -257,14 +256,14 @@ pub fn predict(
     Ok(document)
 }
 
-/// Models with earlier trials that they have not seen, and what is said of each; nothing where there are none of these.
+/// Models updated with earlier trials, and a sentence on each; empty without earlier trials.
 fn after_earlier(
     models: &[StoredModel],
     earlier: &[EarlierModel],
     warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<String>), Failure> {
-    let told = models.iter().filter(|_| !earlier.is_empty()).map(|model| model.after(earlier, warnings));
-    Ok(told.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
+    let updated = models.iter().filter(|_| !earlier.is_empty()).map(|model| model.after(earlier, warnings));
+    Ok(updated.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
 /// The warning that a record is in one of the models.
@@ -293,7 +292,7 @@ fn fill_form(
     (document.form, document.form_remarks) = (Some(filled.entries), Some(filled.remarks));
 }
 
-/// Some models at another loading, those of the ship at her trials with the same hulls, and what is said of it.
+/// Models at another loading, models in the trial condition with the same hulls, and the document entry of the loading.
 fn at_loading(
     path: &Path,
     models: &[StoredModel],
@@ -302,8 +301,8 @@ fn at_loading(
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
     let loading = DescribedLoading::of_file(path)?;
     let mut draughts = Vec::new();
-    let mut taken = |file: &str, known: &IdentifiedShip| {
-        let (ship, draught) = loading.of_ship(file, known, warnings)?;
+    let mut taken = |file: &str, ship_at_trials: &IdentifiedShip| {
+        let (ship, draught) = loading.of_ship(file, ship_at_trials, warnings)?;
         draughts.push(draught);
         Ok(ship)
     };
@@ -313,11 +312,11 @@ fn at_loading(
     Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }
 
-/// The models that records are held against.
+/// Models that records are compared with.
 struct ReplayedModels<'a> {
-    /// Those at the loading that is predicted for.
+    /// Models at the loading of the prediction.
     full: &'a [StoredModel],
-    /// Those in the condition of the records; empty where they need no correction.
+    /// Models in the condition of the records; empty where they need no correction.
     ballast: &'a [StoredModel],
     /// The name of the loading.
     loading: &'a str,
@@ -336,16 +335,16 @@ impl ReplayedModels<'_> {
         let Self { full, ballast, loading, scale, draws } = *self;
         let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
         let file = file_of(record).0;
-        let own = scaled(if ballast.is_empty() { full } else { ballast })?;
-        let replayed = own.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
+        let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
+        let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
         let Some(replayed) = replayed else {
-            let what = "too few headings at its beginning to say how the ship began";
-            return Err(Failure::about(file, format!("{what}; choose a part under [part] of a sidecar")));
+            let problem = "too few headings at its beginning to determine the initial state";
+            return Err(Failure::about(file, format!("{problem}; choose a part under [part] of a sidecar")));
         };
         if ballast.is_empty() {
             return Ok((replayed, None));
         }
-        let mut correction = match correction::correct(&scaled(full)?, &own, record, loading, draws) {
+        let mut correction = match correction::correct(&scaled(full)?, &replayed_with, record, loading, draws) {
             Ok(correction) => correction,
             Err(error @ PredictError::Lost { .. }) => {
                 let text = format!("{error}; it is not corrected to {loading}");
@@ -356,12 +355,12 @@ impl ReplayedModels<'_> {
         };
         if correction.figures.is_empty() {
             let text = format!(
-                "it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to {loading}"
+                "it has no zig-zag or turn that begins with the first execute, so it is not corrected to {loading}"
             );
             warnings.push(Code::Correction, source_of(record), text);
             return Ok((replayed, None));
         }
-        let mut of_models = correction::differences(&full[0].known, &ballast[0].known, loading);
+        let mut of_models = correction::differences(&full[0].ship, &ballast[0].ship, loading);
         if full[0].method != ballast[0].method {
             of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
         }
@@ -373,20 +372,20 @@ impl ReplayedModels<'_> {
 
 /// The method whose answer is used.
 fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&str>) -> Result<String, Failure> {
-    let known: Vec<&str> = ships.keys().map(String::as_str).collect();
-    if known.is_empty() {
-        let what = "no method has a covariance for this record, so there are no intervals to predict";
+    let methods: Vec<&str> = ships.keys().map(String::as_str).collect();
+    if methods.is_empty() {
+        let problem = "no method has a covariance for this record, so no intervals can be predicted";
         return Err(Failure::about(
             file,
-            format!("{what}; fit again with --method output-error, or with a longer record or several"),
+            format!("{problem}; fit again with --method output-error, or with a longer record or several"),
         ));
     }
     match asked {
-        Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),
+        Some(asked) if methods.contains(&asked) => Ok(asked.to_owned()),
         Some(asked) => Err(Failure::about(
             file,
-            format!("--method {asked}: it has no such answer with a covariance; use one of {}", known.join(", ")),
+            format!("--method {asked}: no such answer with a covariance; use one of {}", methods.join(", ")),
         )),
-        None => Ok(METHODS.into_iter().find(|id| known.contains(id)).unwrap_or(known[0]).to_owned()),
+        None => Ok(METHODS.into_iter().find(|id| methods.contains(id)).unwrap_or(methods[0]).to_owned()),
     }
 }

@@ -11,8 +11,8 @@ use simulate::Simulated;
 use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
 
-/// Most records that one call writes: more are a study, which keeps them as rows.
-const MOST_RECORDS: u64 = 100_000;
+/// Maximum number of records of one call; more are a study, which keeps them as rows.
+const MAX_RECORDS: u64 = 100_000;
 
 /// The trials that are asked for, in their order.
 ///
@@ -50,9 +50,9 @@ pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>
         }
     };
     let count = (cells.len() as u64).saturating_mul(replicates.end - replicates.start);
-    if count > MOST_RECORDS {
+    if count > MAX_RECORDS {
         return Err(Failure::input(format!(
-            "{count} records are asked for; expected at most {MOST_RECORDS}; name a cell with --cell or a trial with --replicate"
+            "{count} records would be written, expected at most {MAX_RECORDS}; name a cell with --cell or a trial with --replicate"
         )));
     }
     Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| Task { cell, replicate })).collect())
@@ -60,13 +60,13 @@ pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>
 
 /// A simulated record as it is written.
 pub struct RecordFiles {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The record, as CSV.
     pub table: Vec<u8>,
     /// Its sidecar, where the ship has a length or a calm is declared: the table does not hold them.
     pub sidecar: Option<String>,
-    /// What is true of it, as JSON.
+    /// Its true values, as JSON.
     pub truth: String,
 }
 

@@ -1,4 +1,4 @@
-//! Every record of several identified alone: whether K and T of a first-order response depend on the amplitude.
+//! Every record identified alone, to show whether K and T of a first-order response depend on the amplitude.
 
 use document::single_records::{Amplitude, SingleRecord, SingleRecords};
 use identify::{Estimate, Identifier};
@@ -27,17 +27,17 @@ fn amplitude(trial: &Trial) -> Option<Amplitude> {
 pub fn mean_amplitude(trials: &[Trial]) -> Option<Amplitude> {
     let all: Vec<Amplitude> = trials.iter().filter_map(amplitude).collect();
     Some(Amplitude {
-        rudder_deg: mean(all.iter().map(|own| own.rudder_deg))?,
-        heading_deg: mean(all.iter().map(|own| own.heading_deg))?,
+        rudder_deg: mean(all.iter().map(|amplitude| amplitude.rudder_deg))?,
+        heading_deg: mean(all.iter().map(|amplitude| amplitude.heading_deg))?,
     })
 }
 
 fn alone(trial: &Trial, record: &str, method: &dyn Identifier) -> Option<SingleRecord> {
-    let of = |estimate: Estimate| {
+    let entry = |estimate: Estimate| {
         let amplitude = amplitude(trial)?;
         Some(SingleRecord { record: record.to_owned(), amplitude, k_per_s: estimate.K(), t_s: estimate.T() })
     };
-    method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k_per_s.value.is_finite())
+    method.identify(std::slice::from_ref(trial)).ok().and_then(entry).filter(|fit| fit.k_per_s.value.is_finite())
 }
 
 /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
@@ -62,22 +62,22 @@ pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<Singl
     best.filter(|best| best.records.len() > 1)
 }
 
-/// Probability below which differences are none of chance.
-const LEVEL: f64 = 0.05;
+/// Significance level of the difference between records.
+const SIGNIFICANCE: f64 = 0.05;
 
 /// Whether K and T of some records are the same: the sum of their squared distances from the weighted means, in
 /// standard deviations, is χ² of 2 (n − 1) degrees of freedom.
 fn agree(records: &[SingleRecord]) -> Option<bool> {
-    let deviation = |of: fn(&SingleRecord) -> Quantity| -> Option<f64> {
-        let all = records.iter().map(|own| Some((of(own).value, of(own).sd.filter(|sd| *sd > 0.0)?.powi(-2))));
+    let deviation = |pick: fn(&SingleRecord) -> Quantity| -> Option<f64> {
+        let all = records.iter().map(|fit| Some((pick(fit).value, pick(fit).sd.filter(|sd| *sd > 0.0)?.powi(-2))));
         let all: Vec<(f64, f64)> = all.collect::<Option<_>>()?;
         let weight: f64 = all.iter().map(|(_, weight)| weight).sum();
         let middle = all.iter().map(|(value, weight)| value * weight).sum::<f64>() / weight;
         Some(all.iter().map(|(value, weight)| weight * (value - middle).powi(2)).sum())
     };
-    let sum = deviation(|own| own.k_per_s)? + deviation(|own| own.t_s)?;
+    let sum = deviation(|record| record.k_per_s)? + deviation(|record| record.t_s)?;
     let chance = ChiSquared::new(2.0 * (records.len() as f64 - 1.0)).ok()?;
-    Some(chance.sf(sum) >= LEVEL)
+    Some(chance.sf(sum) >= SIGNIFICANCE)
 }
 
 #[cfg(test)]

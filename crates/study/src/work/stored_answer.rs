@@ -1,4 +1,4 @@
-//! What a `fit.json` or `trace.json` knows of a ship.
+//! The identified ships in a `fit.json` or `trace.json`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,13 +11,13 @@ use document::trace::SCHEMA as TRACE_SCHEMA;
 use serde_json::Value;
 use trial::file;
 
-/// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
+/// A stored model; the covariances of the longest mixtures have a hundredth of this size.
 const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
 
-/// What a model is read from.
+/// Expected documents, for messages.
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
-/// What the text of a document holds.
+/// Content of a document.
 pub struct StoredAnswer {
     /// The ships of every method of a fit with a covariance; that of a trace, alone, as [`TRACE`].
     pub ships: BTreeMap<String, IdentifiedShip>,
@@ -47,21 +47,21 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
         Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
         Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
         other => {
-            let known = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
+            let expected = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
             let command = other.and_then(|schema| schema.split('/').next());
             let cure = match command.filter(|command| ["fit", TRACE].contains(command)) {
                 Some(command) => format!("make it again with `study {command}`"),
                 None => EXPECTED.to_owned(),
             };
-            return Err(refuse(format!("schema = {}, {known}; {cure}", value["schema"])));
+            return Err(refuse(format!("schema = {}, {expected}; {cure}", value["schema"])));
         }
     };
-    let known = value.get(key).cloned().ok_or_else(|| {
+    let stored = value.get(key).cloned().ok_or_else(|| {
         refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
     })?;
     let ships: BTreeMap<String, IdentifiedShip> = match command {
-        TRACE => [(TRACE.to_owned(), serde_json::from_value(known).map_err(unread)?)].into(),
-        _ => serde_json::from_value(known).map_err(unread)?,
+        TRACE => [(TRACE.to_owned(), serde_json::from_value(stored).map_err(unread)?)].into(),
+        _ => serde_json::from_value(stored).map_err(unread)?,
     };
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
     let because = value["verdict"]["because"].as_str().unwrap_or("its verdict does not say why");
@@ -74,8 +74,8 @@ fn records_of(document: &Value, key: &str) -> BTreeMap<String, String> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(str::to_owned);
     let fitted = list(&document[key]).into_iter().filter(|record| record["held_out"] != true);
-    let own = fitted.filter_map(|record| Some((text(&record["sha256"])?, text(&record["file"])?)));
+    let records = fitted.filter_map(|record| Some((text(&record["sha256"])?, text(&record["file"])?)));
     let of_prior = |model: Value| model["records"].as_object().cloned().unwrap_or_default();
     let priors = list(&document["earlier_trials"]["models"]).into_iter().flat_map(of_prior);
-    own.chain(priors.filter_map(|(sha256, file)| Some((sha256, text(&file)?)))).collect()
+    records.chain(priors.filter_map(|(sha256, file)| Some((sha256, text(&file)?)))).collect()
 }

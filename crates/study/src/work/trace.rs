@@ -34,7 +34,7 @@ impl TraceResult {
     /// The curves, as whoever reads the files has them.
     pub fn curves(&self) -> Result<TraceCurves, Failure> {
         TraceCurves::from_tables(&self.document, |name| {
-            let table = self.tables.iter().find(|(own, _)| own == name).map(|(_, text)| text.clone());
+            let table = self.tables.iter().find(|(file, _)| file == name).map(|(_, text)| text.clone());
             Ok((table.unwrap_or_default(), name.to_owned()))
         })
     }
@@ -74,7 +74,7 @@ impl Watcher for TraceWatch {
     }
 }
 
-/// What is said where a person did not wait for the checks.
+/// Message of a trace interrupted during its checks.
 pub const STOPPED: &str = "stopped before every record had been left out in turn; all other results are there";
 
 /// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
@@ -82,38 +82,38 @@ pub const STOPPED: &str = "stopped before every record had been left out in turn
 /// Fails when the records cannot be brought to one scale, when the base cannot be fitted, when what is asked for
 /// cannot be in the model, and when there are priors and no hull can be fitted.
 pub fn trace(
-    [records, others]: [&[Trial]; 2],
+    [records, validation]: [&[Trial]; 2],
     settings: &Settings,
     priors: &[EarlierModel],
     quiet: bool,
     warnings: &mut Warnings,
 ) -> Result<TraceResult, Failure> {
-    let together = scales::together(records, others)?;
+    let together = scales::together(records, validation)?;
     warnings.extend(earlier::check(priors, &together.trials)?);
     let settings = &Settings { earlier: earlier::hulls(priors), ..settings.clone() };
     let watch = TraceWatch {
         busy: progress::busy("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
     };
-    let analysis = ::trace::watched(&together.trials, &together.others, settings, &watch);
+    let analysis = ::trace::watched(&together.trials, &together.held_out, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
-    let (scales, RescaledRecords { trials, others: held_out, .. }) = (together.sentence(), together);
+    let (scales, RescaledRecords { trials, held_out, .. }) = (together.sentence(), together);
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(no_track(&shown));
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
-    let all = records.iter().chain(others);
+    let all = records.iter().chain(validation);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
     let innovations = analysis.innovations();
-    let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
+    let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
         name: name.clone(),
-        file: file_of(own).0.to_owned(),
-        sha256: file_of(own).1.to_owned(),
+        file: file_of(trial).0.to_owned(),
+        sha256: file_of(trial).1.to_owned(),
         held_out: number >= trials.len(),
         curves: format!("replay{}.csv", suffix(&names, number)),
         innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
-        length_m: own.particulars().map(|ship| ship.length),
-        speed_m_s: own.particulars().map(|ship| ship.speed),
+        length_m: trial.particulars().map(|ship| ship.length),
+        speed_m_s: trial.particulars().map(|ship| ship.speed),
     };
     let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
     let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
@@ -144,16 +144,16 @@ pub fn trace(
 /// The tables of the records and of their innovations under the names of their files.
 fn tables(
     analysis: &Analysis,
-    [fitted, others]: [&[Trial]; 2],
+    [fitted, held_out]: [&[Trial]; 2],
     entries: &[RecordEntry],
     innovations: &[Innovations],
 ) -> Vec<(String, String)> {
-    let compared = fitted.iter().chain(others).zip(analysis.identification.iter().chain(&analysis.validation));
+    let compared = fitted.iter().chain(held_out).zip(analysis.identification.iter().chain(&analysis.validation));
     let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
     let tables = entries.iter().map(|entry| entry.curves.clone()).zip(tables);
     let innovations = entries.iter().zip(innovations);
     let innovations =
-        innovations.filter_map(|(entry, own)| Some((entry.innovations.clone()?, curves::innovations(own))));
+        innovations.filter_map(|(entry, series)| Some((entry.innovations.clone()?, curves::innovations(series))));
     tables.chain(innovations).collect()
 }
 
@@ -168,8 +168,8 @@ fn missing_moments(
     for ((record, slug), missing) in entries.iter().zip(slugs).zip(analysis.missing_moments()) {
         let Some(missing) = missing else { continue };
         let stem = format!("missing-moment-{slug}");
-        let words = [record.file.as_str(), &record.name, &stem];
-        let entry = missing_moment::entry(&missing, words, analysis.document.verdict, explains);
+        let labels = [record.file.as_str(), &record.name, &stem];
+        let entry = missing_moment::entry(&missing, labels, analysis.document.verdict, explains);
         tables.push((entry.moment.clone(), missing_moment::over_time(&missing)));
         tables.push((entry.curves.clone(), missing_moment::over_channels(&missing)));
         moments.push(entry);
@@ -189,20 +189,20 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
     Failure::about(file_of(first).0, format!("{error}{why}"))
 }
 
-/// The trial that would tell most, in one sentence.
+/// Sentence on the most informative next trial.
 fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
     let prospects = analysis.prospects(&planned::trials(analysis, trials));
     let Some(best) = prospects.first() else {
-        return String::from("None of the standard manoeuvres can be steered with the fitted model.");
+        return String::from("The fitted model cannot be steered through any standard manoeuvre.");
     };
     let pairs = |pairs: &[[String; 2]]| -> String {
-        pairs.iter().map(|[one, other]| format!("{one} from {other}")).collect::<Vec<_>>().join(", ")
+        pairs.iter().map(|[a, b]| format!("{a} from {b}")).collect::<Vec<_>>().join(", ")
     };
     let gains = [(pairs(&best.separated), "separate"), (best.revealed.join(", "), "show")];
     let gains: Vec<String> =
-        gains.iter().filter(|(what, _)| !what.is_empty()).map(|(what, verb)| format!("{verb} {what}")).collect();
+        gains.iter().filter(|(pairs, _)| !pairs.is_empty()).map(|(pairs, verb)| format!("{verb} {pairs}")).collect();
     let gains = match gains.as_slice() {
-        [] => String::from("tells most of the standard manoeuvres"),
+        [] => String::from("is the most informative of the standard manoeuvres"),
         gains => format!("would {}", gains.join(" and ")),
     };
     let limits = match best.still_alike.as_slice() {
@@ -212,7 +212,7 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
     format!("A {} {gains}{limits}.", best.name)
 }
 
-/// How the records of a request are analysed.
+/// Settings of the analysis of a request.
 ///
 /// Fails with the name of an effect that is not known.
 pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
@@ -222,12 +222,12 @@ pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
 
 /// The records of a request without the channels that are withheld.
 pub fn without(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Trial> {
-    let withheld: Vec<Channel> = request.without.iter().flat_map(|what| channels(*what)).copied().collect();
+    let withheld: Vec<Channel> = request.without.iter().flat_map(|channel| channels(*channel)).copied().collect();
     trials.into_iter().map(|trial| trial.without(&withheld)).collect()
 }
 
-fn channels(what: Withheld) -> &'static [Channel] {
-    match what {
+fn channels(channel: Withheld) -> &'static [Channel] {
+    match channel {
         Withheld::Wind => {
             &[Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueSpeed, Channel::WindTrueFrom]
         }

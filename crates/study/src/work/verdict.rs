@@ -1,4 +1,4 @@
-//! Which answer of a fit is to be taken, and what its residual says.
+//! Verdict of a fit: the recommended answer, or why none can be taken.
 
 use document::fit::{Belief, Reason, VerdictEntry};
 use document::method::MethodEntry;
@@ -11,25 +11,25 @@ use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::Trial;
 
-/// A replay this many times worse than the best is set apart.
-const FAR_WORSE: f64 = 10.0;
+/// Maximum ratio of a replay error to that of the best; beyond it a method is listed apart.
+const MAX_ERROR_RATIO: f64 = 10.0;
 
-/// Share of the variance of the headings that a replay has to explain. First-order responses to sound records of ships
-/// and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
-const EXPLAINED: f64 = 0.9;
+/// Minimum share of the variance of the headings that a replay has to explain. First-order responses to sound records
+/// of ships and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
+const MIN_EXPLAINED_SHARE: f64 = 0.9;
 
-/// The methods that an answer of another one is held against.
+/// Reference methods for contradictions.
 const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Which answer is to be taken; `entries` are those of the answers.
+/// Verdict over the answers; `entries` are their document entries.
 pub fn of_answers(
     trials: &[Trial],
     answers: &[(MethodEntry, Option<Estimate>)],
     entries: &[MethodEntry],
 ) -> Option<VerdictEntry> {
-    let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
+    let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    let [nearest, likely] = USUAL.map(of);
+    let [nearest, likely] = USUAL.map(estimate_of);
     let mut verdict = taken(&Recommendation::of(trials, nearest, likely), entries, straight)?;
     verdict.because = disbelief(&verdict, entries, straight);
     if verdict.because.is_some() {
@@ -47,7 +47,7 @@ pub fn of_answers(
 fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Option<f64>) -> Option<String> {
     let taken = entries.iter().find(|entry| entry.method == verdict.method)?;
     let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
-    let [k, t] = taken.parameters.map(|own| [own.k_per_s, own.t_s])?;
+    let [k, t] = taken.parameters.map(|parameters| [parameters.k_per_s, parameters.t_s])?;
     let left_deg = answered().filter_map(|entry| entry.heading_rmse_deg).fold(f64::INFINITY, f64::min);
     let explained = scatter_deg.map_or(1.0, |scatter| 1.0 - (left_deg / scatter).powi(2));
     let failed = |id: &&str| entries.iter().any(|entry| entry.id() == *id && entry.parameters.is_none());
@@ -55,31 +55,28 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     let is_unstable = t.ci95.is_some_and(|[_, high]| high < 0.0);
     if let Some(straight) = verdict.straight_lines_deg {
         return Some(format!(
-            "the nearest replay, that of {}, leaves {}° of the headings, and a straight line, without any rudder, {}°",
+            "the best replay ({}) misses the headings by {}° (rms), and a straight line without any rudder only by {}°",
             verdict.method,
             fixed(left_deg, 1),
             fixed(straight, 1)
         ));
     }
-    if explained.is_nan() || explained < EXPLAINED {
-        let [percent, least] = [explained.max(0.0), EXPLAINED].map(|share| fixed(100.0 * share, 0));
+    if explained.is_nan() || explained < MIN_EXPLAINED_SHARE {
+        let [percent, least] = [explained.max(0.0), MIN_EXPLAINED_SHARE].map(|share| fixed(100.0 * share, 0));
         return Some(format!(
-            "the nearest replay explains {percent} % of the variance of the heading (it leaves {}°), and K and T of a ship explain {least} % \
-             or more",
+            "the best replay explains {percent} % of the variance of the heading (error {}° rms), and K and T of a ship explain {least} % or more",
             fixed(left_deg, 1)
         ));
     }
     if !is_usual {
         return Some(format!(
-            "{} found no answer, and {} alone, which noise and weather bias, is none",
+            "{} found no answer, and noise and weather bias that of {}",
             USUAL.join(" and "),
             verdict.method
         ));
     }
     ((k.value <= 0.0 || t.value <= 0.0) && !is_unstable).then(|| {
-        String::from(
-            "K and T are below zero, as of a ship that is not course-stable, and their intervals do not show that she is",
-        )
+        String::from("K and T are below zero, as for a course-unstable ship, and the interval of T does not confirm it")
     })
 }
 
@@ -90,13 +87,13 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
     let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
     let is_own = |entry: &&MethodEntry| entry.id() == recommendation.method();
-    let nearest = answered().min_by(|one, other| rms(one).total_cmp(&rms(other)))?;
+    let nearest = answered().min_by(|a, b| rms(a).total_cmp(&rms(b)))?;
     let straight_lines_deg = straight.filter(|straight| rms(&nearest) >= *straight);
     let taken = answered().find(is_own).filter(|_| straight_lines_deg.is_none());
     let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
     let taken = taken.unwrap_or(nearest);
-    let is_far = |entry: &&MethodEntry| rms(entry) > FAR_WORSE * rms(&nearest) && entry.method != taken.method;
-    let degrees = |of: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(of(lack)));
+    let is_far = |entry: &&MethodEntry| rms(entry) > MAX_ERROR_RATIO * rms(&nearest) && entry.method != taken.method;
+    let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(size(lack)));
     let contradicts = |entry: &&MethodEntry| USUAL.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
     Some(VerdictEntry {
         believe: Belief::Yes,
@@ -117,11 +114,11 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
 }
 
 /// Whether the intervals of K or of T have nothing in common.
-fn are_apart(one: &MethodEntry, other: &MethodEntry) -> bool {
-    let (Some(one), Some(other)) = (one.parameters, other.parameters) else { return false };
-    [(one.k_per_s, other.k_per_s), (one.t_s, other.t_s)]
+fn are_apart(a: &MethodEntry, b: &MethodEntry) -> bool {
+    let (Some(a), Some(b)) = (a.parameters, b.parameters) else { return false };
+    [(a.k_per_s, b.k_per_s), (a.t_s, b.t_s)]
         .into_iter()
-        .any(|(one, other)| one.ci95.zip(other.ci95).is_some_and(|([low, high], [from, to])| high < from || to < low))
+        .any(|(a, b)| a.ci95.zip(b.ci95).is_some_and(|([low, high], [from, to])| high < from || to < low))
 }
 
 #[cfg(test)]
@@ -147,20 +144,20 @@ mod tests {
             [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
         };
         let nearest = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
-        let told = |entries: &[MethodEntry], scatter: f64| {
+        let reason = |entries: &[MethodEntry], scatter: f64| {
             let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
             disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
         };
-        assert_eq!(told(&usual(0.1, 40.0, None), 20.0), "");
-        assert_eq!(told(&usual(-0.1, -40.0, Some([-60.0, -30.0])), 20.0), "");
-        assert!(told(&usual(0.1, 40.0, None), 5.0).contains("explains 84 % of the variance"));
-        assert!(told(&usual(-0.1, -40.0, Some([-90.0, 20.0])), 20.0).contains("below zero"));
-        let mut others = usual(0.1, 40.0, None).to_vec();
-        others[0] = entry("output-error", None);
-        others.push(entry("least-squares", Some([Quantity::bare(0.1), Quantity::bare(40.0)])));
-        assert!(told(&others, 20.0).contains("found no answer"));
-        assert!(told(&usual(0.1, 40.0, None), 1.9).contains("a straight line"));
-        assert_eq!(told(&others[2..], 20.0), "");
+        assert_eq!(reason(&usual(0.1, 40.0, None), 20.0), "");
+        assert_eq!(reason(&usual(-0.1, -40.0, Some([-60.0, -30.0])), 20.0), "");
+        assert!(reason(&usual(0.1, 40.0, None), 5.0).contains("explains 84 % of the variance"));
+        assert!(reason(&usual(-0.1, -40.0, Some([-90.0, 20.0])), 20.0).contains("below zero"));
+        let mut biased = usual(0.1, 40.0, None).to_vec();
+        biased[0] = entry("output-error", None);
+        biased.push(entry("least-squares", Some([Quantity::bare(0.1), Quantity::bare(40.0)])));
+        assert!(reason(&biased, 20.0).contains("found no answer"));
+        assert!(reason(&usual(0.1, 40.0, None), 1.9).contains("a straight line"));
+        assert_eq!(reason(&biased[2..], 20.0), "");
     }
 
     /// A method without an interval contradicts by its replay.
@@ -178,13 +175,13 @@ mod tests {
             ..MethodEntry::default()
         };
         let taken = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
-        let told = |rms: f64, straight: f64| {
+        let outcome = |rms: f64, straight: f64| {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();
             let verdict = super::taken(&taken, &all, Some(straight)).expect("an answer");
             (verdict.contradicted_by, verdict.set_apart.len(), verdict.straight_lines_deg)
         };
-        assert_eq!(told(38.0, 2.0), (Some("maximum-likelihood".into()), 2, None));
-        assert_eq!(told(18.0, 1.9), (None, 0, Some(1.9)));
+        assert_eq!(outcome(38.0, 2.0), (Some("maximum-likelihood".into()), 2, None));
+        assert_eq!(outcome(18.0, 1.9), (None, 0, Some(1.9)));
     }
 }

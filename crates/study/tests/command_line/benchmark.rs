@@ -98,7 +98,7 @@ fn what_cannot_be_run_is_refused_in_one_message() {
     desk.file("far/away.csv", format!("{}\n", zig_zag_csv()));
     let said = ["far/away.csv: it is another file: its SHA-256 begins with ", "far/lost.csv: there is no such file"];
     desk.run(&["bench", "found.toml", "--out", "o"])
-        .is_refused(2, &[&["no question to ask", "KEMPF_DATA"], &said[..]].concat());
+        .is_refused(2, &[&["there is nothing to score", "KEMPF_DATA"], &said[..]].concat());
     desk.run(&["found.toml"]).is_refused(2, &[&["none of its records can be used", "KEMPF_DATA"], &said[..]].concat());
 }
 

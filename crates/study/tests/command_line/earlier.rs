@@ -56,7 +56,10 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     let fit = ["fit", "next.csv", "--method", "output-error", "--prior", "f/fit.json", "--out", "g"];
     let run = desk.run(&[&fit[..], &KVLCC2].concat());
     let said = &run.is_done().out;
-    assert!(said.contains("prior: f/fit.json (the same ship, deviations × 1.5); the records agree with it"), "{said}");
+    assert!(
+        said.contains("prior: f/fit.json (the same ship, standard deviations × 1.5); the records agree with it"),
+        "{said}"
+    );
     let (before, after) = (desk.json("f/fit.json"), desk.json("g/fit.json"));
     assert_eq!(before["earlier_trials"], Value::Null);
     let entry = &after["earlier_trials"];
@@ -67,7 +70,7 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     // A model of her, 7 m long, at another Froude number.
     let model = ["--length-m", "7", "--speed-m-s", "0.9", "--out", "h"];
     let run = desk.run(&[&fit[..6], &model].concat());
-    assert!(run.is_done().out.contains("(a ship of another length, deviations × 2)"), "{}", run.out);
+    assert!(run.is_done().out.contains("(a ship of another length, standard deviations × 2)"), "{}", run.out);
     assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
     // The model of the second record holds the first one, too.
     let both = ["fit", "first.csv", "--prior", "g/fit.json"];
@@ -105,7 +108,7 @@ fn a_prediction_takes_a_prior() {
     let ([refitted, narrow], _) = advance("both/fit.json", &[]);
     let ([weighed, found], said) = advance("g/fit.json", &["--prior", "f/fit.json"]);
     assert!(
-        said.contains("g/fit.json: prior: f/fit.json (the same ship, deviations × 1.5); the records agree"),
+        said.contains("g/fit.json: prior: f/fit.json (the same ship, standard deviations × 1.5); the records agree"),
         "{said}"
     );
     assert!(desk.text("p/report.md").contains("prior: f/fit.json"));

@@ -124,7 +124,7 @@ fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
     assert!(desk.text("c/trial-form.md").contains("f/fit.json at the loading of full.toml"));
     let report = desk.text("c/report.md");
     assert!(
-        report.contains("## Corrected to the loading of full.toml") && !report.contains("full load does"),
+        report.contains("## Corrected to the loading of full.toml") && !report.contains("the model at full load"),
         "{report}"
     );
 }

@@ -293,7 +293,7 @@ fn studies_are_gathered_on_one_page() {
     assert!(run.code == Some(2) && run.err.contains("no nothing.png; figures there: coverage, errors"), "{}", run.err);
     desk.run(&["report", "results/one", "results"]).is_refused(2, &["beside each other", "--out"]);
     desk.run(&["report", "results/one", "nowhere", "--out", "page"])
-        .is_refused(2, &["nowhere", "run a scenario first"]);
+        .is_refused(2, &["nowhere", "give folders of studies"]);
     desk.run(&[&both[..], &["--format", "csv"]].concat()).is_refused(2, &["--format", "give one folder"]);
     std::fs::remove_dir_all(desk.path("results/two")).expect("it was there");
     desk.run(&["results/one/manifest.toml", "--out", "two", "--quiet"]).is_done();

@@ -331,14 +331,18 @@ fn every_measured_record_can_be_identified() {
         (
             "esso_osaka",
             "zigzag_13_57_45",
-            "maximum-likelihood contradicts this answer: a random moment explains part of the manoeuvre",
+            "Not used: maximum-likelihood, because it explains part of the manoeuvre as random gusts",
         ),
         // Here it has no interval, and a replay 66° off.
-        ("esso_osaka", "zigzag_13_04_24", "° from output-error, because its replay is the nearest to the headings"),
+        (
+            "esso_osaka",
+            "zigzag_13_04_24",
+            "° from output-error, because its replay is closest to the recorded headings",
+        ),
         (
             "esso_osaka",
             "turning_sep14_13_51_45",
-            "No K and T can be taken from this record, because the nearest replay, that of least-squares, leaves",
+            "No K and T can be taken from this record, because the best replay (least-squares) misses the headings by",
         ),
         ("kvlcc2_hsva", "zigzag_20_10_s", "from output-error"),
         ("kvlcc2_hsva", "zigzag_10_10_s", "from output-error"),
