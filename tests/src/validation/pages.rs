@@ -1,6 +1,8 @@
 //! The documents made from the checks: VALIDATION.md, a row a section, and docs/validation.csv, a row a check.
 
-use super::{BOUND, Check, DEFINITION, INDEPENDENT, Section, Tolerance};
+use std::path::Path;
+
+use super::{BOUND, Check, DEFINITION, INDEPENDENT, Section, Tolerance, sections};
 
 const PREFACE: &str = "\
 Numbers of this workspace stand beside reference numbers; each is found by the simulation or identification that a user \
@@ -98,6 +100,14 @@ fn summary(checks: &[&Check]) -> String {
 
 fn of_part<'a>(section: &'a Section, is_of: fn(&str) -> bool) -> Vec<&'a Check> {
     section.checks.iter().filter(|check| is_of(check.source)).collect()
+}
+
+/// Writes both files.
+pub fn write() -> std::io::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let sections = sections();
+    std::fs::write(root.join("VALIDATION.md"), markdown(&sections))?;
+    std::fs::write(root.join("docs/validation.csv"), table(&sections))
 }
 
 /// VALIDATION.md.
