@@ -1,5 +1,5 @@
-//! The page of the constants that stand in the source of fits, traces and predictions: values and first sentences of their
-//! comments. A change of a constant changes the page.
+//! The page of the constants that stand in the source of fits, traces and predictions: values and first sentences of
+//! their comments. A change of a constant changes the page.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Every published or independently computed number against ours, and VALIDATION.md and docs/validation.csv against the program that writes it.
+//! Every published or independently computed number against ours, and VALIDATION.md and docs/validation.csv against the
+//! program that writes them.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

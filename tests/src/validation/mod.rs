@@ -1,9 +1,9 @@
 //! Validation as data: every published or independently computed number, ours beside it, and how far they may differ.
 //!
 //! A [`Check`] is a value; [`sections`] computes all of them by real simulation and identification, [`pages`] writes
-//! VALIDATION.md and docs/validation.csv from them, and a test asserts that every one holds. Sources are named by author and year; "independent
-//! computation" is a program in Python (numpy and scipy) written for the project's technical reference, which shares no
-//! code with this workspace.
+//! VALIDATION.md and docs/validation.csv from them, and a test asserts that every one holds. Sources are named
+//! by author and year; "independent computation" is a program in Python (numpy and scipy) written for the project's
+//! technical reference, which shares no code with this workspace.
 
 pub mod characteristic_points;
 pub mod estimators;
