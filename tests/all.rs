@@ -3,6 +3,7 @@
 mod architecture;
 mod benchmark;
 mod claims;
+mod constants;
 mod effects;
 mod golden;
 mod identifiers;

@@ -10,7 +10,7 @@ const LONGEST_FUNCTION: usize = 60;
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
     code: 67_428,
-    tests: 30_456,
+    tests: 30_769,
     long_functions: 0,
     shared_types: 8,
     packages: 298,

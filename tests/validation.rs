@@ -1,10 +1,11 @@
-//! Every published or independently computed number against ours, and VALIDATION.md against the program that writes it.
+//! Every published or independently computed number against ours, and VALIDATION.md and docs/validation.csv against the
+//! program that writes them.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use kempf_tests::validation::{self, Section};
+use kempf_tests::validation::{self, Section, pages};
 
 /// Computed once for the tests of this file.
 fn sections() -> &'static [Section] {
@@ -31,14 +32,18 @@ fn no_check_is_made_twice_and_none_is_missing() {
     assert!(sections().iter().all(|section| !section.checks.is_empty()));
 }
 
-#[test]
-fn validation_md_is_what_the_program_prints() {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../VALIDATION.md");
-    let kept = std::fs::read_to_string(&path).expect("VALIDATION.md is at the root of the repository");
-    let made = validation::markdown(sections());
+fn check_file(path: &str, made: &str) {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
+    let kept = std::fs::read_to_string(root.join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
     let differing = made.lines().zip(kept.lines()).find(|(made, kept)| made != kept);
     assert!(
         made == kept,
-        "VALIDATION.md is not what `cargo run -p kempf-tests --bin validation` prints; first different line: {differing:?}"
+        "{path} is not what `cargo run -p kempf-tests --bin validation` writes; first different line: {differing:?}"
     );
+}
+
+#[test]
+fn documents_are_what_the_program_writes() {
+    check_file("VALIDATION.md", &pages::markdown(sections()));
+    check_file("docs/validation.csv", &pages::table(sections()));
 }

@@ -16,7 +16,7 @@ pub fn find(py: Python<'_>, logs: Vec<String>, options: Vec<String>) -> PyResult
     patiently(py, move || {
         let asked: FindRequest = request(options.into_iter().chain([String::from("--")]).chain(logs).collect())?;
         let mut warnings = Warnings::default();
-        let answer = found(&asked, &mut warnings)?;
+        let answer = find_answer(&asked, &mut warnings)?;
         Ok((documents::answer_text(&answer)?, sentences(&warnings.ranked())))
     })
 }

@@ -1,7 +1,5 @@
-//! Prints VALIDATION.md: every published number this workspace is held against, beside its own.
+//! Writes VALIDATION.md and docs/validation.csv: every reference number this workspace is held against, beside its own.
 
-use kempf_tests::validation;
-
-fn main() {
-    print!("{}", validation::markdown(&validation::sections()));
+fn main() -> std::io::Result<()> {
+    kempf_tests::validation::pages::write()
 }

@@ -1,9 +1,9 @@
 //! Validation as data: every published or independently computed number, ours beside it, and how far they may differ.
 //!
-//! A [`Check`] is a value; [`sections`] computes all of them by real simulation and identification, [`markdown`] writes
-//! VALIDATION.md from them, and a test asserts that every one holds. Sources are named by author and year; "independent
-//! computation" is a program in Python (numpy and scipy) written for the project's technical reference, which shares no
-//! code with this workspace.
+//! A [`Check`] is a value; [`sections`] computes all of them by real simulation and identification, [`pages`] writes
+//! VALIDATION.md and docs/validation.csv from them, and a test asserts that every one holds. Sources are named
+//! by author and year; "independent computation" is a program in Python (numpy and scipy) written for the project's
+//! technical reference, which shares no code with this workspace.
 
 pub mod characteristic_points;
 pub mod estimators;
@@ -12,11 +12,11 @@ pub mod fourier;
 pub mod hulls;
 pub mod information;
 pub mod likelihood;
+pub mod pages;
+pub mod published;
 pub mod residuals;
 pub mod table_1;
 pub mod zig_zags_of_hulls;
-
-use std::collections::BTreeSet;
 
 /// How far our number may lie from the published one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,47 +91,15 @@ impl Check {
         }
     }
 
-    fn row(&self) -> String {
-        let Self { what, source, published, decimals, ours, unit, .. } = self;
-        let blank = if unit.is_empty() { "" } else { " " };
-        let (published, own) = (written(*published, *decimals), written(*ours, decimals + 1));
+    /// Size of the difference as a share of the tolerance; `None` against a lower limit.
+    pub fn share_of_tolerance(&self) -> Option<f64> {
         let tolerance = match self.tolerance {
-            Tolerance::Absolute(most) => format!("{}{blank}{unit}", shortest(most)),
-            Tolerance::Relative(share) => format!("{} %", shortest(100.0 * share)),
-            Tolerance::AtLeast => "at least".to_owned(),
+            Tolerance::Absolute(most) => most,
+            Tolerance::Relative(share) => share * self.published.abs(),
+            Tolerance::AtLeast => return None,
         };
-        let difference = match self.tolerance {
-            Tolerance::AtLeast => "–".to_owned(),
-            _ => signed(self.difference(), decimals + 1),
-        };
-        let verdict = if self.holds() { "agrees" } else { "**differs**" };
-        format!(
-            "| {what} | {source} | {published}{blank}{unit} | {own}{blank}{unit} | {difference} | {tolerance} | {verdict} |"
-        )
+        Some(self.difference().abs() / tolerance)
     }
-}
-
-/// A number with fixed decimals, or in powers of ten where those would be many; never "-0.00".
-fn written(value: f64, decimals: usize) -> String {
-    if value != 0.0 && value.abs() >= 1e5 {
-        return format!("{value:.0e}");
-    }
-    let text = format!("{value:.decimals$}");
-    if text.starts_with('-') && text[1..].chars().all(|c| c == '0' || c == '.') { text[1..].to_owned() } else { text }
-}
-
-/// A difference with its sign; none for one that is zero to its last digit.
-fn signed(value: f64, decimals: usize) -> String {
-    let text = written(value, decimals);
-    let is_zero = text.chars().all(|c| c == '0' || c == '.');
-    if value > 0.0 && !is_zero { format!("+{text}") } else { text }
-}
-
-/// A tolerance in at most three digits.
-fn shortest(value: f64) -> String {
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
-    let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// Checks of one kind.
@@ -148,6 +116,8 @@ pub struct Section {
 /// Every section, computed now.
 pub fn sections() -> Vec<Section> {
     vec![
+        published::limits(),
+        published::hull_coefficients(),
         first_order::section(),
         fourier::section(),
         characteristic_points::section(),
@@ -160,57 +130,6 @@ pub fn sections() -> Vec<Section> {
         residuals::section(),
         table_1::section(),
     ]
-}
-
-const PREFACE: &str = "\
-Reference numbers stand beside the number that this workspace finds by the simulation or identification a user would run. \
-Three parts keep apart where a reference number comes from. *Difference* is ours less the reference; *tolerance* is what the \
-difference may be, and each section says where its tolerances come from. A reference number has the digits it was given \
-with, ours has one more. Tests assert every line, and that this file is what the program writes.";
-
-/// A part of VALIDATION.md: heading, what its reference numbers are, and whether a source is of it.
-type Part = (&'static str, &'static str, fn(&str) -> bool);
-
-/// The parts, of which every number belongs to one.
-const PARTS: [Part; 3] = [
-    ("Published by others", "Numbers that stand in print.", |source| source != INDEPENDENT && !is_theory(source)),
-    ("By theory", "Numbers that follow from a closed form, a bound or a definition.", is_theory),
-    (
-        "Computed independently",
-        "Numbers of a Python program (numpy, scipy) made for the project's technical reference, which shares no code with \
-         this workspace. They are not published.",
-        |source| source == INDEPENDENT,
-    ),
-];
-
-fn is_theory(source: &str) -> bool {
-    [BOUND, DEFINITION].contains(&source) || source.starts_with("re-derived")
-}
-
-/// VALIDATION.md.
-pub fn markdown(sections: &[Section]) -> String {
-    let all = || sections.iter().flat_map(|section| &section.checks);
-    let agreeing = all().filter(|check| check.holds()).count();
-    let made = "Made by `cargo run -p kempf-tests --bin validation > VALIDATION.md`.";
-    let mut lines =
-        vec![format!("# Validation\n\n{PREFACE}\n\n{made}\n{agreeing} of {} numbers agree.", all().count())];
-    let mut described = BTreeSet::new();
-    for (heading, what, is_of) in PARTS {
-        let count = all().filter(|check| is_of(check.source)).count();
-        lines.push(format!("\n## {heading}: {count} numbers\n\n{what}"));
-        for section in sections {
-            let rows: Vec<String> = section.checks.iter().filter(|check| is_of(check.source)).map(Check::row).collect();
-            if rows.is_empty() {
-                continue;
-            }
-            let method = if described.insert(section.title) { section.method } else { "Made as described above." };
-            lines.push(format!("\n### {}\n\n{method}\n", section.title));
-            lines.push("| what | source | reference | ours | difference | tolerance | verdict |".to_owned());
-            lines.push("|---|---|---:|---:|---:|---:|---|".to_owned());
-            lines.extend(rows);
-        }
-    }
-    lines.join("\n") + "\n"
 }
 
 #[cfg(test)]
@@ -231,13 +150,7 @@ mod tests {
         assert!(!check(10.0, f64::NAN, Tolerance::Absolute(1e9)).holds());
         assert!(!check(10.0, f64::INFINITY, Tolerance::AtLeast).holds());
         assert!(!check(10.0, 9.9, Tolerance::AtLeast).holds());
-    }
-
-    #[test]
-    fn a_row_shows_what_a_reader_needs() {
-        assert!(check(10.0, 10.0004, Tolerance::Relative(0.005)).row().contains("| 0.000 |"));
-        let row = check(10.0, 9.9996, Tolerance::Relative(0.005)).row();
-        assert_eq!(row, "| what | independent computation | 10.00 s | 10.000 s | 0.000 | 0.5 % | agrees |");
-        assert!(check(10.0, 12.0, Tolerance::Absolute(0.025)).row().ends_with("| +2.000 | 0.025 s | **differs** |"));
+        let share = check(-10.0, -10.2, Tolerance::Relative(0.01)).share_of_tolerance();
+        assert!(share.is_some_and(|share| (share - 2.0).abs() < 1e-9));
     }
 }

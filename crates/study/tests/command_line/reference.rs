@@ -26,12 +26,50 @@ What `study` can be asked, command by command, in the words of `study COMMAND --
 
 ";
 
+/// What stands before the priors of a hull.
+const PRIORS: &str = "\
+# Priors of a hull
+
+What the particulars of a ship say of the coefficients of her MMG hull (Yasukawa and Yoshimura 2015, prime system ½ρLdU²):
+mean, standard deviation, formula and source, here for the particulars of KVLCC2. `study list priors` makes the list for any
+ship. k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J is the advance ratio of the straight approach. The regressions of Zhou (1983):
+
+    m_x'/m' = (.398 + 11.97 C_b (1 + 3.73 d/B) − 2.89 C_b L/B (1 + 1.13 d/B)
+              + .175 C_b (L/B)² (1 + .541 d/B) − 1.107 L d/B²)/100
+    m_y'/m' = .882 − .54 C_b (1 − 1.6 d/B) − .156 L/B (1 − .673 C_b)
+              + .826 L d/B² (1 − .678 d/B) − .638 C_b L d/B² (1 − .669 d/B)
+
+Made by `cargo test -p study --test command_line write_the_reference -- --ignored`.
+
+";
+
+/// Length and approach speed of KVLCC2, and her other particulars.
+const LENGTH_AND_SPEED: &[&str] = &["--length-m", "320", "--speed-m-s", "7.97"];
+const KVLCC2: &str = "--beam-m 58 --draught-m 20.8 --block-coefficient 0.81 --rudder-area-m2 112.5 --rudder-height-m 15.8 \
+    --propeller-diameter-m 9.86 --propeller-rps 1.778 --displacement-t 320415 --x-g-m 11.2";
+
+/// The page of the priors of a hull: coefficients, and the ratios that fill in what is not given.
+fn priors(said: impl Fn(&[&str]) -> String) -> String {
+    let list = |particulars: &str| {
+        let request = ["list", "priors", "--format", "markdown"];
+        said(&[&request[..], LENGTH_AND_SPEED, &particulars.split_whitespace().collect::<Vec<_>>()].concat())
+    };
+    let bare = list("");
+    let ratios: Vec<&str> = bare.lines().take_while(|line| !line.starts_with("| mx ")).collect();
+    let what = "A particular that is not given is filled in by a ratio, here with length and speed alone:";
+    format!(
+        "{PRIORS}{}\n\n## Particulars that are filled in\n\n{what}\n\n{}\n",
+        list(KVLCC2).trim_end(),
+        ratios.join("\n")
+    )
+}
+
 /// Every page with what it has to hold.
 fn pages() -> Vec<(PathBuf, String)> {
     let desk = Desk::new();
     let said = |arguments: &[&str]| desk.run(arguments).is_done().out.clone();
     let lists = LISTS.map(|(page, what)| (page, said(&["list", what, "--format", "markdown"])));
-    let all = lists.into_iter().chain([("commands", commands(said))]);
+    let all = lists.into_iter().chain([("commands", commands(said)), ("priors", priors(said))]);
     all.map(|(page, text)| (of_repository(&format!("docs/src/reference/{page}.md")), text)).collect()
 }
 
