@@ -11,11 +11,10 @@
 //! | what is stored | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
 //! | what is said about it | [`summary`], [`statistics`] |
-//! | records and answers for figures and other programs | [`curves`], [`stored_figures`], [`answer`] |
+//! | records and answers for figures and other programs | [`curves`], [`stored_figures`] |
 //! | what is known of a ship, for a prediction | [`known`] |
 //! | methods against each other on measured and simulated records | [`benchmark`] |
 
-pub mod answer;
 pub mod answers;
 pub mod benchmark;
 pub mod block;

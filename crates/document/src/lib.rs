@@ -9,6 +9,7 @@
 //! | the answer of a method | [`method`] |
 //! | what a trace says | [`trace`] |
 //! | what people call effects, records and figures of merit | [`names`] |
+//! | ship, day and draughts of a trial | [`TrialParticularsEntry`] |
 //! | what a reader should know beside the numbers | [`warning`] |
 //! | what an error is about, for programs | [`ErrorCode`] |
 
@@ -27,6 +28,7 @@ mod shown;
 pub mod single_records;
 pub mod stored_hull;
 pub mod trace;
+mod trial_particulars;
 pub mod warning;
 
 pub use error::IdentifiedShipError;
@@ -36,4 +38,5 @@ pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange
 pub use noise::{HeadingNoise, Moment, RandomMoment};
 pub use quantity::Quantity;
 pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+pub use trial_particulars::TrialParticularsEntry;
 pub use warning::{Code, Severity, Source, Warning, Warnings};

@@ -12,6 +12,7 @@
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |
+//! | learn which answer to take, and whether any | [`identify::verdict`] |
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
 //! | read what a fit, trace or prediction wrote | [`document`] |
 //! | read a scenario file | [`scenario`] |
@@ -35,7 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
+//! The examples of this package fit a CSV as `study fit` does, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
 pub use campaign::scenario;
@@ -49,11 +50,19 @@ pub mod prelude {
     pub use campaign::scenario::Scenario;
     pub use campaign::summary::summarise;
     pub use campaign::{NoObserver, Observer};
+    pub use document::fit::{Belief, VerdictEntry};
+    pub use document::{Source, Warning, Warnings};
     pub use identify::{
-        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
+        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, answer, output_error,
+        registry, verdict,
     };
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
     pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
-    pub use trial::{Channel, Trial, ZigZag, read, write_csv};
+    pub use trial::{Channel, Log, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
 }
+
+/// The README, whose example is compiled with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

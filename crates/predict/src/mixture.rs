@@ -58,7 +58,7 @@ const WHITE: f64 = 0.05;
 pub(crate) struct DrawableStructure {
     /// Probability among all.
     pub weight: f64,
-    model: ResponseModel,
+    pub model: ResponseModel,
     known: WeightedStructure,
     root: DMatrix<f64>,
     /// Places of dead times among the parameters.
@@ -112,10 +112,10 @@ impl ShipMixture {
         let mut parts = Vec::new();
         for (file, ((known, _), share)) in files.iter().zip(&shares).enumerate() {
             let of_structures: f64 = known.members.iter().map(|member| member.weight).sum();
-            let structures = known.members.iter().map(|member| (member, member.weight / of_structures));
-            let structures =
-                structures.map(|(member, weight)| DrawableStructure::new(known, member, share * weight, file));
-            let structures = structures.collect::<Result<Vec<_>, _>>()?;
+            let structures = known.members.iter().map(|member| {
+                DrawableStructure::new(member, share * member.weight / of_structures, file)?.sailing(known)
+            });
+            let structures = structures.collect::<Result<Vec<_>, PredictError>>()?;
             if known.hulls.is_empty() {
                 parts.extend(structures);
                 continue;
@@ -233,17 +233,20 @@ impl ShipMixture {
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
     /// mixture that is apart follow √2, which has nothing in common with it.
     pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
-        let mut left = (0.5 + number as f64 * step).fract();
-        for part in &self.parts {
-            if left < part.weight {
-                return part;
-            }
-            left -= part.weight;
-        }
-        self.likeliest()
+        chosen(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
+}
+
+/// The golden ratio, less one.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// The structure in which a share of all probability ends; `None` where rounding leaves a little.
+pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&DrawableStructure> {
+    parts.iter().find(|part| {
+        share -= part.weight;
+        share < 0.0
+    })
 }
 
 /// The most probable one, the first of several.
@@ -258,20 +261,23 @@ fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
 }
 
 impl DrawableStructure {
-    fn new(ship: &IdentifiedShip, known: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
-        let weight = checked(weight, known.weight)?;
-        let model = known.model()?;
-        let has_motion = !ship.hulls.is_empty();
+    pub(crate) fn new(known: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
+        let (weight, model) = (checked(weight, known.weight)?, known.model()?);
+        let (root, dead_times) = (root_of(&known.covariance)?, known.dead_times(&model));
+        Ok(Self { weight, model, known: known.clone(), root, dead_times, hull: None, file })
+    }
+
+    /// The same where the ship has all that its effects need in a manoeuvre.
+    fn sailing(self, ship: &IdentifiedShip) -> Result<Self, PredictError> {
         for (regressor, channel, option) in
             [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
         {
-            let needs = model.effects().iter().any(|effect| effect.needs() == Some(regressor));
-            if needs && !has_motion {
+            let needs = self.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
+            if needs && ship.hulls.is_empty() {
                 return Err(PredictError::Needs { channel, option });
             }
         }
-        let (root, dead_times) = (root_of(&known.covariance)?, known.dead_times(&model));
-        Ok(Self { weight, model, known: known.clone(), root, dead_times, hull: None, file })
+        Ok(self)
     }
 
     /// What is random in yaw: what the form of the hull leaves, or what the structures do.
@@ -285,7 +291,7 @@ impl DrawableStructure {
     }
 
     /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
-    fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
+    pub(crate) fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: known, fitted, degrees_of_freedom, .. } = &self.known;
         let mut values = known.clone();
         if self.root.is_empty() {

@@ -2,18 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use document::{Code, ErrorCode, Source, Warning, Warnings};
+use document::{Code, Source, TrialParticularsEntry, Warning, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
 use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
-use trial::find::FoundManoeuvre;
-use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
+use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
-use crate::ship_options::FormOptions;
 use campaign::answers::TRIALS;
 use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::known::RecordFacts;
@@ -21,10 +19,6 @@ use campaign::scenario::name;
 
 /// Endings of files that a folder of records is looked through for.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
-
-/// A record with this much beside its zig-zag is cut: that is a run-up, a stop, the way back to the course or another
-/// manoeuvre.
-const REST: f64 = 0.02;
 
 /// The files that were named; a folder stands for all its records, in the order of their names, and `-` for standard
 /// input.
@@ -141,22 +135,25 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Wa
     let log = if from.is_some() || until.is_some() {
         log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
-        chosen(log, path, options.trial, warnings)?
+        log.chosen(options.trial).map_err(refused)?
     };
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: found } = log.into_trial(ship).map_err(refused)?;
     warnings.extend(source(path).of(found));
-    with_hull(trial, path, &options.ship.form)
+    with_declared(trial, path, options)
 }
 
-/// The record with what options say of the hull; they go before a sidecar, which says nothing of a ship of another
+/// The record with what options say of hull and trial; they go before a sidecar, which says nothing of a ship of another
 /// length.
-fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, Failure> {
+fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
     let length = trial.particulars().map(|own| own.length);
     if conditions.particulars.is_some_and(|own| Some(own.length) != length) {
         conditions.hull = HullParticulars::default();
+        (conditions.trial.draught_fore, conditions.trial.draught_aft) = (None, None);
     }
+    conditions.trial = options.of_trial.or(&conditions.trial);
+    let options = &options.ship.form;
     options.apply(&mut conditions.hull);
     let trial = trial.with_conditions(conditions);
     if let Some(key) = options.first() {
@@ -165,6 +162,18 @@ fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, 
         trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::about(path, error))?;
     }
     Ok(trial)
+}
+
+/// Ship, day and draughts of a record, for other programs and the first page.
+pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
+    let (of_trial, hull) = (&trial.conditions().trial, trial.conditions().hull);
+    TrialParticularsEntry {
+        ship_name: of_trial.ship_name.clone(),
+        date: of_trial.date.clone(),
+        draught_fore_m: of_trial.draught_fore,
+        draught_aft_m: of_trial.draught_aft,
+        draught_m: of_trial.mean_draught().or(hull.draught),
+    }
 }
 
 /// A time on the clock of a record, s.
@@ -182,83 +191,6 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
             })
         }
     }
-}
-
-/// The manoeuvres of a log, in order of time; none where it has no heading.
-pub fn manoeuvres(log: &Log) -> Vec<FoundManoeuvre> {
-    let (Some(rudder), Some(heading)) = (log.channel(Channel::Rudder), log.channel(Channel::Heading)) else {
-        return Vec::new();
-    };
-    trial::find::manoeuvres(&trial::find::Signals {
-        time: log.time(),
-        rudder,
-        heading,
-        speed: log.channel(Channel::Speed),
-        propeller: log.channel(Channel::PropellerRate),
-    })
-}
-
-/// The manoeuvre that was asked for; else the zig-zag where the log holds one and much beside it.
-fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) -> Result<Log, Failure> {
-    let file = path.display();
-    if asked.is_none() && log.has_declared_part() {
-        return Ok(log);
-    }
-    let found = manoeuvres(&log);
-    let manoeuvre = match asked {
-        Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
-            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", found.len()))
-        })?,
-        None => {
-            let zigzags: Vec<(usize, &FoundManoeuvre)> =
-                (1..).zip(&found).filter(|(_, one)| matches!(one.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect();
-            match zigzags.as_slice() {
-                [] => {
-                    if found.iter().any(|one| one.manoeuvre.is_none()) {
-                        let text = format!(
-                            "no zig-zag is recognised, the whole record is used; `study find {file}` lists what is; for \
-                             a part, write `from-s` and `until-s` under [part] of its sidecar"
-                        );
-                        warnings.push(Code::WholeRecord, source(path), text);
-                    }
-                    return Ok(log);
-                }
-                [(_, only)] => *only,
-                several => return Err(ask(&log, path, several)),
-            }
-        }
-    };
-    let (from, until) = (manoeuvre.from, manoeuvre.until);
-    let time = log.time();
-    let beside = (from - time[0]) + (time[time.len() - 1] - until);
-    if asked.is_none() && beside <= REST * (until - from) {
-        return Ok(log);
-    }
-    let text = format!(
-        "the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under [part] \
-         of its sidecar",
-        manoeuvre.name(),
-        at(&log, from),
-        at(&log, until)
-    );
-    warnings.push(Code::Part, source(path), text);
-    log.part(from, until).map_err(refused)
-}
-
-/// The question which of several zig-zags is meant.
-fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure {
-    let line = |(number, one): &(usize, &FoundManoeuvre)| {
-        format!("\n  --trial {number}: {}, {} to {}", one.name(), at(log, one.from), at(log, one.until))
-    };
-    let lines: String = several.iter().map(line).collect();
-    Failure::about(path, format!("there are {} zig-zags in this log; say which one{lines}", several.len()))
-        .with_code(ErrorCode::SeveralManoeuvres)
-}
-
-/// A time of a log for people: seconds, and what the clock shows.
-pub fn at(log: &Log, time: f64) -> String {
-    let clock = log.clock.map(|clock| format!(" ({})", clock.at(time)));
-    format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
 }
 
 /// Length and approach speed from the options; the speed from the record where it is not given.

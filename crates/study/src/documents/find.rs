@@ -10,12 +10,13 @@ use trial::Log;
 use trial::find::FoundManoeuvre;
 
 use super::answers::CommandAnswer;
+use super::log::LogEntry;
 
 /// The manoeuvres of some logs.
 #[derive(Serialize, JsonSchema)]
 pub struct FindAnswer {
     /// The logs in the order they were named.
-    pub logs: Vec<LogEntry>,
+    pub logs: Vec<SearchedLog>,
     /// Warnings of the reader, the worst first.
     pub warnings: Vec<Warning>,
 }
@@ -24,17 +25,12 @@ impl CommandAnswer for FindAnswer {
     const SCHEMA: &'static str = "find/1";
 }
 
-/// A log.
+/// A log with its manoeuvres.
 #[derive(Serialize, JsonSchema)]
-pub struct LogEntry {
-    /// The file as it was named.
-    pub file: String,
-    /// Number of rows.
-    pub rows: usize,
-    /// Length, s.
-    pub duration_s: f64,
-    /// Its first day, where it has a clock with dates.
-    pub date: Option<String>,
+pub struct SearchedLog {
+    /// The log.
+    #[serde(flatten)]
+    pub log: LogEntry,
     /// Its manoeuvres in order of time.
     pub manoeuvres: Vec<ManoeuvreEntry>,
 }
@@ -62,8 +58,8 @@ pub struct ManoeuvreEntry {
     pub remarks: Vec<String>,
 }
 
-impl LogEntry {
-    /// A log with its manoeuvres.
+impl SearchedLog {
+    /// A log with what was found in it.
     pub fn of(file: &Path, log: &Log, found: &[FoundManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
         let manoeuvre = |(trial, one): (usize, &FoundManoeuvre)| {
@@ -80,13 +76,6 @@ impl LogEntry {
                 remarks: one.quality.remarks(),
             }
         };
-        let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
-        Self {
-            file: file.display().to_string(),
-            rows: log.time().len(),
-            duration_s: last - first,
-            date: log.clock.and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
-            manoeuvres: (1..).zip(found).map(manoeuvre).collect(),
-        }
+        Self { log: LogEntry::of(file, log), manoeuvres: (1..).zip(found).map(manoeuvre).collect() }
     }
 }

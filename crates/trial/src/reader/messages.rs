@@ -30,7 +30,7 @@ const SPARSE: f64 = 0.2;
 /// Largest rudder in radians, and largest heading, where no line says the unit.
 const LARGEST_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
-pub(super) use can::is_log as is_can_log;
+pub(super) use can::{is_log as is_can_log, is_python_can};
 
 /// How the lines of a log are written.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,6 +11,7 @@
 //! other tables: [`crate::sidecar`].
 
 mod assemble;
+mod choice;
 mod code;
 mod columnar;
 mod counts;

@@ -1,9 +1,12 @@
 //! The entry of a document for the answer of a method.
 
 use document::method::{IndexEstimates, MethodEntry, Status};
-use identify::replay::pooled;
-use identify::{Estimate, IdentifyError};
 use ship::angle::to_deg;
+use trial::Trial;
+
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+use crate::replay::pooled;
 
 /// The entry of a method that gave an answer.
 pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> MethodEntry {
@@ -35,7 +38,7 @@ pub fn failed(method: &str, error: &IdentifyError) -> MethodEntry {
 pub fn entry(
     label: &str,
     answer: Result<Estimate, IdentifyError>,
-    trials: &[trial::Trial],
+    trials: &[Trial],
 ) -> (MethodEntry, Option<Estimate>) {
     match answer {
         Ok(estimate) => (answered(label, &estimate, pooled(trials, &estimate.response).map(to_deg)), Some(estimate)),

@@ -1,15 +1,18 @@
-//! Which answer of a fit is to be taken, and what its residual says.
+//! Which of several answers is to be taken, what its residual says, and why none can be taken.
+//!
+//! The rule is that of [`Recommendation`]; answers of several methods are brought to it by
+//! [`answer::entry`](crate::answer::entry).
 
 use document::fit::{Belief, Reason, VerdictEntry};
 use document::method::MethodEntry;
-use identify::Estimate;
-use identify::lack_of_fit::LackOfFit;
-use identify::recommended::Recommendation;
-use identify::replay::pooled;
-use report::number::fixed;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::Trial;
+
+use crate::estimate::Estimate;
+use crate::lack_of_fit::LackOfFit;
+use crate::recommended::Recommendation;
+use crate::replay::pooled;
 
 /// A replay this many times worse than the best is set apart.
 const FAR_WORSE: f64 = 10.0;
@@ -21,12 +24,9 @@ const EXPLAINED: f64 = 0.9;
 /// The methods that an answer of another one is held against.
 const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Which answer is to be taken; `entries` are those of the answers.
-pub fn of_answers(
-    trials: &[Trial],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    entries: &[MethodEntry],
-) -> Option<VerdictEntry> {
+/// Which answer to some records is to be taken, and why none is; `None` where no method has an answer.
+pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+    let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
     let [nearest, likely] = USUAL.map(of);
@@ -57,16 +57,16 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
         return Some(format!(
             "the nearest replay, that of {}, leaves {}° of the headings, and a straight line, without any rudder, {}°",
             verdict.method,
-            fixed(left_deg, 1),
-            fixed(straight, 1)
+            tenths(left_deg),
+            tenths(straight)
         ));
     }
     if explained.is_nan() || explained < EXPLAINED {
-        let [percent, least] = [explained.max(0.0), EXPLAINED].map(|share| fixed(100.0 * share, 0));
+        let [percent, least] = [explained.max(0.0), EXPLAINED].map(|share| format!("{:.0}", 100.0 * share));
         return Some(format!(
             "the nearest replay explains {percent} % of the variance of the heading (it leaves {}°), and K and T of a ship explain {least} % \
              or more",
-            fixed(left_deg, 1)
+            tenths(left_deg)
         ));
     }
     if !is_usual {
@@ -81,6 +81,10 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
             "K and T are below zero, as of a ship that is not course-stable, and their intervals do not show that she is",
         )
     })
+}
+
+fn tenths(degrees: f64) -> String {
+    format!("{degrees:.1}")
 }
 
 /// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
