@@ -72,7 +72,7 @@ pub fn fit(
         }
         let mut warnings = Warnings::default();
         warnings.extend(told.iter().cloned().chain(repetitions(&records, &others)));
-        let done = work::fit::fit([&records, &others], &methods, &priors, true, warnings)?;
+        let done = work::fit::fit([&records, &others], &methods, &priors, true, warnings)?.with_predicted_circle();
         let warnings = sentences(done.document.of_answer().filter(|warning| !told.contains(warning)));
         Ok(PyFit {
             text: documents::text(&done.document).map_err(Failure::work)?,

@@ -11,8 +11,8 @@ use predict::{DrawnEstimate, DrawnParameters, EstimateDraws, PredictDocument};
 /// Name of the file.
 pub const DRAWS: &str = "draws.parquet";
 
-/// The columns of a prediction: which ship it is, its parameters, and its figures in every manoeuvre. What a structure or a ship does
-/// not have is missing.
+/// The columns of a prediction: which ship it is, its parameters, and its figures in every manoeuvre. What a structure
+/// or a ship does not have is missing.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
     let numbers = |of: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(of).collect());
