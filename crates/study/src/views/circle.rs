@@ -142,7 +142,11 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
         let name = format!("median predicted by {}, {}° of rudder", entry.method, fixed(entry.rudder_deg, 1));
         let figures = figures.map(|lengths| Some(lengths.median));
         circles.push(CircleTrack { name, track, figures, pen: predicted_pen() });
-        findings.push(predicted_sentence(entry));
+        let [advance, diameter] =
+            [entry.advance_lengths, entry.tactical_diameter_lengths].map(|lengths| significant(lengths.median, 3));
+        let rudder = fixed(entry.rudder_deg, 1);
+        findings
+            .push(format!("{rudder}° of rudder: advance {advance} L, tactical diameter {diameter} L are predicted"));
     }
     let caption = format!(
         "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {MEASURES}"
