@@ -32,8 +32,10 @@ STUDIES = """
 ## Studies
 
 One study a section: its question, what came out, and the figure that shows it; its name leads to the whole report. The
-folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest from which
-`study NAME/manifest.toml --out DIR` runs it again; a study that starts other programs is run from its scenario.
+folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest. Rows are not stored:
+`study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that stands in its
+section. A study of measured records needs their folder in `KEMPF_DATA`; one that asks other programs is run from its
+scenario.
 """
 
 
@@ -236,6 +238,18 @@ def in_short(finding):
     return next((part for part in reversed(parts) if part.count("\n") < 2), finding)
 
 
+def how_long(name):
+    """The command that makes the rows of a study again, and the time that it took."""
+    manifest = PUBLISHED / name / "manifest.toml"
+    machine = table(manifest).get("machine", {})
+    if not {"wall-time-s", "threads"} <= machine.keys():
+        return ""
+    seconds = machine["wall-time-s"]
+    time = f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    command = f"study {manifest.relative_to(ROOT).as_posix()} --out DIR"
+    return in_lines(f"Rows in {time} on {machine['threads']} cores: `{command}`")
+
+
 def write_page(plan, scenarios, place):
     """Writes the page over what is published: questions with their answers, what programs made, and the studies, in the
     words of their scenarios."""
@@ -260,6 +274,8 @@ def write_page(plan, scenarios, place):
                 raise Failed(f"{PUBLISHED / name}: the page over all needs {file}, and the folder holds no such file")
         text += f"\n### [{name}](published/{name}/{report})\n\n**{words['question'].strip()}**\n"
         text += f"\n{finding}\n" if finding else ""
+        rows = "" if name in plan["answers"] else how_long(name)
+        text += f"\n{rows}\n" if rows else ""
         text += f"\n![Figure of {name}](published/{name}/{figure})\n" if figure else ""
     # HTML in the words is shown and not obeyed.
     tag = re.compile(r"\\.|<(?=[A-Za-z/!?])(?!http://|https://|mailto:)", re.DOTALL)

@@ -15,7 +15,6 @@
 //! | the identified ship, for predictions | [`known`] |
 //! | comparison of methods on measured and simulated records | [`benchmark`] |
 
-pub mod answer;
 pub mod answers;
 pub mod benchmark;
 pub mod block;

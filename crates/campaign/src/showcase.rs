@@ -2,6 +2,7 @@
 //! all methods, as plot data. It is computed when a study runs, and drawn from the stored file.
 
 use document::method::MethodEntry;
+use identify::answer::entry;
 use identify::{Estimate, IdentifierSettings};
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
@@ -10,7 +11,6 @@ use ship::FirstOrder;
 use simulate::Truth;
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::answer::entry;
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};

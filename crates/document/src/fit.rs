@@ -12,6 +12,7 @@ use crate::method::MethodEntry;
 use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
 use crate::single_records::{Amplitude, SingleRecords};
+use crate::trial_particulars::TrialParticularsEntry;
 use crate::warning::{Code, Source, Warning};
 
 /// Schema name.
@@ -31,6 +32,9 @@ pub struct TrialEntry {
     pub samples: usize,
     /// Duration, s.
     pub duration_s: f64,
+    /// Ship, date and draughts, where declared.
+    #[serde(default, skip_serializing_if = "TrialParticularsEntry::is_empty")]
+    pub trial_particulars: TrialParticularsEntry,
     /// Zig-zag characteristics; `null` when it is no zig-zag.
     pub zigzag: Option<ZigZagEntry>,
     /// Reason why it is no zig-zag.
@@ -54,6 +58,36 @@ pub struct CircleEntry {
     pub transfer_lengths: Option<f64>,
     /// Tactical diameter at 180° of heading, ship lengths.
     pub tactical_diameter_lengths: Option<f64>,
+}
+
+/// Turning circle predicted from the recommended estimate, where the records have speed and drift.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct PredictedCircleEntry {
+    /// Method of the estimate.
+    pub method: String,
+    /// `port` or `starboard`.
+    pub side: String,
+    /// Held rudder angle, deg.
+    pub rudder_deg: f64,
+    /// Whether rudder or yaw rate are beyond those of the records.
+    pub extrapolated: bool,
+    /// Number of drawn ships.
+    pub draws: usize,
+    /// Advance at 90° of heading, ship lengths.
+    pub advance_lengths: MedianEntry,
+    /// Transfer at 90° of heading, ship lengths.
+    pub transfer_lengths: MedianEntry,
+    /// Tactical diameter at 180° of heading, ship lengths.
+    pub tactical_diameter_lengths: MedianEntry,
+}
+
+/// Median of drawn ships.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct MedianEntry {
+    /// Median.
+    pub median: f64,
+    /// Quantiles of 5 and 95 %.
+    pub ci90: [f64; 2],
 }
 
 /// IMO criterion with its measured value.
@@ -144,6 +178,9 @@ pub struct FitDocument {
     /// Remarks of the form.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form_remarks: Vec<String>,
+    /// The turning circle that the answer to take predicts, with the rudder of a recorded circle, else with 35°.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predicted_circle: Option<PredictedCircleEntry>,
     /// Every zig-zag identified alone, where there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,

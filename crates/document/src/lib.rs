@@ -9,6 +9,7 @@
 //! | the estimate of a method | [`method`] |
 //! | the document of a trace | [`trace`] |
 //! | display names of effects, records and figures of merit | [`names`] |
+//! | ship, date and draughts of a trial | [`TrialParticularsEntry`] |
 //! | warnings | [`warning`] |
 //! | machine-readable error codes | [`ErrorCode`] |
 
@@ -27,6 +28,7 @@ mod shown;
 pub mod single_records;
 pub mod stored_hull;
 pub mod trace;
+mod trial_particulars;
 pub mod warning;
 
 pub use error::IdentifiedShipError;
@@ -36,4 +38,5 @@ pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange
 pub use noise::{HeadingNoise, Moment, RandomMoment};
 pub use quantity::Quantity;
 pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
+pub use trial_particulars::TrialParticularsEntry;
 pub use warning::{Code, Severity, Source, Warning, Warnings};

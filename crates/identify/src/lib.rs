@@ -15,7 +15,10 @@
 //! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 //! | `recommended` | output error or maximum likelihood, by a rule made from the record |
+//!
+//! Of several answers [`verdict`] says which is to be taken, and whether any is.
 
+pub mod answer;
 pub mod characteristic_points;
 pub mod error;
 pub mod estimate;
@@ -45,6 +48,7 @@ pub mod srivc;
 pub mod suspicion;
 #[cfg(test)]
 mod testing;
+pub mod verdict;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};

@@ -65,6 +65,14 @@ pub const USUAL: [&str; 6] = [
     "characteristic-points",
 ];
 
+/// The methods of [`USUAL`] with their default settings, the best first.
+pub fn usual() -> Vec<Box<dyn Identifier>> {
+    let all = defaults().into_iter().map(|settings| settings.build().expect("default settings are valid"));
+    let mut methods: Vec<Box<dyn Identifier>> = all.filter(|method| USUAL.contains(&method.id())).collect();
+    methods.sort_by_key(|method| USUAL.iter().position(|id| *id == method.id()));
+    methods
+}
+
 #[cfg(test)]
 mod tests {
     use crate::fourier_projected::{self, Order};

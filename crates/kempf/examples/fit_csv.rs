@@ -1,4 +1,4 @@
-//! Fits a record: `cargo run -p kempf --example fit_csv -- RECORD.csv`.
+//! Fits a log as `study fit` does: `cargo run -p kempf --example fit_csv -- RECORD.csv`.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -7,15 +7,32 @@ use kempf::prelude::*;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/records/first-order.csv".into());
-    let record = read(&PathBuf::from(path))?.trial;
-    for settings in registry::defaults() {
-        let method = settings.build()?;
-        match method.identify(std::slice::from_ref(&record)) {
-            Ok(estimate) => {
-                println!("{:24} K = {:.4} 1/s, T = {:.2} s", method.id(), estimate.K().value, estimate.T().value)
+    let path = PathBuf::from(path);
+    let log = Log::open(&path, Sidecar::found_beside(&path).as_deref(), &[])?;
+    let ReadRecord { trial, warnings } = log.into_zig_zag(None)?;
+    let (records, mut all_warnings) = ([trial], Warnings::default());
+    all_warnings.extend(warnings);
+    let mut answers = Vec::new();
+    for method in registry::usual() {
+        let (entry, estimate) = answer::entry(method.id(), method.identify(&records), &records);
+        match &estimate {
+            Some(estimate) => {
+                println!("{:24} K = {:.4} 1/s, T = {:.2} s", method.id(), estimate.K().value, estimate.T().value);
+                all_warnings.extend(Source::Method(method.id().to_owned()).of(estimate.warnings.clone()));
             }
-            Err(error) => println!("{:24} {error}", method.id()),
+            None => println!("{:24} {}", method.id(), entry.reason.as_deref().unwrap_or("no answer")),
+        }
+        answers.push((entry, estimate));
+    }
+    match verdict::of_answers(&records, &answers) {
+        None => println!("no method can identify this record"),
+        Some(VerdictEntry { because: Some(because), .. }) => println!("no K and T can be taken, because {because}"),
+        Some(verdict) => {
+            let [k, t] =
+                [verdict.k_per_s, verdict.t_s].map(|index| index.expect("an answer that is to be taken has both"));
+            println!("take K = {:.4} 1/s, T = {:.2} s from {}", k.value, t.value, verdict.method);
         }
     }
+    all_warnings.ranked().iter().for_each(|warning| println!("warning: {warning}"));
     Ok(())
 }

@@ -13,6 +13,7 @@
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | identify K, T and δ_r with intervals | [`identify`] |
+//! | the recommended answer, or why there is none | [`identify::verdict`] |
 //! | trace the effects that a first-order model lacks | [`trace`](mod@trace) |
 //! | read the documents of a fit, trace or prediction | [`document`] |
 //! | read a scenario file | [`scenario`] |
@@ -36,7 +37,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
+//! The examples of this package fit a CSV as `study fit` does, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
 pub use campaign::scenario;
@@ -50,11 +51,19 @@ pub mod prelude {
     pub use campaign::scenario::Scenario;
     pub use campaign::summary::summarise;
     pub use campaign::{NoObserver, Observer};
+    pub use document::fit::{Belief, VerdictEntry};
+    pub use document::{Source, Warning, Warnings};
     pub use identify::{
-        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
+        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, answer, output_error,
+        registry, verdict,
     };
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
     pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
-    pub use trial::{Channel, Trial, ZigZag, read, write_csv};
+    pub use trial::{Channel, Log, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
 }
+
+/// The README, whose example is compiled with the documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

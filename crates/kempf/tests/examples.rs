@@ -1,16 +1,21 @@
 //! Every example runs from the root of the workspace and prints its result.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
-/// Standard output of an example.
-fn output(name: &str) -> String {
+/// A run of an example from the root of the workspace.
+fn run(name: &str, arguments: &[&Path]) -> Output {
     let here = std::env::current_exe().expect("a test is a program");
     let built = here.ancestors().nth(2).expect("tests are two folders down").join("examples").join(name);
     let program = PathBuf::from(format!("{}{}", built.display(), std::env::consts::EXE_SUFFIX));
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let run = Command::new(&program).current_dir(root).output();
-    let output = run.unwrap_or_else(|error| panic!("{} is built by `cargo test`: {error}", program.display()));
+    let run = Command::new(&program).args(arguments).current_dir(root).output();
+    run.unwrap_or_else(|error| panic!("{} is built by `cargo test`: {error}", program.display()))
+}
+
+/// What an example prints.
+fn output(name: &str) -> String {
+    let output = run(name, &[]);
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
@@ -19,6 +24,35 @@ fn output(name: &str) -> String {
 fn a_csv_is_fitted() {
     let text = output("fit_csv");
     assert!(text.lines().any(|line| line.starts_with("output-error") && line.contains("T = 16.")), "{text}");
+    assert!(text.lines().any(|line| line.starts_with("take K = ") && line.contains("T = 16.")), "{text}");
+}
+
+/// The record twice, one after the other with a straight way between.
+#[test]
+fn a_log_with_two_zig_zags_is_refused() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/records/first-order.csv");
+    let text = std::fs::read_to_string(path).expect("a record of the scenarios");
+    let (header, rows) = text.split_once('\n').expect("a header");
+    let rows: Vec<Vec<f64>> =
+        rows.lines().map(|row| row.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect()).collect();
+    let mut log = header.split(',').take(3).collect::<Vec<_>>().join(",");
+    let (mut time, mut course) = (0.0, 0.0);
+    let mut add = |heading: f64, rudder: f64| {
+        log += &format!("\n{time},{heading},{rudder}");
+        time += 1.0;
+    };
+    for _ in 0..2 {
+        (0..400).for_each(|_| add(course, 0.0));
+        rows.iter().for_each(|row| add(course + row[1] - rows[0][1], row[2]));
+        course += rows[rows.len() - 1][1] - rows[0][1];
+    }
+    (0..400).for_each(|_| add(course, 0.0));
+    let path = std::env::temp_dir().join(format!("kempf-two-zig-zags-{}.csv", std::process::id()));
+    std::fs::write(&path, log).expect("a file");
+    let refused = run("fit_csv", &[&path]);
+    std::fs::remove_file(&path).expect("it was written");
+    let message = String::from_utf8_lossy(&refused.stderr);
+    assert!(!refused.status.success() && message.contains("there are 2 zig-zags in this log"), "{message}");
 }
 
 #[test]

@@ -1,6 +1,11 @@
-//! Structure and parameters of a drawn ship, for other programs.
+//! Structure and parameters of a drawn ship or estimate, for other programs.
 
-use crate::mixture::{DrawnShip, ShipMixture, UncertaintySource};
+use document::IdentifiedShip;
+use ship::ResponseModel;
+use simulate::{Purpose, StreamKey};
+
+use crate::error::PredictError;
+use crate::mixture::{DrawableStructure, DrawnShip, GOLDEN, ShipMixture, UncertaintySource, chosen};
 
 /// Structure and parameters of a drawn ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,12 +31,6 @@ impl ShipMixture {
     pub fn parameters(&self, number: u64) -> DrawnParameters {
         let part = self.chosen(number);
         let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw(number, &UncertaintySource::ALL);
-        let model = response.model();
-        let base = ship::response::BASE.iter().map(|parameter| parameter.key.to_owned());
-        let effect_keys = model.effects().iter().flat_map(|effect| {
-            effect.parameters().iter().map(move |parameter| format!("{}.{}", effect.id(), parameter.key))
-        });
-        let effects: Vec<&str> = model.effects().iter().map(|effect| effect.id()).collect();
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
                 let form = hull.stored.form.clone();
@@ -39,23 +38,86 @@ impl ShipMixture {
                 let parameters = keys.zip(coefficients).collect();
                 (form, parameters)
             }
-            None => {
-                let parameters = base.chain(effect_keys).zip(response.parameters().iter().copied()).collect();
-                let structure = if effects.is_empty() { "first_order".to_owned() } else { effects.join(" + ") };
-                (structure, parameters)
-            }
+            None => named(response.model(), response.parameters()),
         };
         let (file, weight) = (part.file, part.weight);
         DrawnParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
     }
 }
 
+/// The name of a structure, and its parameters by theirs.
+fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) {
+    let base = ship::response::BASE.iter().map(|parameter| parameter.key.to_owned());
+    let of_effects = model.effects().iter().flat_map(|effect| {
+        effect.parameters().iter().map(move |parameter| format!("{}.{}", effect.id(), parameter.key))
+    });
+    let effects: Vec<&str> = model.effects().iter().map(|effect| effect.id()).collect();
+    let structure = if effects.is_empty() { "first_order".to_owned() } else { effects.join(" + ") };
+    (structure, base.chain(of_effects).zip(values.iter().copied()).collect())
+}
+
+/// Structure and parameters of a response, drawn from what an estimate says of it; SI units and radians.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnEstimate {
+    /// Its effects, joined by ` + `; `first_order` for none.
+    pub structure: String,
+    /// Probability of this structure among all.
+    pub weight: f64,
+    /// Parameters by name: `inverse_T`, `K_over_T`, `rudder_bias`, `EFFECT.KEY`.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// Draws from an estimate: a structure by its probability, its parameters by their covariance. What is drawn is the
+/// response that records tell, not a ship: no hull, no steering gear and no random moment.
+#[derive(Debug, Clone)]
+pub struct EstimateDraws {
+    structures: Vec<DrawableStructure>,
+    seed: u64,
+}
+
+impl EstimateDraws {
+    /// The draws of an estimate with this seed; fails for what no file of this program holds.
+    pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
+        let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
+        let structures = estimate.members.iter().map(|member| DrawableStructure::new(member, member.weight / total, 0));
+        let structures = structures.collect::<Result<Vec<_>, _>>()?;
+        if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
+    }
+
+    /// Draw number `number`: the same for the same seed, whatever else is drawn.
+    pub fn draw(&self, number: u64) -> DrawnEstimate {
+        let share = (0.5 + number as f64 * GOLDEN).fract();
+        let structure = chosen(&self.structures, share).unwrap_or(&self.structures[0]);
+        let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
+        let (name, parameters) = named(&structure.model, &structure.drawn(&mut rng));
+        DrawnEstimate { structure: name, weight: structure.weight, parameters }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use document::IdentifiedShip;
-
     use super::*;
     use crate::testing;
+
+    /// Draws of a seed are the same again, and have the mean of the estimate.
+    #[test]
+    fn an_estimate_is_drawn_again_with_its_seed() {
+        let known = testing::known();
+        let draws = |seed: u64| -> Vec<DrawnEstimate> {
+            let draws = EstimateDraws::new(&known, seed).expect("made up");
+            (0..2000).map(|number| draws.draw(number)).collect()
+        };
+        let drawn = draws(7);
+        assert_eq!(drawn, draws(7));
+        assert_ne!(drawn, draws(8));
+        let (place, count) = (known.members[0].fitted[0], drawn.len() as f64);
+        let mean = drawn.iter().map(|draw| draw.parameters[place].1).sum::<f64>() / count;
+        let sd = known.members[0].covariance[0][0].sqrt();
+        assert!((mean - known.members[0].parameters[place]).abs() < 4.0 * sd / count.sqrt());
+        assert!(drawn[0].structure == "nonlinear_damping" && drawn[0].weight == 1.0);
+        let none = IdentifiedShip { members: Vec::new(), ..known };
+        assert_eq!(EstimateDraws::new(&none, 0).err(), Some(PredictError::Empty));
+    }
 
     /// Structure, parameters and weight are those that the ship is steered with.
     #[test]

@@ -32,6 +32,7 @@ mod helm_replay;
 pub mod imo;
 pub mod interval;
 mod line;
+mod median_track;
 pub mod mixture;
 pub mod prediction;
 pub mod replay;
@@ -44,7 +45,7 @@ mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
-pub use drawn_parameters::DrawnParameters;
+pub use drawn_parameters::{DrawnEstimate, DrawnParameters, EstimateDraws};
 pub use error::PredictError;
 pub use interval::PredictionInterval;
 pub use mixture::{ShipMixture, UncertaintySource};

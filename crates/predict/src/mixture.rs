@@ -59,7 +59,7 @@ const WHITE_CORRELATION_TIME: f64 = 0.05;
 pub(crate) struct DrawableStructure {
     /// Probability among all structures.
     pub weight: f64,
-    model: ResponseModel,
+    pub model: ResponseModel,
     stored: WeightedStructure,
     root: DMatrix<f64>,
     /// Places of dead times among the parameters.
@@ -113,10 +113,10 @@ impl ShipMixture {
         let mut parts = Vec::new();
         for (file, ((stored, _), share)) in files.iter().zip(&shares).enumerate() {
             let of_structures: f64 = stored.members.iter().map(|member| member.weight).sum();
-            let structures = stored.members.iter().map(|member| (member, member.weight / of_structures));
-            let structures =
-                structures.map(|(member, weight)| DrawableStructure::new(stored, member, share * weight, file));
-            let structures = structures.collect::<Result<Vec<_>, _>>()?;
+            let structures = stored.members.iter().map(|member| {
+                DrawableStructure::new(member, share * member.weight / of_structures, file)?.sailing(stored)
+            });
+            let structures = structures.collect::<Result<Vec<_>, PredictError>>()?;
             if stored.hulls.is_empty() {
                 parts.extend(structures);
                 continue;
@@ -235,17 +235,20 @@ impl ShipMixture {
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of an
     /// independent mixture follow √2, which is incommensurable with it.
     pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
-        let mut position = (0.5 + number as f64 * step).fract();
-        for part in &self.parts {
-            if position < part.weight {
-                return part;
-            }
-            position -= part.weight;
-        }
-        self.likeliest()
+        chosen(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
+}
+
+/// Golden ratio less one.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Structure at a cumulative probability; `None` where rounding leaves a remainder.
+pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&DrawableStructure> {
+    parts.iter().find(|part| {
+        share -= part.weight;
+        share < 0.0
+    })
 }
 
 /// The most probable structure, the first of equals.
@@ -260,20 +263,23 @@ fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
 }
 
 impl DrawableStructure {
-    fn new(ship: &IdentifiedShip, stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
-        let weight = checked(weight, stored.weight)?;
-        let model = stored.model()?;
-        let has_motion = !ship.hulls.is_empty();
+    pub(crate) fn new(stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
+        let (weight, model) = (checked(weight, stored.weight)?, stored.model()?);
+        let (root, dead_times) = (root_of(&stored.covariance)?, stored.dead_times(&model));
+        Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
+    }
+
+    /// The same structure, checked to have all that its effects need in a manoeuvre.
+    fn sailing(self, ship: &IdentifiedShip) -> Result<Self, PredictError> {
         for (regressor, channel, option) in
             [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
         {
-            let needs = model.effects().iter().any(|effect| effect.needs() == Some(regressor));
-            if needs && !has_motion {
+            let needs = self.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
+            if needs && ship.hulls.is_empty() {
                 return Err(PredictError::Needs { channel, option });
             }
         }
-        let (root, dead_times) = (root_of(&stored.covariance)?, stored.dead_times(&model));
-        Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
+        Ok(self)
     }
 
     /// Random yaw moment: of the form of the hull, or of the structure.
@@ -287,7 +293,7 @@ impl DrawableStructure {
     }
 
     /// Drawn parameters, by their covariance and inside the ranges of the effects: normal, or Student's t.
-    fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
+    pub(crate) fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: stored, fitted, degrees_of_freedom, .. } = &self.stored;
         let mut values = stored.clone();
         if self.root.is_empty() {

@@ -14,6 +14,7 @@ use trial::manoeuvre::{from_words, to_words};
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
 use crate::interval::{PredictionInterval, band};
+use crate::median_track::{Turn, median_track};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
 use crate::steady::SteadyCurve;
@@ -98,9 +99,27 @@ pub struct ManoeuvreCurves {
     pub most_probable: Option<SimulatedManoeuvre>,
     /// Tracks of some of the draws, north and east, m; empty for a model without speed and drift.
     pub tracks: Vec<Vec<[f64; 2]>>,
+    /// Median track of a turning circle: at every change of heading the median place of the draws, north and east, m.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub median_track: Vec<[f64; 2]>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
     #[serde(rename = "curves")]
     pub steady: Vec<SteadyCurve>,
+}
+
+/// What is kept of the manoeuvre of a drawn ship.
+struct DrawnSeries {
+    heading: Vec<f64>,
+    largest_rate: f64,
+    track: Option<Vec<[f64; 2]>>,
+    /// Whether its track is one of those that are shown.
+    is_shown: bool,
+}
+
+impl DrawnSeries {
+    fn turn(&self) -> Option<Turn<'_>> {
+        Some(Turn { heading: &self.heading, track: self.track.as_ref()? })
+    }
 }
 
 impl Prediction {
@@ -140,27 +159,31 @@ impl ShipMixture {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
         };
-        let without_series = |number: u64, passage: SimulatedManoeuvre| {
-            let largest_rate = passage.largest_rate();
-            let track = passage.track().filter(|_| number < TRACKS).map(<[_]>::to_vec);
-            (passage.heading, largest_rate, track)
+        let is_circle = matches!(kind, Manoeuvre::TurningCircle { .. });
+        let series = |number: u64, passage: SimulatedManoeuvre| DrawnSeries {
+            largest_rate: passage.largest_rate(),
+            track: passage.track().filter(|_| is_circle || number < TRACKS).map(<[_]>::to_vec),
+            heading: passage.heading,
+            is_shown: number < TRACKS,
         };
         let all = drawn(draws, |number| {
             let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
-            Some((figures, without_series(number, passage)))
+            Some((figures, series(number, passage)))
         });
-        let (values, series): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
-        let made: Vec<(Vec<f64>, f64, Option<_>)> = series.into_iter().flatten().collect();
+        let (values, made): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
+        let made: Vec<DrawnSeries> = made.into_iter().flatten().collect();
         enough(kind, made.len(), draws)?;
         let lost = draws - made.len();
-        let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|(_, rate, _)| *rate));
+        let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|series| series.largest_rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
-        let headings: Vec<&[f64]> = made.iter().map(|(heading, ..)| heading.as_slice()).collect();
+        let headings: Vec<&[f64]> = made.iter().map(|series| series.heading.as_slice()).collect();
+        let turns: Vec<Turn> = made.iter().filter(|_| is_circle).filter_map(DrawnSeries::turn).collect();
         let curves = ManoeuvreCurves {
             heading: bands(&headings, most_probable.as_ref(), period(self.timescale())),
             most_probable,
-            tracks: made.into_iter().filter_map(|(.., track)| track).collect(),
+            median_track: median_track(&turns, kind.side().sign()),
+            tracks: made.into_iter().filter(|series| series.is_shown).filter_map(|series| series.track).collect(),
             steady: Vec::new(),
         };
         let mut figures = predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0));

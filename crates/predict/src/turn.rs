@@ -8,6 +8,7 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial, ZigZag};
 
 use crate::figures::{self, Figures};
+use crate::median_track::{Turn, median_track};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
 /// Rudder angle, relative to the largest, above which the rudder counts as held.
@@ -104,6 +105,16 @@ impl HeldTurn {
         self.execute - self.start
     }
 
+    /// Row of the execute.
+    fn first_row(&self, passage: &SimulatedManoeuvre) -> usize {
+        (self.approach() / passage.period).round() as usize
+    }
+
+    /// Headings from the execute on.
+    fn headings<'a>(&self, passage: &'a SimulatedManoeuvre) -> &'a [f64] {
+        &passage.heading[self.first_row(passage).min(passage.heading.len())..]
+    }
+
     /// Figures of a turn up to the end of that of the record.
     pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         self.whole_figures(&passage.until(self.until - self.start))
@@ -111,7 +122,7 @@ impl HeldTurn {
 
     /// Figures of a turn up to its end; its clock starts with the record.
     pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
-        let first = (self.approach() / passage.period).round() as usize;
+        let first = self.first_row(passage);
         let begin = passage.at(&passage.heading, self.approach());
         let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
         let after = SimulatedManoeuvre { heading, period: passage.period, ..SimulatedManoeuvre::default() };
@@ -124,7 +135,7 @@ impl HeldTurn {
     /// circles at most. `None` where there is no track.
     fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
         let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
-        let first = (self.approach() / passage.period).round() as usize;
+        let first = self.first_row(passage);
         let (begin, course) = (*track.get(first)?, *passage.heading.get(first)?);
         let (sin, cos) = course.sin_cos();
         let place = |row: usize| {
@@ -185,6 +196,8 @@ pub struct TurnTracks {
     pub most_probable: Vec<[f64; 2]>,
     /// Tracks of some drawn ships.
     pub drawn: Vec<Vec<[f64; 2]>>,
+    /// At every change of heading the median place of all drawn ships.
+    pub median: Vec<[f64; 2]>,
 }
 
 impl TurnTracks {
@@ -195,10 +208,15 @@ impl TurnTracks {
         most_probable: &SimulatedManoeuvre,
         made: &[SimulatedManoeuvre],
     ) -> Option<Self> {
+        let drawn: Vec<(&[f64], Vec<[f64; 2]>)> =
+            made.iter().filter_map(|passage| Some((turn.headings(passage), turn.track(passage)?))).collect();
+        let turns: Vec<Turn> = drawn.iter().map(|(heading, track)| Turn { heading, track }).collect();
+        let median = median_track(&turns, turn.side);
         Some(Self {
             measured: turn.track(record)?,
             most_probable: turn.track(most_probable)?,
-            drawn: made.iter().take(DRAWN_TRACKS).filter_map(|passage| turn.track(passage)).collect(),
+            drawn: drawn.into_iter().take(DRAWN_TRACKS).map(|(_, track)| track).collect(),
+            median,
         })
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::completed::{self, completed};
 use crate::formula_options::{Formulas, formula, formulas};
-pub use crate::ship_options::{ScaleOptions, ShipOptions};
+pub use crate::ship_options::{ScaleOptions, ShipOptions, TrialOptions};
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::failure::Failure;
@@ -45,7 +45,7 @@ pub struct Common {
     /// Number of threads [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     pub threads: Option<u16>,
-    /// Seed of the simulation, in place of the scenario's
+    /// Seed of the simulation or of draws, in place of the scenario's
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// No progress bar, table, note or warning; only errors and the output that --format asks for
@@ -116,6 +116,21 @@ pub struct ReadingOptions {
     /// Known particulars of the ship
     #[command(flatten)]
     pub ship: ShipOptions,
+    /// What is known of the trial
+    #[command(flatten)]
+    pub of_trial: TrialOptions,
+}
+
+/// Draws of an estimate as a file.
+#[derive(Debug, Clone, Args)]
+pub struct DrawsOptions {
+    /// Also write draws of K, T and all other parameters from their covariance, a row each, as draws.parquet; those of
+    /// --seed, 0 without it
+    #[arg(long)]
+    pub draws_file: bool,
+    /// Draws of every estimate in that file
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
+    pub draws: u32,
 }
 
 /// A time in a record.
@@ -163,7 +178,8 @@ pub struct FitRequest {
     pub trials: Vec<PathBuf>,
     /// Fit every record alone: one row each, or with --format json one line of JSON each, on standard output only; a
     /// record that cannot be read is a row
-    #[arg(long, conflicts_with_all = ["validate", "priors", "with_columns", "trial", "from", "until", "out"])]
+    #[arg(long, conflicts_with_all = ["validate", "priors", "with_columns", "trial", "from", "until", "out",
+        "draws_file"])]
     pub each: bool,
     /// Records on which the identified responses are replayed; only their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
@@ -179,6 +195,9 @@ pub struct FitRequest {
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
+    /// Draws of the answers
+    #[command(flatten)]
+    pub draws: DrawsOptions,
     /// How figures are drawn, and whether
     #[command(flatten)]
     pub style: PageFigureOptions,
@@ -264,6 +283,9 @@ pub struct TraceRequest {
     #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), hide_possible_values = true,
         value_parser = completed(rule, completed::rules))]
     pub rule: Rule,
+    /// Draws of the model
+    #[command(flatten)]
+    pub draws: DrawsOptions,
     /// How figures are drawn, and whether
     #[command(flatten)]
     pub style: PageFigureOptions,

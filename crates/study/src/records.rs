@@ -2,18 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use document::{Code, ErrorCode, Source, Warning, Warnings};
+use document::{Code, Source, TrialParticularsEntry, Warning, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
 use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, called};
-use trial::find::FoundManoeuvre;
-use trial::{Channel, Log, Manoeuvre, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
+use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
-use crate::ship_options::FormOptions;
 use campaign::answers::TRIALS;
 use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::known::RecordFacts;
@@ -21,10 +19,6 @@ use campaign::scenario::name;
 
 /// File endings of records in a folder.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
-
-/// Maximum share of time outside the zig-zag for a record to be used whole; more is a run-up, a stop, the way back to
-/// the course or another manoeuvre, and is cut.
-const MAX_SURPLUS_SHARE: f64 = 0.02;
 
 /// Files of the given paths; a folder stands for all its records, in the order of their names, and `-` for standard
 /// input.
@@ -142,22 +136,25 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Wa
     let log = if from.is_some() || until.is_some() {
         log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
-        chosen(log, path, options.trial, warnings)?
+        log.chosen(options.trial).map_err(refused)?
     };
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: reader_warnings } = log.into_trial(ship).map_err(refused)?;
     warnings.extend(source(path).of(reader_warnings));
-    with_hull(trial, path, &options.ship.form)
+    with_declared(trial, path, options)
 }
 
-/// The record with the hull particulars of the options, which override those of a sidecar; particulars of a ship of
+/// The record with hull and trial particulars of the options, which override those of a sidecar; particulars of a ship of
 /// another length are dropped.
-fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, Failure> {
+fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
     let length = trial.particulars().map(|ship| ship.length);
     if conditions.particulars.is_some_and(|ship| Some(ship.length) != length) {
         conditions.hull = HullParticulars::default();
+        (conditions.trial.draught_fore, conditions.trial.draught_aft) = (None, None);
     }
+    conditions.trial = options.of_trial.or(&conditions.trial);
+    let options = &options.ship.form;
     options.apply(&mut conditions.hull);
     let trial = trial.with_conditions(conditions);
     if let Some(key) = options.first() {
@@ -166,6 +163,18 @@ fn with_hull(trial: Trial, path: &Path, options: &FormOptions) -> Result<Trial, 
         trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::about(path, error))?;
     }
     Ok(trial)
+}
+
+/// Ship, day and draughts of a record, for other programs and the first page.
+pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
+    let (of_trial, hull) = (&trial.conditions().trial, trial.conditions().hull);
+    TrialParticularsEntry {
+        ship_name: of_trial.ship_name.clone(),
+        date: of_trial.date.clone(),
+        draught_fore_m: of_trial.draught_fore,
+        draught_aft_m: of_trial.draught_aft,
+        draught_m: of_trial.mean_draught().or(hull.draught),
+    }
 }
 
 /// A time on the clock of a record, s.
@@ -183,85 +192,6 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
             })
         }
     }
-}
-
-/// The manoeuvres of a log, in order of time; none where it has no heading.
-pub fn manoeuvres(log: &Log) -> Vec<FoundManoeuvre> {
-    let (Some(rudder), Some(heading)) = (log.channel(Channel::Rudder), log.channel(Channel::Heading)) else {
-        return Vec::new();
-    };
-    trial::find::manoeuvres(&trial::find::Signals {
-        time: log.time(),
-        rudder,
-        heading,
-        speed: log.channel(Channel::Speed),
-        propeller: log.channel(Channel::PropellerRate),
-    })
-}
-
-/// The selected manoeuvre; else the zig-zag, where the log holds one and is much longer than it.
-fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Warnings) -> Result<Log, Failure> {
-    let file = path.display();
-    if asked.is_none() && log.has_declared_part() {
-        return Ok(log);
-    }
-    let listed = manoeuvres(&log);
-    let manoeuvre = match asked {
-        Some(number) => number.checked_sub(1).and_then(|place| listed.get(place)).ok_or_else(|| {
-            Failure::about(path, format!("there is no manoeuvre {number}; `study find {file}` lists {}", listed.len()))
-        })?,
-        None => {
-            let zigzags: Vec<(usize, &FoundManoeuvre)> = (1..)
-                .zip(&listed)
-                .filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. })))
-                .collect();
-            match zigzags.as_slice() {
-                [] => {
-                    if listed.iter().any(|manoeuvre| manoeuvre.manoeuvre.is_none()) {
-                        let text = format!(
-                            "no zig-zag is recognised, so the whole record is used; `study find {file}` lists its manoeuvres; to use a part, \
-                             write `from-s` and `until-s` under [part] of its sidecar"
-                        );
-                        warnings.push(Code::WholeRecord, source(path), text);
-                    }
-                    return Ok(log);
-                }
-                [(_, only)] => *only,
-                several => return Err(ask(&log, path, several)),
-            }
-        }
-    };
-    let (from, until) = (manoeuvre.from, manoeuvre.until);
-    let time = log.time();
-    let beside = (from - time[0]) + (time[time.len() - 1] - until);
-    if asked.is_none() && beside <= MAX_SURPLUS_SHARE * (until - from) {
-        return Ok(log);
-    }
-    let text = format!(
-        "the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under [part] \
-         of its sidecar",
-        manoeuvre.name(),
-        at(&log, from),
-        at(&log, until)
-    );
-    warnings.push(Code::Part, source(path), text);
-    log.part(from, until).map_err(refused)
-}
-
-/// Error for a log with several zig-zags, which lists them with their `--trial` numbers.
-fn ask(log: &Log, path: &Path, several: &[(usize, &FoundManoeuvre)]) -> Failure {
-    let line = |(number, entry): &(usize, &FoundManoeuvre)| {
-        format!("\n  --trial {number}: {}, {} to {}", entry.name(), at(log, entry.from), at(log, entry.until))
-    };
-    let lines: String = several.iter().map(line).collect();
-    Failure::about(path, format!("there are {} zig-zags in this log; choose one:{lines}", several.len()))
-        .with_code(ErrorCode::SeveralManoeuvres)
-}
-
-/// A time of a log as text: seconds, and the reading of the clock.
-pub fn at(log: &Log, time: f64) -> String {
-    let clock = log.clock.map(|clock| format!(" ({})", clock.at(time)));
-    format!("{} s{}", fixed(time, 1), clock.unwrap_or_default())
 }
 
 /// Length and approach speed from the options; the speed from the record where it is not given.

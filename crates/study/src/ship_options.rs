@@ -4,6 +4,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use ship::angle::KNOT;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
+use trial::{TrialParticulars, clock};
 
 use crate::style_options::within;
 
@@ -43,6 +44,38 @@ impl ShipOptions {
     /// Whether no particular is given.
     pub fn is_empty(&self) -> bool {
         self.scale.length_m.is_none() && self.form.0.is_empty()
+    }
+}
+
+/// Particulars of a trial for the first page of its report.
+#[derive(Debug, Clone, Default, Args)]
+pub struct TrialOptions {
+    /// Name of the ship, for the first page of the report
+    #[arg(long, value_name = "NAME")]
+    pub ship_name: Option<String>,
+    /// Day of the trial [default: that of the sidecar or of the stamps of the record]
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
+    pub date: Option<String>,
+    /// Draught at the fore perpendicular, m, for the first page
+    #[arg(long, value_name = "D", value_parser = within(DRAUGHT))]
+    pub draught_fore_m: Option<f64>,
+    /// Draught at the aft perpendicular, m, for the first page
+    #[arg(long, value_name = "D", value_parser = within(DRAUGHT))]
+    pub draught_aft_m: Option<f64>,
+}
+
+/// Draughts of ships and models, m.
+const DRAUGHT: [f64; 2] = [0.01, 50.0];
+
+fn day(text: &str) -> Result<String, String> {
+    clock::day(text).ok_or_else(|| String::from("expected a date such as 2026-11-20"))
+}
+
+impl TrialOptions {
+    /// Particulars of the options, completed by those of a record.
+    pub fn or(&self, of_record: &TrialParticulars) -> TrialParticulars {
+        let Self { ship_name, date, draught_fore_m, draught_aft_m } = self.clone();
+        TrialParticulars { ship_name, date, draught_fore: draught_fore_m, draught_aft: draught_aft_m }.or(of_record)
     }
 }
 

@@ -51,6 +51,11 @@ pub fn date(day: i64) -> impl std::fmt::Display {
     i32::try_from(day).ok().and_then(NaiveDate::from_epoch_days).unwrap_or(NaiveDate::MAX)
 }
 
+/// Day of a text such as `2026-11-20`, as [`date`] writes it.
+pub fn day(text: &str) -> Option<String> {
+    text.trim().parse::<NaiveDate>().ok().map(|day| day.to_string())
+}
+
 /// Cursor over the characters of a stamp.
 struct Scan<'a> {
     tail: &'a [u8],

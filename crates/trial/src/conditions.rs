@@ -6,6 +6,8 @@ use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
 use thiserror::Error;
 
+use crate::trial_particulars::TrialParticulars;
+
 /// Minimum water depth of a trial, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const FEWEST_DRAUGHTS: f64 = 4.0;
 /// Maximum wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
@@ -55,6 +57,9 @@ pub struct Conditions {
     /// Weather of the same sidecar.
     #[serde(skip)]
     pub weather: Option<DeclaredWeather>,
+    /// Ship, day and draughts of the trial, of the same sidecar.
+    #[serde(skip)]
+    pub trial: TrialParticulars,
     /// Breadth of the ship; lengths are of the scale of [ship] length-m. (m)
     #[serde(rename = "beam-m")]
     pub beam: Option<f64>,
@@ -142,9 +147,11 @@ fn draught_note(share: f64) -> String {
 impl Conditions {
     /// The same conditions without blanks around texts.
     pub(crate) fn trimmed(mut self) -> Self {
-        let Self { administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, .. } =
-            &mut self;
-        for text in [administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark] {
+        let Self {
+            administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, trial, ..
+        } = &mut self;
+        let ship_name = &mut trial.ship_name;
+        for text in [administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, ship_name] {
             *text = text.take().map(|text| text.trim().to_owned());
         }
         self
@@ -159,6 +166,8 @@ impl Conditions {
             ("rudder-area-m2", &mut self.rudder_area, hull.rudder_area),
         ];
         let mut conflict = None;
+        *pairs[1].1 = pairs[1].1.or(self.trial.mean_draught().filter(|_| hull.draught.is_none()));
+        self.trim = self.trim.or(self.trial.trim());
         for (key, form, ship) in pairs {
             conflict = conflict.or(form.zip(ship).is_some_and(|(form, ship)| form != ship).then_some(key));
             *form = ship.or(*form);
@@ -184,6 +193,10 @@ impl Conditions {
             ("draught-m", self.draught, self.beam, "a draught below beam-m"),
             ("full-load-draught-m", self.full_load_draught, self.beam, "a draught below beam-m"),
         ];
+        let ends = self.trial.draughts().map(|[fore, aft]| [fore.min(aft), fore.max(aft)]);
+        if ends.zip(self.draught).is_some_and(|([low, high], mean)| !(low..=high).contains(&mean)) {
+            return Some(("draught-m", "a mean draught between those fore and aft of [trial], or nothing"));
+        }
         let broken = rules
             .into_iter()
             .find(|(_, value, limit, _)| value.zip(*limit).is_some_and(|(value, limit)| value >= limit));

@@ -43,6 +43,7 @@ mod sidecar_error;
 mod sidecar_keys;
 #[cfg(test)]
 mod testing;
+mod trial_particulars;
 mod wording;
 pub mod writer;
 pub mod zigzag;
@@ -57,5 +58,6 @@ pub use record::wind::relative_wind;
 pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
 pub use scale::{ScaleError, Scales};
 pub use sidecar::{Sidecar, SidecarError};
+pub use trial_particulars::TrialParticulars;
 pub use writer::write_csv;
 pub use zigzag::{Side, ZigZag, ZigZagError};

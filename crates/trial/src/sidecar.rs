@@ -168,7 +168,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
             (number.is_some_and(|rate| (0.1..=200.0).contains(&rate)), "a rate from 0.1 to 200°/s")
         }
         ("form", "trim-m", _) => (number.is_some(), "a number of metres, positive by the stern"),
-        ("form", _, "m") => (above_zero, "a number of metres above 0"),
+        ("form" | "trial", _, "m") => (above_zero, "a number of metres above 0"),
         ("form", _, "m²") => (above_zero, "a number of square metres above 0"),
         ("form", _, "number") => (whole(1..=10), "a whole number from 1 to 10"),
         ("form", _, "0 to 12") => (whole(0..=12), "a whole number from 0 to 12 (the Beaufort scale)"),
@@ -176,7 +176,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
         ("form", _, "full or partial") => {
             (matches!(value.as_str(), Some("full" | "partial")), "\"full\" or \"partial\"")
         }
-        ("form", _, "text") => {
+        ("form" | "trial", _, "text") => {
             let text = value.as_str().map_or("", str::trim);
             let fits = (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control);
             (fits, "a text of 1 to 100 characters in one line")
@@ -213,11 +213,11 @@ fn syntax(error: toml::de::Error) -> Fault {
 fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let document = DeTable::parse(text).map_err(syntax)?.into_inner();
     check_values(text, &document)?;
-    let SidecarKeys { weather, table, part, column, rudder, ship, noise, check, form } =
+    let SidecarKeys { weather, table, part, column, rudder, ship, noise, check, trial, form } =
         toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let conditions = conditions(text, &document, ship, Conditions { weather, ..form.trimmed() })?;
+    let conditions = conditions(text, &document, ship, Conditions { weather, trial, ..form }.trimmed())?;
     let noise = Noise {
         heading: noise.heading_deg.map(from_deg),
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),

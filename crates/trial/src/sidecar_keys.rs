@@ -16,6 +16,7 @@ use toml::Spanned;
 use crate::cells::Separator;
 use crate::conditions::{Conditions, DeclaredWeather};
 use crate::encoding::Encoding;
+use crate::trial_particulars::TrialParticulars;
 
 // The tables of the file. Comments on fields are the descriptions in `study list sidecar` and in the JSON schema.
 
@@ -38,6 +39,9 @@ pub(crate) struct SidecarKeys {
     pub noise: NoiseKeys,
     #[serde(default)]
     pub check: CheckKeys,
+    #[serde(default)]
+    #[schemars(description = "The table as it is written.")]
+    pub trial: TrialParticulars,
     #[serde(default)]
     #[schemars(description = "The table as it is written.")]
     pub form: Conditions,

@@ -210,7 +210,16 @@ fn of_wires() -> Vec<File> {
         let course = sentence(&format!("GPVTG,{:.1},T,,M,12.0,N,22.2,K,A", voyage().heading(tenth)));
         format!("{course}\r\n{}", rsa(tenth))
     });
+    // Every frame holds a heading of 57.3 degrees: eight bytes of PGN 127250 in base64.
+    let frame = |row: usize| format!("{:.1},0x9f1120a,1,0,0,8,/xAn/3//f/0=\n", 0.1 * row as f64);
+    let frames = (0..20).map(frame).collect::<String>();
     vec![
+        File::new(
+            "python-can.csv",
+            "frames of a CAN bus as python-can writes them, in base64",
+            format!("timestamp,arbitration_id,extended,remote,error,dlc,data\n{frames}"),
+            Refused(&["CAN frames", "base64", "python-can", "`can_logconvert LOG.csv LOG.log`", "canboat"]),
+        ),
         File::new(
             "checksums.nmea",
             "sentences with wrong checksums",

@@ -22,7 +22,7 @@ use crate::scenario::records::{self, RecordStudyWire};
 use crate::scenario::stop::StopRule;
 use crate::scenario::sweep::{self, SweepAxis};
 use crate::scenario::wire::ScenarioWire;
-use crate::scenario::words::{Published, Words};
+use crate::scenario::words::{Presentation, Published, Words};
 use crate::scenario::{checks, locate, name, reader, resolve, resolved};
 
 /// Key of a study of measured records, in place of ship, manoeuvre and instruments.
@@ -56,6 +56,12 @@ pub struct Scenario {
     pub text: String,
     /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
+    /// Keys of `[output]` in a manifest of another version, which are left out.
+    pub unknown_output: Vec<String>,
+}
+
+fn table_of(path: &Path, text: &str) -> Result<Table, Failure> {
+    text.parse().map_err(|error| not_toml(path, text, &error))
 }
 
 /// The part of a manifest from which its scenario is read.
@@ -79,20 +85,29 @@ impl Scenario {
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
-            return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
+            let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
+            let mut document = table_of(path, &text)?;
+            let unknown_output = Presentation::without_unknown(&mut document);
+            let scenario = Self::of_table(path, &manifest.name, text, &document, seed)?;
+            return Ok(Self { unknown_output, ..scenario });
         }
         Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; messages and relative paths refer to `path`.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
+        let document = table_of(path, &text)?;
+        Self::of_table(path, name, text, &document, seed)
+    }
+
+    /// Resolves the table of a text.
+    fn of_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
-        let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
-        let scenario = Self::of_document(&document, name, folder).map_err(|fault| {
+        let scenario = Self::of_document(document, name, folder).map_err(|fault| {
             let span = locate::span(&text, &fault.key, fault.mark);
             Failure::at(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
-        let design = identity::design_of(&document);
+        let design = identity::design_of(document);
         let design_sha256 = match document.contains_key(RECORDS) {
             true => records::design_sha256(&design, scenario.cells.iter().filter_map(DesignCell::record_set)),
             false => identity::sha256_of(&design, folder)?,
@@ -196,6 +211,7 @@ impl Scenario {
             design_sha256: String::new(),
             text: String::new(),
             sha256: String::new(),
+            unknown_output: Vec::new(),
         })
     }
 

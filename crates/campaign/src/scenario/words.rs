@@ -41,6 +41,20 @@ pub struct Presentation {
     pub detail: Vec<String>,
 }
 
+impl Presentation {
+    /// The keys of its table.
+    const KEYS: [&str; 7] = ["showcase", "figure", "title", "highlight", "figures", "marks", "detail"];
+
+    /// Leaves keys of other versions out of `output` in the scenario of a manifest, which decides no row: their names.
+    pub(crate) fn without_unknown(document: &mut Table) -> Vec<String> {
+        let Some(Value::Table(output)) = document.get_mut("output") else { return Vec::new() };
+        let is_unknown = |key: &&String| !Self::KEYS.contains(&key.as_str());
+        let unknown: Vec<String> = output.keys().filter(is_unknown).cloned().collect();
+        unknown.iter().for_each(|key| drop(output.remove(key)));
+        unknown
+    }
+}
+
 /// What a figure is about: everything else in it is pale.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -78,7 +92,8 @@ pub struct Published {
 impl Words {
     /// Prose of the text of a scenario; empty for an invalid text.
     pub fn of(scenario: &str) -> Self {
-        let document: Table = scenario.parse().unwrap_or_default();
+        let mut document: Table = scenario.parse().unwrap_or_default();
+        Presentation::without_unknown(&mut document);
         let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
         let output = document.get("output").cloned().and_then(|output| output.try_into().ok()).unwrap_or_default();
         Self { question: text("question"), analysis: text("analysis"), finding: text("finding"), output }
@@ -116,5 +131,20 @@ impl Published {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A manifest of another version is the same study, and its words are those that are still known.
+    #[test]
+    fn keys_of_other_versions_are_left_out() {
+        let schema = schemars::schema_for!(Presentation);
+        let keys = schema.as_value()["properties"].as_object().expect("a table");
+        assert!(keys.keys().eq(Presentation::KEYS), "{keys:?}");
+        let words = Words::of("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
+        assert_eq!((words.question.as_str(), words.output.figure.as_deref()), ("Which?", Some("errors")));
     }
 }

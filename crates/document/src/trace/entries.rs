@@ -6,6 +6,7 @@ use ship::Particulars;
 
 use super::errors::BeforeAfter;
 use crate::quantity::Quantity;
+use crate::trial_particulars::TrialParticularsEntry;
 
 /// K, T and δ_r.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -154,6 +155,9 @@ pub struct RecordEntry {
     pub length_m: Option<f64>,
     /// Approach speed of the ship, where it is known, m/s.
     pub speed_m_s: Option<f64>,
+    /// Ship, day and draughts, where something is known of them.
+    #[serde(default, skip_serializing_if = "TrialParticularsEntry::is_empty")]
+    pub trial_particulars: TrialParticularsEntry,
 }
 
 impl RecordEntry {

@@ -217,7 +217,8 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let columns: Vec<AxisSide> = (0..count.min(stack.x.len() * count)).map(&mut column).collect();
     let mut row = |(number, row): (usize, &PanelRow)| {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
-        data.fixed.extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
+        data.fixed
+            .extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
         let (axis, cut) = row.y.axis(&data, PAD);
         is_cut |= cut;
         let (lo, hi) = axis.ends();

@@ -8,9 +8,10 @@ use report::{Table, TableHead};
 use trial::file::called;
 
 use crate::documents;
-use crate::documents::find::{FindAnswer, LogEntry, ManoeuvreEntry};
+use crate::documents::find::{FindAnswer, ManoeuvreEntry, SearchedLog};
+use crate::documents::log::LogEntry;
 use crate::options::{Common, FindRequest, Format};
-use crate::records::{expand, manoeuvres, open};
+use crate::records::{expand, open};
 use crate::screen;
 use campaign::failure::Failure;
 
@@ -34,9 +35,9 @@ pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<Fin
     Ok(FindAnswer { logs, warnings: warnings.ranked() })
 }
 
-fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<LogEntry, Failure> {
+fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<SearchedLog, Failure> {
     let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
-    Ok(LogEntry::of(called(file), &log, &manoeuvres(&log)))
+    Ok(SearchedLog::of(called(file), &log, &log.manoeuvres()))
 }
 
 /// Prints the manoeuvres of every log.
@@ -50,7 +51,8 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         return Ok(());
     }
     for file in &files(request)? {
-        let LogEntry { file, rows, duration_s, date, manoeuvres } = entry(file, request, &mut warnings)?;
+        let SearchedLog { log, manoeuvres } = entry(file, request, &mut warnings)?;
+        let LogEntry { file, rows, duration_s, date } = log;
         if common.is_silent() {
             continue;
         }

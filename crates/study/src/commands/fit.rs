@@ -9,7 +9,7 @@ use report::Theme;
 
 use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
-use crate::documents::{self, FIT, folder_for_records};
+use crate::documents::{self, FIT, draws, folder_for_records};
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, read_all, read_for_replay, repetitions};
 use crate::screen::{self, CommandOutput};
@@ -34,10 +34,14 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit"));
     let place = folder_for_records(FIT, &place, &trials)?;
-    let fit = fit([&trials, &validation], &methods, &priors, common.quiet, warnings)?;
+    let fit = fit([&trials, &validation], &methods, &priors, common.quiet, warnings)?.with_predicted_circle();
     let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();
     let text = documents::keep_with_curves(&folder, FIT, &fit.document, &curves)?;
+    if request.draws.draws_file {
+        let answers = fit.document.ships.iter().map(|(method, ship)| (method.as_str(), ship));
+        draws::keep_estimates(&folder, answers, request.draws.draws, common.seed.unwrap_or_default())?;
+    }
     show(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
 }
 

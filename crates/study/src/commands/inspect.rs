@@ -11,6 +11,7 @@ use trial::{Log, ReadError};
 
 use crate::documents;
 use crate::documents::inspect::{ChannelEntry, InspectAnswer};
+use crate::documents::log::LogEntry;
 use crate::options::Common;
 use crate::records::{open, source};
 use crate::screen::{self, CommandOutput};
@@ -39,7 +40,8 @@ pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     let file = called(&request.log);
     warnings.extend(source(file).of(doubts(log.clone())));
     let answer = InspectAnswer::of(file, &log, warnings.ranked());
-    let before = format!("{}: {} rows, {} s\n", answer.file, answer.rows, fixed(answer.duration_s, 1));
+    let LogEntry { file, rows, duration_s, .. } = &answer.log;
+    let before = format!("{file}: {rows} rows, {} s\n", fixed(*duration_s, 1));
     let text = documents::answer_text(&answer)?;
     let output = CommandOutput { frame: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
     screen::tell(common, &output, &answer.warnings)

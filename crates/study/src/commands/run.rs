@@ -13,12 +13,17 @@ use super::reply;
 use crate::documents::answers::ShardAnswer;
 use crate::documents::folder_for;
 use crate::options::{Common, RunRequest};
+use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
 /// Runs a scenario and publishes it as `study report` would, or a shard of it.
 pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
+    if !scenario.unknown_output.is_empty() && !common.quiet {
+        let keys = scenario.unknown_output.join(", ");
+        screen::warn(&format!("note: {keys} under [output] is of another version and left out; it decides no row"));
+    }
     let theme = request.style.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name));
     let folder = ResultFolder::make(&folder_for(MANIFEST, &place)?)?;

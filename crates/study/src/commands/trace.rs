@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use report::Theme;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::{TRACE, folder_for_records};
+use crate::documents::{TRACE, draws, folder_for_records};
 use crate::interrupt;
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_for_replay, repetitions};
@@ -35,6 +35,10 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let traced = trace([&trials, &validation], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;
+    if request.draws.draws_file {
+        let answer = std::iter::once(("trace", &traced.document.ship));
+        draws::keep_estimates(&folder, answer, request.draws.draws, common.seed.unwrap_or_default())?;
+    }
     show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
     if interrupt::is_asked() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
 }

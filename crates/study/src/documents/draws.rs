@@ -1,29 +1,24 @@
-//! Drawn ships of a prediction, for other programs: `draws.parquet`, one row per ship.
+//! Draws for other programs, `draws.parquet`: ships of a prediction and estimates of a fit or a trace, one row each.
 
 use std::collections::BTreeMap;
 
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use campaign::parquet_table::{self, Values};
-use predict::{DrawnParameters, PredictDocument};
+use document::IdentifiedShip;
+use predict::{DrawnEstimate, DrawnParameters, EstimateDraws, PredictDocument};
 
 /// Name of the file.
 pub const DRAWS: &str = "draws.parquet";
 
-/// Columns: number of the ship, its parameters, and its figures in every manoeuvre; missing where a structure or a ship
-/// lacks them.
+/// Columns of a prediction: number of the ship, its parameters, and its figures in every manoeuvre; missing where a
+/// structure or a ship lacks them.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
     let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
     let texts = |pick: &dyn Fn(&DrawnParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
     let file = |draw: &DrawnParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
-    let mut parameters: BTreeMap<&str, Vec<Option<f64>>> = BTreeMap::new();
-    for (row, draw) in drawn.iter().enumerate() {
-        for (key, value) in &draw.parameters {
-            parameters.entry(key).or_insert_with(|| vec![None; drawn.len()])[row] = Some(*value);
-        }
-    }
-    let parameters = parameters.into_iter().map(|(key, values)| (format!("parameter.{key}"), Values::Numbers(values)));
+    let parameters = parameter_columns(drawn.iter().map(|ship| &ship.parameters[..]).collect());
     let figures = predicted.manoeuvres.iter().flat_map(|manoeuvre| {
         let name = move |figure: &String| format!("figure.{}.{figure}", manoeuvre.kind);
         manoeuvre.figures.iter().map(move |(figure, values)| (name(figure), Values::Numbers(values.draws.clone())))
@@ -43,8 +38,75 @@ fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     .collect()
 }
 
+/// A column for every parameter of some rows.
+fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (String, Values)> {
+    let mut columns: BTreeMap<String, Vec<Option<f64>>> = BTreeMap::new();
+    for (row, parameters) in rows.iter().enumerate() {
+        for (key, value) in *parameters {
+            let column = columns.entry(format!("parameter.{key}")).or_insert_with(|| vec![None; rows.len()]);
+            column[row] = Some(*value);
+        }
+    }
+    columns.into_iter().map(|(name, values)| (name, Values::Numbers(values)))
+}
+
+/// A draw of an answer.
+struct EstimateRow<'a> {
+    number: u32,
+    method: &'a str,
+    drawn: DrawnEstimate,
+}
+
+impl EstimateRow<'_> {
+    /// What the first three parameters make, 1/T, K/T and δ_r; missing where it is infinite.
+    fn number(&self, of: fn([f64; 3]) -> f64) -> Option<f64> {
+        let base = std::array::from_fn(|place| self.drawn.parameters[place].1);
+        Some(of(base)).filter(|value| value.is_finite())
+    }
+}
+
+/// The columns of answers: which draw of which method it is, K, T and δ_r, and every parameter.
+fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
+    let texts = |of: fn(&EstimateRow) -> String| Values::Texts(rows.iter().map(|row| Some(of(row))).collect());
+    let numbers = |of: fn([f64; 3]) -> f64| Values::Numbers(rows.iter().map(|row| row.number(of)).collect());
+    [
+        ("draw", Values::Counts(rows.iter().map(|row| Some(row.number.into())).collect())),
+        ("method", texts(|row| row.method.to_owned())),
+        ("structure", texts(|row| row.drawn.structure.clone())),
+        ("weight", Values::Numbers(rows.iter().map(|row| Some(row.drawn.weight)).collect())),
+        ("K_per_s", numbers(|[inverse_t, k_over_t, _]| k_over_t / inverse_t)),
+        ("T_s", numbers(|[inverse_t, ..]| 1.0 / inverse_t)),
+        ("delta_r_rad", numbers(|[.., bias]| bias)),
+    ]
+    .map(|(name, values)| (name.to_owned(), values))
+    .into_iter()
+    .chain(parameter_columns(rows.iter().map(|row| &row.drawn.parameters[..]).collect()))
+    .collect()
+}
+
+/// Writes so many draws of every answer, each under the name of its method, with this seed.
+///
+/// Fails when an answer cannot be drawn from, and when the file cannot be written.
+pub fn keep_estimates<'a>(
+    folder: &ResultFolder,
+    answers: impl Iterator<Item = (&'a str, &'a IdentifiedShip)>,
+    draws: u32,
+    seed: u64,
+) -> Result<(), Failure> {
+    let mut rows = Vec::new();
+    for (method, answer) in answers {
+        let of_answer = EstimateDraws::new(answer, seed).map_err(|error| Failure::about(method, error))?;
+        rows.extend((0..draws).map(|number| EstimateRow { number, method, drawn: of_answer.draw(number.into()) }));
+    }
+    keep_columns(folder, estimate_columns(&rows))
+}
+
 /// Writes the ships of a prediction. Fails when the file cannot be written.
 pub fn keep(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
-    let bytes = parquet_table::encode(columns(predicted)).on("describe", &folder.path().join(DRAWS))?;
+    keep_columns(folder, columns(predicted))
+}
+
+fn keep_columns(folder: &ResultFolder, columns: Vec<(String, Values)>) -> Result<(), Failure> {
+    let bytes = parquet_table::encode(columns).on("describe", &folder.path().join(DRAWS))?;
     folder.write(DRAWS, bytes)
 }

@@ -10,12 +10,13 @@ use trial::Log;
 use trial::find::FoundManoeuvre;
 
 use super::answers::CommandAnswer;
+use super::log::LogEntry;
 
 /// The manoeuvres of some logs.
 #[derive(Serialize, JsonSchema)]
 pub struct FindAnswer {
     /// The logs in the order they were named.
-    pub logs: Vec<LogEntry>,
+    pub logs: Vec<SearchedLog>,
     /// Warnings of the reader, the worst first.
     pub warnings: Vec<Warning>,
 }
@@ -24,17 +25,12 @@ impl CommandAnswer for FindAnswer {
     const SCHEMA: &'static str = "find/1";
 }
 
-/// A log.
+/// A log with its manoeuvres.
 #[derive(Serialize, JsonSchema)]
-pub struct LogEntry {
-    /// The file as it was named.
-    pub file: String,
-    /// Number of rows.
-    pub rows: usize,
-    /// Length, s.
-    pub duration_s: f64,
-    /// First day, where the clock has dates.
-    pub date: Option<String>,
+pub struct SearchedLog {
+    /// The log.
+    #[serde(flatten)]
+    pub log: LogEntry,
     /// Its manoeuvres in order of time.
     pub manoeuvres: Vec<ManoeuvreEntry>,
 }
@@ -62,7 +58,7 @@ pub struct ManoeuvreEntry {
     pub remarks: Vec<String>,
 }
 
-impl LogEntry {
+impl SearchedLog {
     /// A log with its manoeuvres.
     pub fn of(file: &Path, log: &Log, manoeuvres: &[FoundManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
@@ -80,13 +76,6 @@ impl LogEntry {
                 remarks: manoeuvre.quality.remarks(),
             }
         };
-        let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
-        Self {
-            file: file.display().to_string(),
-            rows: log.time().len(),
-            duration_s: last - first,
-            date: log.clock.and_then(|clock| clock.date_at(first)).map(|day| day.to_string()),
-            manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect(),
-        }
+        Self { log: LogEntry::of(file, log), manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect() }
     }
 }

@@ -14,6 +14,10 @@ pub struct FitCurves {
     pub records: Vec<FitRecord>,
     /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
     pub regions: BTreeMap<String, PlotCurve>,
+    /// Median track of the turning circle that is predicted, east and north in ship lengths from the execute on, where
+    /// the course is north.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predicted_circle: Option<PlotCurve>,
 }
 
 /// A record with its replays, in degrees.

@@ -9,6 +9,7 @@ use trial::reader::ChannelInspection;
 use trial::{Channel, Log};
 
 use super::answers::CommandAnswer;
+use super::log::LogEntry;
 
 /// Time between two readings, in usual intervals, beyond which it is a gap.
 const MIN_GAP: f64 = 1.5;
@@ -16,12 +17,9 @@ const MIN_GAP: f64 = 1.5;
 /// A log.
 #[derive(Serialize, JsonSchema)]
 pub struct InspectAnswer {
-    /// The file as it was named.
-    pub file: String,
-    /// Number of rows: instants at which heading, rudder or yaw rate was read.
-    pub rows: usize,
-    /// Length, s.
-    pub duration_s: f64,
+    /// The log.
+    #[serde(flatten)]
+    pub log: LogEntry,
     /// Its channels.
     pub channels: Vec<ChannelEntry>,
     /// Warnings of the reader, the worst first.
@@ -98,9 +96,7 @@ impl InspectAnswer {
     /// A log with its warnings.
     pub fn of(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
         Self {
-            file: file.display().to_string(),
-            rows: log.time().len(),
-            duration_s: log.time().last().zip(log.time().first()).map_or(0.0, |(last, first)| last - first),
+            log: LogEntry::of(file, log),
             channels: log.inspect().iter().map(ChannelEntry::from).collect(),
             warnings,
         }

@@ -10,6 +10,7 @@ pub mod error;
 pub mod find;
 pub mod fit_curves;
 pub mod inspect;
+pub mod log;
 pub mod missing_moment;
 pub mod prior;
 pub mod truth;

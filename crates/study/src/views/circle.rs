@@ -1,10 +1,11 @@
-//! Recorded turning circles: their figures of merit in a sentence, and their tracks to scale.
+//! Turning circles, recorded and predicted: their figures of merit in a sentence, and their tracks to scale.
 
-use document::fit::{CircleEntry, FitDocument, TrialEntry};
+use document::fit::{CircleEntry, FitDocument, PredictedCircleEntry, TrialEntry};
 use document::names;
 use report::figures::{Layer, PanelRow, Panels, Pen, Ruler, Stack};
-use report::number::fixed;
-use report::{CurveOrigin, PageFigure};
+use report::number::{fixed, significant};
+use report::palette::{DASHED, DOTTED, HEADING, INK};
+use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 
@@ -36,22 +37,119 @@ pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     format!("{name}, a turning circle to {side} with {}° of rudder: {figures}", fixed(rudder_deg.abs(), 1))
 }
 
-/// Figures of merit of every circle, a sentence each.
-pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
-    all(document, curves).map(|(name, circle, _)| sentence(&name, circle)).collect()
+/// Figures of merit of a predicted circle.
+fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
+    let figures = [
+        ("advance", circle.advance_lengths),
+        ("transfer", circle.transfer_lengths),
+        ("tactical diameter", circle.tactical_diameter_lengths),
+    ];
+    let figures = figures.map(|(name, lengths)| {
+        let [low, high] = lengths.ci90.map(|end| significant(end, 3));
+        format!("{name} {} L [{low}, {high}]", significant(lengths.median, 3))
+    });
+    let beyond = if circle.extrapolated { ", extrapolated beyond the rudder or yaw rate of the records" } else { "" };
+    format!(
+        "Predicted by {}, a turning circle to {} with {}° of rudder: {}, median and 90 % of {} drawn ships{beyond}",
+        circle.method,
+        circle.side,
+        fixed(circle.rudder_deg, 1),
+        figures.join(", "),
+        circle.draws
+    )
 }
 
-/// The tracks of all circles, to scale; `None` without positions.
-pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
-    let shown = all(document, curves).filter_map(|(name, circle, record)| Some((name, circle, record.circle.clone()?)));
-    let (mut layers, mut findings) = (Vec::new(), Vec::new());
-    for (name, circle, track) in shown {
-        findings.push(sentence(&name, circle));
-        let look = CurveOrigin::Series { label: name.clone(), number: layers.len() }.look();
-        layers.push(Layer::line(name, track, Pen::new(look.colour)));
+/// The figures of merit of every circle, the recorded ones first.
+pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
+    let recorded = all(document, curves).map(|(name, circle, _)| sentence(&name, circle));
+    recorded.chain(document.predicted_circle.iter().map(predicted_sentence)).collect()
+}
+
+/// A circle to scale with the lines that measure it.
+pub struct CircleTrack {
+    /// What it is called.
+    pub name: String,
+    /// East and north in ship lengths from the execute on, where the course is north.
+    pub track: PlotCurve,
+    /// Advance, transfer and tactical diameter, ship lengths.
+    pub figures: [Option<f64>; 3],
+    /// How it is drawn.
+    pub pen: Pen,
+}
+
+impl CircleTrack {
+    /// The circle, and lines of its advance, its transfer and its tactical diameter.
+    pub fn layers(&self) -> Vec<Layer> {
+        let Self { name, track, figures, pen } = self;
+        let mut layers = vec![Layer::line(name.as_str(), track.clone(), *pen)];
+        let side = track.finite().map(|(east, _)| east).max_by(|one, other| one.abs().total_cmp(&other.abs()));
+        let side = side.unwrap_or_default().signum();
+        let measures = Pen { dash: DOTTED, ..*pen }.width(0.8);
+        let mut line = |from: [f64; 2], to: [f64; 2]| {
+            let curve = PlotCurve::new([from[0], to[0]], [from[1], to[1]]);
+            layers.push(Layer::line("", curve, measures));
+        };
+        let [advance, transfer, diameter] = *figures;
+        if let Some(advance) = advance {
+            line([0.0, 0.0], [0.0, advance]);
+            line([0.0, advance], [side * transfer.unwrap_or_default(), advance]);
+        }
+        let opposite = diameter.and_then(|diameter| {
+            let north = track.finite().find(|(east, _)| side * east >= diameter * NEARLY)?.1;
+            Some((side * diameter, north))
+        });
+        if let Some((east, north)) = opposite {
+            line([0.0, north], [east, north]);
+        }
+        layers
     }
+}
+
+/// Share of the tactical diameter from which a point of a track counts as its end: points lie apart.
+const NEARLY: f64 = 0.999;
+
+/// Circles from above, to scale, each with the lines that measure it.
+pub fn from_above(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
+    let layers = further.into_iter().chain(circles.iter().flat_map(CircleTrack::layers)).collect();
     let row = PanelRow::new(Ruler::decimal("along the approach [L]"), 0.62);
-    let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("across, to starboard [L]"), vec![(row, layers)]) };
-    let caption = "Tracks from the execute on, in ship lengths, without the current that they show.";
-    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(stack)))
+    Stack { equal: true, ..Stack::over(Ruler::decimal("across, to starboard [L]"), vec![(row, layers)]) }
+}
+
+/// What is said of the lines that measure a circle.
+pub const MEASURES: &str = "Dotted: advance and transfer at 90° of heading, tactical diameter at 180°.";
+
+/// How a predicted circle is drawn.
+pub fn predicted_pen() -> Pen {
+    Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) }
+}
+
+/// The tracks of all circles, to scale; `None` without positions and prediction.
+pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
+    let recorded = all(document, curves).filter_map(|(name, circle, record)| {
+        let figures = [circle.advance_lengths, circle.transfer_lengths, circle.tactical_diameter_lengths];
+        Some((
+            sentence(&name, circle),
+            CircleTrack { name, track: record.circle.clone()?, figures, pen: Pen::new(INK) },
+        ))
+    });
+    let (mut findings, mut circles): (Vec<String>, Vec<CircleTrack>) = recorded.unzip();
+    for (number, circle) in circles.iter_mut().enumerate() {
+        let look = CurveOrigin::Series { label: circle.name.clone(), number }.look();
+        circle.pen = Pen::new(look.colour);
+    }
+    if let Some((entry, track)) = document.predicted_circle.as_ref().zip(curves.predicted_circle.clone()) {
+        let figures = [entry.advance_lengths, entry.transfer_lengths, entry.tactical_diameter_lengths];
+        let name = format!("median predicted by {}, {}° of rudder", entry.method, fixed(entry.rudder_deg, 1));
+        let figures = figures.map(|lengths| Some(lengths.median));
+        circles.push(CircleTrack { name, track, figures, pen: predicted_pen() });
+        let [advance, diameter] =
+            [entry.advance_lengths, entry.tactical_diameter_lengths].map(|lengths| significant(lengths.median, 3));
+        let rudder = fixed(entry.rudder_deg, 1);
+        findings
+            .push(format!("{rudder}° of rudder: advance {advance} L, tactical diameter {diameter} L are predicted"));
+    }
+    let caption = format!(
+        "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {MEASURES}"
+    );
+    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(from_above(&circles, Vec::new()))))
 }

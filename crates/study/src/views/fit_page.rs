@@ -10,7 +10,7 @@ use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
 
 use super::bench_figures::capital;
-use super::{circle, fit_figures, indices, method_table, predict_form, scale_tables};
+use super::{circle, first_page, fit_figures, indices, method_table, predict_form, scale_tables};
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -24,6 +24,8 @@ const FIRST: &str = "replays";
 #[template(path = "fit.md", escape = "none")]
 struct FitPage<'a> {
     title: String,
+    /// Ship, day and draughts of the trials.
+    particulars: Option<Table>,
     verdict: Option<String>,
     /// Paragraphs below the verdict.
     lines: Vec<String>,
@@ -63,8 +65,11 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let notes = notes(document, curves);
     let note = |line: &str| (if line.starts_with("  ") { "  " } else { "" }, line.trim().to_owned());
     let has_form = !document.form.is_empty();
+    let names = curves.records.iter().map(|record| names::record(&record.name));
+    let named = names.zip(document.trials.iter().map(|trial| &trial.trial_particulars));
     let page = FitPage {
         title: title(document, curves),
+        particulars: first_page::particulars(named),
         verdict: document.verdict.as_ref().and_then(|_| lines.next()),
         lines: lines.filter(|line| !line.is_empty()).collect(),
         criteria: has_form.then(|| predict_form::criteria(&document.form)),

@@ -68,7 +68,7 @@ fn remark(entry: &MethodEntry) -> String {
 
 #[cfg(test)]
 mod tests {
-    use campaign::answer;
+    use identify::answer;
     use identify::{Estimate, IdentifyError, Uncertainty};
     use ship::FirstOrder;
 

@@ -10,6 +10,7 @@ pub mod coverage_table;
 pub mod curve_tables;
 pub mod each_table;
 pub mod findings;
+pub mod first_page;
 pub mod fit_figures;
 pub mod fit_page;
 pub mod held_out;

@@ -6,19 +6,20 @@ use document::names;
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
 use predict::prediction::{Bands, Predicted};
-use predict::replay::RecordReplay;
+use predict::replay::{Compared, RecordReplay};
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
     Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Ruler, Stack,
 };
 use report::number::{counted, fixed, significant};
-use report::palette::{BEFORE, DASHED, HEADING, INK, Look, Marker, SOLID};
+use report::palette::{BEFORE, HEADING, INK, Look, Marker, SOLID};
 use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 use trial::imo::Unit;
 
+use super::circle::{self, CircleTrack, MEASURES, predicted_pen};
 use super::predict_curves::stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
@@ -39,11 +40,11 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
         figures.extend(replayed.tracks.as_ref().map(|tracks| {
             let caption = format!(
                 "{}: recorded and predicted track of the turn from the execute on; nothing is fitted to it, and its current is removed. \
-                 Thin: {} drawn ships.",
+                 {MEASURES} Thin: {} drawn ships.",
                 names::record(&replayed.name),
                 tracks.drawn.len()
             );
-            PageFigure::new(format!("{stem}-track"), diameter(replayed), caption, turn(tracks))
+            PageFigure::new(format!("{stem}-track"), diameter(replayed), caption, turn(replayed, tracks))
         }));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
@@ -167,18 +168,25 @@ fn from_above(track: &[[f64; 2]]) -> PlotCurve {
     PlotCurve::new(east, north)
 }
 
-/// A recorded turn beside its prediction.
-fn turn(tracks: &TurnTracks) -> Panels {
-    let line = |name: &str, track: &[[f64; 2]], pen| Layer::line(name, from_above(track), pen);
-    let mut layers: Vec<Layer> =
-        tracks.drawn.iter().map(|track| line("drawn ships", track, Pen::pale()).within(0.15)).collect();
-    layers.push(line("measured", &tracks.measured, Pen::new(INK).width(1.8)));
-    let dashed = Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) };
-    layers.push(line("most probable ship", &tracks.most_probable, dashed));
-    let row = PanelRow::new(Ruler::decimal("north [L]"), 0.62);
-    let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [L]"), vec![(row, layers)]) };
+/// A recorded turn beside the median of its prediction.
+fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
+    let drawn = |track: &Vec<[f64; 2]>| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.15);
+    let figures = |of: fn(&Compared) -> f64| {
+        let length = replayed.figures.get("advance_m").zip(replayed.figures.get("advance_lengths"));
+        let length = length.map(|(metres, lengths)| metres.measured / lengths.measured);
+        let of_name = |name| replayed.figures.get(name).map(of).zip(length).map(|(metres, length)| metres / length);
+        ["advance_m", "transfer_m", "tactical_diameter_m"].map(of_name)
+    };
+    let circle = |name: &str, track: &[[f64; 2]], figures, pen| {
+        let (name, track) = (name.to_owned(), from_above(track));
+        CircleTrack { name, track, figures, pen }
+    };
+    let circles = [
+        circle("measured", &tracks.measured, figures(|figure| figure.measured), Pen::new(INK).width(1.8)),
+        circle("median of the drawn ships", &tracks.median, figures(|figure| figure.interval.median), predicted_pen()),
+    ];
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::of(stack) }
+    Panels { cut, ..Panels::of(circle::from_above(&circles, tracks.drawn.iter().map(drawn).collect())) }
 }
 
 fn track(prediction: &Prediction) -> Panels {

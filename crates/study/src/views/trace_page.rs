@@ -19,7 +19,7 @@ use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
 use super::trace_hero;
 use super::trace_tables as tables;
-use super::{held_out, horizon, indices, overshoots, prior_odds, staircase};
+use super::{first_page, held_out, horizon, indices, overshoots, prior_odds, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
@@ -134,6 +134,8 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
 struct TracePage<'a> {
     document: &'a TraceDocument,
     title: String,
+    /// Ship, day and draughts of the fitted trials.
+    particulars: Option<Table>,
     /// The physics of the effects of the staircase, a sentence each.
     physics: Vec<String>,
     glance: Table,
@@ -154,9 +156,12 @@ struct TracePage<'a> {
 /// what it is worth on other records come first; what they rest on is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let (prior, overshoots) = (&document.trace.prior, overshoots::all(document, curves));
+    let fitted = document.records.iter().filter(|record| !record.held_out);
+    let named = fitted.map(|record| (names::record(&record.name), &record.trial_particulars));
     let page = TracePage {
         document,
         title: title(document, curves),
+        particulars: first_page::particulars(named),
         physics: physics(document),
         glance: glance(document, &overshoots),
         limits: limits(document),

@@ -6,10 +6,11 @@ use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
 use document::{Code, ErrorCode, ImoFormEntry, Source, Warning, Warnings};
+use identify::answer::entry;
 use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::suspicion::suspicion;
-use identify::{Estimate, Identifier, IdentifierSettings, registry};
+use identify::{Estimate, Identifier, IdentifierSettings, registry, verdict};
 use indicatif::ParallelProgressIterator;
 use predict::form::{self, Form, FormRecord};
 use predict::turn::{self, Current, MeasuredCircle};
@@ -22,14 +23,14 @@ use trial::{Channel, Side, Trial, ZigZag, imo};
 use super::earlier::{self, EarlierModel};
 use super::every_scale::{self, Named, PREFERRED_METHODS};
 use super::loading::{AGAINST_FORM, speak_against_form};
-use super::{single_records, verdict};
+use super::predicted_circle::PredictedCircle;
+use super::single_records::RecordedZigZags;
 use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
 use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
-use campaign::answer::entry;
 use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::known::{self, RecordFacts};
 use campaign::statistics::grouped;
@@ -42,9 +43,25 @@ pub struct FitResult {
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
     /// `fit.json`.
     pub document: FitDocument,
+    /// Median track of the turning circle that the answer to take predicts, north and east in ship lengths.
+    circle_track: Option<Vec<[f64; 2]>>,
+}
+
+/// A track from above: east, and north upwards.
+fn from_above(track: Vec<[f64; 2]>) -> PlotCurve {
+    let (x, y): (Vec<f64>, Vec<f64>) = track.into_iter().map(|[north, east]| (east, north)).unzip();
+    PlotCurve { x, y }
 }
 
 impl FitResult {
+    /// The same fit with the turning circle predicted from the recommended estimate.
+    #[must_use]
+    pub fn with_predicted_circle(mut self) -> Self {
+        let circle = PredictedCircle::of(&self.document);
+        (self.document.predicted_circle, self.circle_track) = circle.map(|circle| (circle.entry, circle.track)).unzip();
+        self
+    }
+
     /// Curves of the figures: records, replays, and 95 % regions of K and T.
     pub fn curves(&self) -> FitCurves {
         let RescaledRecords { trials, held_out, .. } = &self.together;
@@ -58,7 +75,8 @@ impl FitResult {
             let (x, y): (Vec<f64>, Vec<f64>) = outline.into_iter().map(|[k, t]| (k, t)).unzip();
             Some((entry.method.clone(), PlotCurve { x, y }))
         });
-        FitCurves { records: records.map(record).collect(), regions: regions.collect() }
+        let predicted_circle = self.circle_track.clone().map(from_above);
+        FitCurves { records: records.map(record).collect(), regions: regions.collect(), predicted_circle }
     }
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
@@ -79,10 +97,7 @@ impl FitResult {
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: curve(trial.time(), trial.rudder()),
-            circle: (!validation).then(|| MeasuredCircle::of(trial)?.track).flatten().map(|track| {
-                let (x, y): (Vec<f64>, Vec<f64>) = track.into_iter().map(|[north, east]| (east, north)).unzip();
-                PlotCurve { x, y }
-            }),
+            circle: (!validation).then(|| MeasuredCircle::of(trial)?.track).flatten().map(from_above),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
             name,
         }
@@ -131,7 +146,7 @@ pub fn fit(
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
     };
-    let verdict = verdict::of_answers(trials, &answers, &entries);
+    let (verdict, zigzags) = (verdict::of_answers(trials, &answers), RecordedZigZags::of(trials));
     let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
     let document = FitDocument {
         schema: SCHEMA.into(),
@@ -143,15 +158,16 @@ pub fn fit(
         scaling: together.sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
-        amplitude: single_records::mean_amplitude(trials),
+        amplitude: zigzags.mean_amplitude(),
         form,
         form_remarks,
-        single_records: single_records::of_records(trials, &preferred(methods, &entries, verdict.as_ref())),
+        predicted_circle: None,
+        single_records: zigzags.alone(&preferred(methods, &entries, verdict.as_ref())),
         verdict,
         warnings: warnings.ranked(),
         methods: entries,
     };
-    Ok(FitResult { together, answers, document })
+    Ok(FitResult { together, answers, document, circle_track: None })
 }
 
 /// The entry of a record, and the warning of one whose first overshoot cannot be read.
@@ -163,6 +179,7 @@ fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
         sha256: sha256.into(),
         samples: trial.len(),
         duration_s: trial.duration(),
+        trial_particulars: records::particulars(trial),
         zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
         no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
         circle: MeasuredCircle::of(trial).map(|circle| circle_entry(&circle, trial.particulars())),

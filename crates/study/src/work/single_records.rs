@@ -1,7 +1,7 @@
 //! Every record identified alone, to show whether K and T of a first-order response depend on the amplitude.
 
 use document::single_records::{Amplitude, SingleRecord, SingleRecords};
-use identify::{Estimate, Identifier};
+use identify::Identifier;
 use rayon::prelude::*;
 use ship::angle::to_deg;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -23,43 +23,62 @@ fn amplitude(trial: &Trial) -> Option<Amplitude> {
     Some(Amplitude { rudder_deg: to_deg(mean(rudders)?), heading_deg: to_deg(mean(peaks)?) })
 }
 
-/// Mean amplitude of the zig-zags among some records.
-pub fn mean_amplitude(trials: &[Trial]) -> Option<Amplitude> {
-    let all: Vec<Amplitude> = trials.iter().filter_map(amplitude).collect();
-    Some(Amplitude {
-        rudder_deg: mean(all.iter().map(|amplitude| amplitude.rudder_deg))?,
-        heading_deg: mean(all.iter().map(|amplitude| amplitude.heading_deg))?,
-    })
+/// A zig-zag among the records: itself, its name and its amplitude.
+struct RecordedZigZag<'a> {
+    trial: &'a Trial,
+    name: String,
+    amplitude: Amplitude,
 }
 
-fn alone(trial: &Trial, record: &str, method: &dyn Identifier) -> Option<SingleRecord> {
-    let entry = |estimate: Estimate| {
-        let amplitude = amplitude(trial)?;
-        Some(SingleRecord { record: record.to_owned(), amplitude, k_per_s: estimate.K(), t_s: estimate.T() })
-    };
-    method.identify(std::slice::from_ref(trial)).ok().and_then(entry).filter(|fit| fit.k_per_s.value.is_finite())
-}
-
-/// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
-/// than two zig-zags.
-pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<SingleRecords> {
-    let names = names(trials.iter().map(Trial::name));
-    let zigzags: Vec<(&Trial, &String)> =
-        trials.iter().zip(&names).filter(|(trial, _)| amplitude(trial).is_some()).collect();
-    let mut best: Option<SingleRecords> = None;
-    for method in methods.iter().filter(|_| zigzags.len() > 1) {
-        let records = zigzags.par_iter().filter_map(|(trial, name)| alone(trial, name, *method));
-        let records: Vec<SingleRecord> = records.collect();
-        let complete = records.len() == zigzags.len();
-        if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
-            let agree = agree(&records);
-            best = Some(SingleRecords { method: method.id().to_owned(), records, agree });
-        }
-        if complete {
-            break;
-        }
+impl RecordedZigZag<'_> {
+    fn alone(&self, method: &dyn Identifier) -> Option<SingleRecord> {
+        let estimate = method.identify(std::slice::from_ref(self.trial)).ok()?;
+        let (record, amplitude) = (self.name.clone(), self.amplitude);
+        let single = SingleRecord { record, amplitude, k_per_s: estimate.K(), t_s: estimate.T() };
+        Some(single).filter(|single| single.k_per_s.value.is_finite())
     }
-    best.filter(|best| best.records.len() > 1)
+}
+
+/// The zig-zags among some records, each with its amplitude.
+pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
+
+impl<'a> RecordedZigZags<'a> {
+    /// Reads the amplitude of every record that is a zig-zag.
+    pub fn of(trials: &'a [Trial]) -> Self {
+        let named = trials.iter().zip(names(trials.iter().map(Trial::name)));
+        Self(
+            named
+                .filter_map(|(trial, name)| Some(RecordedZigZag { trial, name, amplitude: amplitude(trial)? }))
+                .collect(),
+        )
+    }
+
+    /// Mean amplitude; `None` without a zig-zag.
+    pub fn mean_amplitude(&self) -> Option<Amplitude> {
+        Some(Amplitude {
+            rudder_deg: mean(self.0.iter().map(|zigzag| zigzag.amplitude.rudder_deg))?,
+            heading_deg: mean(self.0.iter().map(|zigzag| zigzag.amplitude.heading_deg))?,
+        })
+    }
+
+    /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for
+    /// less than two zig-zags.
+    pub fn alone(&self, methods: &[&dyn Identifier]) -> Option<SingleRecords> {
+        let zigzags = &self.0;
+        let mut best: Option<SingleRecords> = None;
+        for method in methods.iter().filter(|_| zigzags.len() > 1) {
+            let records: Vec<SingleRecord> = zigzags.par_iter().filter_map(|zigzag| zigzag.alone(*method)).collect();
+            let complete = records.len() == zigzags.len();
+            if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
+                let agree = agree(&records);
+                best = Some(SingleRecords { method: method.id().to_owned(), records, agree });
+            }
+            if complete {
+                break;
+            }
+        }
+        best.filter(|best| best.records.len() > 1)
+    }
 }
 
 /// Significance level of the difference between records.

@@ -14,12 +14,13 @@ use indicatif::ProgressBar;
 use trial::{Channel, Trial};
 
 use super::earlier::{self, EarlierModel};
-use super::{planned, single_records};
+use super::planned;
+use super::single_records::RecordedZigZags;
 use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
-use crate::records::{file_of, names, no_track, rudder_logged_late};
+use crate::records::{file_of, names, no_track, particulars, rudder_logged_late};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -102,7 +103,6 @@ pub fn trace(
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(no_track(&shown));
     warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
-    let all = records.iter().chain(validation);
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
     let innovations = analysis.innovations();
     let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
@@ -114,8 +114,9 @@ pub fn trace(
         innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
         length_m: trial.particulars().map(|ship| ship.length),
         speed_m_s: trial.particulars().map(|ship| ship.speed),
+        trial_particulars: particulars(trial),
     };
-    let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
+    let entries: Vec<RecordEntry> = records.iter().chain(others).enumerate().zip(&names).map(entry).collect();
     let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
     let (staircase, table) = curves::staircase(analysis.staircase());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
@@ -125,14 +126,15 @@ pub fn trace(
     let earlier_trials = earlier::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
+    let zigzags = RecordedZigZags::of(&trials);
     let document = TraceDocument {
         earlier_trials,
         ship,
         records: entries,
         missing_moment: moments,
         staircase,
-        amplitude: single_records::mean_amplitude(&trials),
-        single_records: single_records::of_records(&trials, &[&output_error]),
+        amplitude: zigzags.mean_amplitude(),
+        single_records: zigzags.alone(&[&output_error]),
         scales,
         next_trial: next_trial(&analysis, &trials),
         trace: analysis.document,

@@ -1,10 +1,14 @@
 //! Running the binary as a user does: a folder of its own, the exit code, and what it says.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use bytes::Bytes;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use sha2::{Digest, Sha256};
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
@@ -98,8 +102,23 @@ impl Desk {
         String::from_utf8(self.bytes(name)).expect("UTF-8")
     }
 
+    /// The rows of a Parquet file, by the names of its columns.
+    pub fn rows(&self, name: &str) -> Vec<BTreeMap<String, Field>> {
+        let file = SerializedFileReader::new(Bytes::from(self.bytes(name))).expect("a Parquet file");
+        let rows = file.get_row_iter(None).expect("rows").map(|row| row.expect("a row").into_columns());
+        rows.map(|row| row.into_iter().collect()).collect()
+    }
+
     pub fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_slice(&self.bytes(name)).expect("JSON")
+    }
+}
+
+/// A number in a row of a Parquet file.
+pub fn number(row: &BTreeMap<String, Field>, name: &str) -> f64 {
+    match row[name] {
+        Field::Double(value) => value,
+        ref other => panic!("{name}: {other:?}"),
     }
 }
 

@@ -12,6 +12,7 @@ mod loadings;
 mod logs;
 mod monte_carlo;
 mod names;
+mod owner;
 mod pages;
 mod predictions;
 mod priors;

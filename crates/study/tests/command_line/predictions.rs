@@ -1,13 +1,9 @@
 //! Predictions: `study predict` on what `fit` and `trace` leave.
 
-use std::collections::BTreeMap;
-
-use bytes::Bytes;
-use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use serde_json::Value;
 
-use crate::desk::{Desk, Run, of_repository};
+use crate::desk::{Desk, Run, number, of_repository};
 
 fn record(name: &str) -> String {
     of_repository(&format!("scenarios/records/{name}.csv")).to_string_lossy().into_owned()
@@ -375,13 +371,7 @@ fn the_drawn_ships_are_a_table_on_request() {
     predict(&desk, &format!("{words} again --draws-file --threads 1")).is_done();
     assert!(desk.bytes("p/draws.parquet") == desk.bytes("again/draws.parquet"), "one number is one ship");
     assert_eq!(desk.bytes("p/predict.json"), desk.bytes("plain/predict.json"));
-    let file = SerializedFileReader::new(Bytes::from(desk.bytes("p/draws.parquet"))).expect("a Parquet file");
-    let rows = file.get_row_iter(None).expect("rows").map(|row| row.expect("a row").into_columns());
-    let rows: Vec<BTreeMap<String, Field>> = rows.map(|row| row.into_iter().collect()).collect();
-    let number = |row: &BTreeMap<String, Field>, name: &str| match row[name] {
-        Field::Double(value) => value,
-        ref other => panic!("{name}: {other:?}"),
-    };
+    let rows = desk.rows("p/draws.parquet");
     assert_eq!(rows.len(), 60);
     assert!(rows.iter().zip(0..).all(|(row, number)| row["draw"] == Field::Long(number)));
     let [model, structure] = ["f/fit.json", "first_order"].map(|text| Field::Str(text.into()));

@@ -85,9 +85,22 @@ fn a_fit_measures_a_circle_and_the_criteria() {
         assert!(page.contains(part), "{part}: {page}");
     }
     assert!(page.contains("turn, a turning circle to starboard with 20.0° of rudder: advance"), "{page}");
+    // The predicted circle is that of the same rudder, and its median is drawn beside the measured one.
+    let predicted = &json["predicted_circle"];
+    let tactical = predicted["tactical_diameter_lengths"]["median"].as_f64().expect("a number");
+    assert!((tactical / lengths("tactical_diameter_lengths") - 1.0).abs() < 0.15, "{predicted} {turn}");
+    assert!((predicted["rudder_deg"].as_f64().expect("a number") - 20.0).abs() < 0.1, "{predicted}");
+    assert!(page.contains("Predicted by output-error, a turning circle to starboard with 20.0° of rudder"), "{page}");
+    let track = &desk.json("f/curves.json")["predicted_circle"];
+    let point = |axis: &str, number: usize| track[axis][number].as_f64().expect("a point every 3°");
+    let median = |key: &str| predicted[key]["median"].as_f64().expect("a number");
+    assert!((point("y", 30) - median("advance_lengths")).abs() < 1e-6, "{predicted}");
+    assert!((point("x", 30) - median("transfer_lengths")).abs() < 1e-6, "{predicted}");
+    assert!((point("x", 60) - tactical).abs() < 1e-6, "{predicted}");
     // A zig-zag that the form does not ask for fills no form in.
     desk.run(&["fit", "zig.csv", "--method", "output-error", "--out", "bare", "--quiet"]).is_done();
-    assert!(desk.json("bare/fit.json")["trials"][0].get("circle").is_none());
+    let bare = desk.json("bare/fit.json");
+    assert!(bare["trials"][0].get("circle").is_none() && bare.get("predicted_circle").is_none());
 }
 
 /// Positions tell the speed, and the hull that is fitted to it the drift: advance and tactical diameter are predicted,
@@ -101,6 +114,13 @@ fn a_record_of_positions_tells_a_track() {
     let circle = ["predict", "f/fit.json", "--manoeuvre", "turning-circle:20", "--draws", "60", "--out", "p"];
     desk.run(&circle).is_done();
     let json = desk.json("p/predict.json");
+    // The page has the circle of IMO only where an answer is to be taken.
+    desk.run(&[&["fit", "zig.csv", "--method", "output-error", "--out", "c", "--quiet"][..], &SCALE].concat())
+        .is_done();
+    let predicted = ["f", "c"].map(|folder| desk.json(&format!("{folder}/fit.json"))["predicted_circle"].clone());
+    assert!(predicted[0].is_null(), "{}", predicted[0]);
+    let [side, rudder, extrapolated] = ["side", "rudder_deg", "extrapolated"].map(|key| &predicted[1][key]);
+    assert!(side == "starboard" && *rudder == 35.0 && *extrapolated == true, "{}", predicted[1]);
     let figures = &json["manoeuvres"][0]["figures"];
     let median = |name: &str| figures[name]["median"].as_f64().unwrap_or_else(|| panic!("{name}: {figures}"));
     assert!((2.0..5.0).contains(&median("advance_lengths")), "{figures}");
@@ -141,6 +161,12 @@ fn a_current_is_found_and_taken_out() {
     assert!((current["east_m_s"].as_f64().expect("found") + 0.8).abs() < 0.05, "{current}");
     let (still, drifting) = (replayed("still.csv", &[]), replayed("drifting.csv", &[]));
     assert!(still["current"].is_null() && drifting["current"].is_null(), "one round tells no current");
+    desk.draw(
+        &[&["predict", "f/fit.json", "--replay", "still.csv", "--draws", "60", "--out", "drawn"][..], &SCALE].concat(),
+    )
+    .is_done();
+    let figure = desk.text("drawn/replay-still-track.svg");
+    assert!(figure.contains("median of the drawn ships") && figure.contains("measured"), "both circles are drawn");
     let mended = replayed("drifting.csv", &["--current-from", "two-rounds.csv"]);
     for name in ["advance_m", "tactical_diameter_m"] {
         let [truth, with, without] = [&still, &drifting, &mended].map(|replay| measured(replay, name));

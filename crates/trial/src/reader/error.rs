@@ -230,6 +230,12 @@ pub enum Problem {
         end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
+    /// No manoeuvre has the number that was asked for.
+    #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
+    NoManoeuvre { file: String, number: usize, count: usize },
+    /// Several zig-zags, of which one has to be chosen: a line for each.
+    #[error("there are {count} zig-zags in this log; choose one:{lines}")]
+    SeveralZigZags { count: usize, lines: String },
     /// Too few usable rows.
     #[error(
         "{usable} of {rows} rows have time, heading (or yaw rate) and rudder; a record needs at least {needed}: fill in the \

@@ -86,6 +86,10 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
     const CAN_FRAMES: &str = "a log of CAN frames in hexadecimal";
     const DECODED: &str = "decode it: NMEA 2000 with canboat (`candump2analyzer` for a log of candump, then `analyzer -json`), \
                            whose lines are read; another bus to a CSV with a column for each quantity";
+    const PYTHON_CAN: &str = "a log of CAN frames with data in base64, as python-can writes CSV";
+    const CONVERTED: &str = "make it a log of candump with `can_logconvert LOG.csv LOG.log`, and decode that: NMEA 2000 with canboat \
+                             (`candump2analyzer`, then `analyzer -json`), whose lines are read; another bus to a CSV with a column for \
+                             each quantity";
     if let Some(kind) = Kind::of(&first) {
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
@@ -102,8 +106,11 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
             let lines = text.lines().take(HEAD_LINES);
             let has_sentence = lines.clone().any(nmea::is_sentence);
             let format = if has_sentence { None } else { messages::format(lines.clone()) };
-            if format.is_none() && !has_sentence && messages::is_can_log(lines) {
+            if format.is_none() && !has_sentence && messages::is_can_log(lines.clone()) {
                 return refused(CAN_FRAMES, DECODED);
+            }
+            if format.is_none() && !has_sentence && messages::is_python_can(lines) {
+                return refused(PYTHON_CAN, CONVERTED);
             }
             let text = Text { bytes, on_disk, is_generated: false };
             Ok(match format {

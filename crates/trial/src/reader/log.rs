@@ -106,7 +106,7 @@ impl Log {
         Ok(log)
     }
 
-    fn fault(&self, problem: impl Into<Problem>) -> ReadError {
+    pub(super) fn fault(&self, problem: impl Into<Problem>) -> ReadError {
         ReadError::table(&self.path, problem.into())
     }
 
@@ -188,6 +188,11 @@ impl Log {
         &self.columns.time
     }
 
+    /// Day of the first row, as 2026-11-20; `None` for a log without stamps that hold dates.
+    pub fn date(&self) -> Option<String> {
+        self.clock?.date_at(*self.time().first()?)
+    }
+
     /// A channel, row by row, where the log has it; SI units and radians.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.columns.channels.get(&channel).map(Vec::as_slice)
@@ -226,7 +231,9 @@ impl Log {
     ///
     /// Fails when the log has too few rows, or is implausible ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
-        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut rejected, names, .. } = self;
+        let date = self.date();
+        let Self { path, columns, sha256, rows, mut sidecar, mut warnings, part, mut rejected, names, .. } = self;
+        sidecar.conditions.trial.date = sidecar.conditions.trial.date.or(date);
         let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
         rejected.retain(|reading| first <= Some(reading.time) && Some(reading.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);

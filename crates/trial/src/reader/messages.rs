@@ -30,7 +30,7 @@ const SPARSE_SHARE: f64 = 0.2;
 /// Maximum rudder and maximum heading of a log in radians, where no line states the unit.
 const MAX_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
-pub(super) use can::is_log as is_can_log;
+pub(super) use can::{is_log as is_can_log, is_python_can};
 
 /// Format of the lines of a log.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,6 +9,7 @@
 //! and reported, unless a sidecar has `plausibility = false`. Other tables are described in [`crate::sidecar`].
 
 mod assemble;
+mod choice;
 mod code;
 mod columnar;
 mod counts;

@@ -1,8 +1,11 @@
-//! Frames of a CAN bus in hexadecimal, as candump and loggers of the bus write them: recognised but not read, because a
-//! frame does not hold its meaning.
+//! Frames of a CAN bus, in hexadecimal as candump and loggers of the bus write them or in base64 as python-can does:
+//! recognised but not read, because a frame does not hold its meaning.
 
 /// Bits of an extended identifier.
 const MAX_IDENTIFIER: u32 = 0x1fff_ffff;
+
+/// Columns that `CSVWriter` of python-can gives a frame.
+const PYTHON_CAN: [&str; 7] = ["timestamp", "arbitration_id", "extended", "remote", "error", "dlc", "data"];
 
 /// Hexadecimal digits of a standard and of an extended identifier.
 const DIGITS: [usize; 2] = [3, 8];
@@ -12,6 +15,12 @@ pub fn is_log<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
     let written = lines.filter(|line| !line.trim().is_empty());
     let (frames, all) = written.fold((0, 0), |(frames, all), line| (frames + usize::from(is_frame(line)), all + 1));
     2 * frames > all
+}
+
+/// `true` where the first line that is not empty is the header of python-can's `CSVWriter`.
+pub fn is_python_can<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
+    let header = lines.find(|line| !line.trim().is_empty()).unwrap_or_default();
+    header.trim_start_matches('\u{feff}').split(',').map(|name| name.trim().trim_matches('"')).eq(PYTHON_CAN)
 }
 
 /// `true` for a frame: an identifier with its bytes as `09F1120A#FF1027FF`, or an identifier, the number of bytes, and
@@ -90,5 +99,9 @@ mod tests {
         others.iter().for_each(|line| assert!(!is_frame(line), "{line}"));
         assert!(is_log(["Time,ID,DLC,Data", frames[4], "", frames[4]].into_iter()) && !is_log(others.into_iter()));
         assert!(!is_log([frames[4], others[0]].into_iter()) && !is_log([].into_iter()));
+        let python_can =
+            ["", "timestamp,arbitration_id,extended,remote,error,dlc,data", "0.01,0x9f1120a,1,0,0,8,/xAn/3//f/0="];
+        assert!(is_python_can(python_can.into_iter()) && !is_log(python_can.into_iter()));
+        assert!(!is_python_can(others.into_iter()) && !is_python_can([].into_iter()));
     }
 }

@@ -1,15 +1,17 @@
-//! Verdict of a fit: the recommended answer, or why none can be taken.
+//! Verdict over the answers of several methods: the recommended answer, or why none can be taken.
+//!
+//! The rule is that of [`Recommendation`]; [`answer::entry`](crate::answer::entry) makes the entries of the answers.
 
 use document::fit::{Belief, Reason, VerdictEntry};
 use document::method::MethodEntry;
-use identify::Estimate;
-use identify::lack_of_fit::LackOfFit;
-use identify::recommended::Recommendation;
-use identify::replay::pooled;
-use report::number::fixed;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::Trial;
+
+use crate::estimate::Estimate;
+use crate::lack_of_fit::LackOfFit;
+use crate::recommended::Recommendation;
+use crate::replay::pooled;
 
 /// Maximum ratio of a replay error to that of the best; beyond it a method is listed apart.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -21,12 +23,9 @@ const MIN_EXPLAINED_SHARE: f64 = 0.9;
 /// Reference methods for contradictions.
 const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Verdict over the answers; `entries` are their document entries.
-pub fn of_answers(
-    trials: &[Trial],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    entries: &[MethodEntry],
-) -> Option<VerdictEntry> {
+/// Verdict over the answers of some methods to some records; `None` where no method has an answer.
+pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+    let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
     let [nearest, likely] = USUAL.map(estimate_of);
@@ -57,15 +56,15 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
         return Some(format!(
             "the best replay ({}) misses the headings by {}° (rms), and a straight line without any rudder only by {}°",
             verdict.method,
-            fixed(left_deg, 1),
-            fixed(straight, 1)
+            tenths(left_deg),
+            tenths(straight)
         ));
     }
     if explained.is_nan() || explained < MIN_EXPLAINED_SHARE {
-        let [percent, least] = [explained.max(0.0), MIN_EXPLAINED_SHARE].map(|share| fixed(100.0 * share, 0));
+        let [percent, least] = [explained.max(0.0), MIN_EXPLAINED_SHARE].map(|share| format!("{:.0}", 100.0 * share));
         return Some(format!(
             "the best replay explains {percent} % of the variance of the heading (error {}° rms), and K and T of a ship explain {least} % or more",
-            fixed(left_deg, 1)
+            tenths(left_deg)
         ));
     }
     if !is_usual {
@@ -78,6 +77,10 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     ((k.value <= 0.0 || t.value <= 0.0) && !is_unstable).then(|| {
         String::from("K and T are below zero, as for a course-unstable ship, and the interval of T does not confirm it")
     })
+}
+
+fn tenths(degrees: f64) -> String {
+    format!("{degrees:.1}")
 }
 
 /// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is

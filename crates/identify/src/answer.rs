@@ -1,9 +1,12 @@
 //! Document entries for the answers of methods, as `fit.json` holds them.
 
 use document::method::{IndexEstimates, MethodEntry, Status};
-use identify::replay::pooled;
-use identify::{Estimate, IdentifyError};
 use ship::angle::to_deg;
+use trial::Trial;
+
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+use crate::replay::pooled;
 
 /// Entry of a successful fit.
 ///
@@ -37,7 +40,7 @@ pub fn failed(method: &str, error: &IdentifyError) -> MethodEntry {
 pub fn entry(
     label: &str,
     answer: Result<Estimate, IdentifyError>,
-    trials: &[trial::Trial],
+    trials: &[Trial],
 ) -> (MethodEntry, Option<Estimate>) {
     match answer {
         Ok(estimate) => (answered(label, &estimate, pooled(trials, &estimate.response).map(to_deg)), Some(estimate)),

@@ -1,0 +1,30 @@
+//! Ship, day and draughts of a trial, as documents and the first pages of reports name them.
+
+use serde::{Deserialize, Serialize};
+
+/// Ship, date and draughts of a trial; undeclared ones are left out.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct TrialParticularsEntry {
+    /// Name of the ship.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ship_name: Option<String>,
+    /// Day of the trial, as 2026-11-20.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
+    /// Draught at the fore perpendicular, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draught_fore_m: Option<f64>,
+    /// Draught at the aft perpendicular, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draught_aft_m: Option<f64>,
+    /// Mean draught, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draught_m: Option<f64>,
+}
+
+impl TrialParticularsEntry {
+    /// Whether nothing is declared.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}

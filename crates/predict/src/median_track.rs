@@ -1,0 +1,62 @@
+//! The median circle of drawn ships: at every change of heading the median place of all that come so far. Its advance,
+//! transfer and tactical diameter are the medians of the draws, which no single ship has all of.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::interval::band;
+
+/// Change of heading from one point to the next, rad; 90° and 180° are points.
+const STEP: f64 = PI / 60.0;
+
+/// Track of a turn, a place for every heading, which grows with the turn from zero at the execute, rad.
+pub(crate) struct Turn<'a> {
+    pub heading: &'a [f64],
+    pub track: &'a [[f64; 2]],
+}
+
+impl Turn<'_> {
+    /// The place where the heading has changed by an angle, straight between rows.
+    fn at(&self, side: f64, angle: f64) -> Option<[f64; 2]> {
+        let change = |row: usize| side * (self.heading[row] - self.heading[0]);
+        let rows = self.heading.len().min(self.track.len());
+        let row = (0..rows).find(|&row| change(row) >= angle)?;
+        let Some(before) = row.checked_sub(1) else { return Some(self.track[0]) };
+        let share = (angle - change(before)) / (change(row) - change(before));
+        Some([0, 1].map(|axis| self.track[before][axis] + share * (self.track[row][axis] - self.track[before][axis])))
+    }
+}
+
+/// The median circle of some turns to a side (±1), as far as half of them go and once around at most; empty without a
+/// turn.
+pub(crate) fn median_track(turns: &[Turn], side: f64) -> Vec<[f64; 2]> {
+    let place = |point: usize| {
+        let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();
+        let is_enough = !places.is_empty() && 2 * places.len() >= turns.len();
+        is_enough.then(|| [0, 1].map(|axis| band(&mut places.iter().map(|place| place[axis]).collect::<Vec<f64>>())[2]))
+    };
+    (0..=(TAU / STEP).round() as usize).map_while(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half circles to port, of radii 1, 2 and 4: of the median the advance at 90° is 2 and the diameter 4.
+    #[test]
+    fn the_median_circle_has_the_median_figures() {
+        let rows = 181;
+        let heading: Vec<f64> = (0..rows).map(|row| -f64::from(row).to_radians()).collect();
+        let track = |radius: f64| -> Vec<[f64; 2]> {
+            heading.iter().map(|psi| [radius * -psi.sin(), radius * (psi.cos() - 1.0)]).collect()
+        };
+        let tracks = [1.0, 2.0, 4.0].map(track);
+        let turns: Vec<Turn> = tracks.iter().map(|track| Turn { heading: &heading, track }).collect();
+        let median = median_track(&turns, -1.0);
+        assert_eq!(median.len(), 61);
+        let is_near = |[north, east]: [f64; 2], expected: [f64; 2]| {
+            (north - expected[0]).abs() < 1e-9 && (east - expected[1]).abs() < 1e-9
+        };
+        assert!(is_near(median[30], [2.0, -2.0]) && is_near(median[60], [0.0, -4.0]), "{:?}", median[30]);
+        assert!(median_track(&[], 1.0).is_empty());
+    }
+}

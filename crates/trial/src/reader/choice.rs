@@ -1,0 +1,108 @@
+//! Part of a log that becomes a record: the selected manoeuvre, else its only zig-zag. A log with several is refused.
+
+use document::{Code, Warning};
+use ship::Particulars;
+
+use super::error::{Problem, ReadError};
+use super::log::ReadRecord;
+use super::source::Log;
+use crate::channel::Channel;
+use crate::find::{self, FoundManoeuvre, Signals};
+use crate::manoeuvre::Manoeuvre;
+
+/// Maximum share of time outside the zig-zag for a record to be used whole; more is a run-up, a stop, the way back to
+/// the course or another manoeuvre, and is cut.
+const MAX_SURPLUS_SHARE: f64 = 0.02;
+
+impl Log {
+    /// The manoeuvres of the log, in order of time; none where it has no heading.
+    pub fn manoeuvres(&self) -> Vec<FoundManoeuvre> {
+        let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
+            return Vec::new();
+        };
+        find::manoeuvres(&Signals {
+            time: self.time(),
+            rudder,
+            heading,
+            speed: self.channel(Channel::Speed),
+            propeller: self.channel(Channel::PropellerRate),
+        })
+    }
+
+    /// The record of the one zig-zag that the log holds, or of the whole log where none is recognised; the warnings say
+    /// which part. `ship` overrides the sidecar.
+    ///
+    /// Fails as [`into_trial`](Self::into_trial) does, and where the log holds several zig-zags.
+    pub fn into_zig_zag(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
+        self.chosen(None)?.into_trial(ship)
+    }
+
+    /// The part with the manoeuvre of this number, from 1; without a number that with its zig-zag, where the log holds
+    /// one and much beside it. The choice is a warning of the log.
+    ///
+    /// Fails for a number that no manoeuvre has, and, without one, where the log holds several zig-zags.
+    pub fn chosen(mut self, number: Option<usize>) -> Result<Self, ReadError> {
+        if number.is_none() && self.has_declared_part() {
+            return Ok(self);
+        }
+        let manoeuvres = self.manoeuvres();
+        let file = self.path.display().to_string();
+        let manoeuvre = match number {
+            Some(number) => number
+                .checked_sub(1)
+                .and_then(|place| manoeuvres.get(place))
+                .ok_or_else(|| self.fault(Problem::NoManoeuvre { file, number, count: manoeuvres.len() }))?,
+            None => match zig_zags(&manoeuvres)[..] {
+                [] => {
+                    self.warnings.extend(unrecognised(&manoeuvres, &file));
+                    return Ok(self);
+                }
+                [(_, only)] => only,
+                ref several => {
+                    let line = |(number, zig_zag): &(usize, &FoundManoeuvre)| {
+                        let [from, until] = [zig_zag.from, zig_zag.until].map(|time| self.shown(time));
+                        format!("\n  --trial {number}: {}, {from} to {until}", zig_zag.name())
+                    };
+                    let (count, lines) = (several.len(), several.iter().map(line).collect());
+                    return Err(self.fault(Problem::SeveralZigZags { count, lines }));
+                }
+            },
+        };
+        let (from, until, time) = (manoeuvre.from, manoeuvre.until, self.time());
+        let surplus = (from - time[0]) + (time[time.len() - 1] - until);
+        if number.is_none() && surplus <= MAX_SURPLUS_SHARE * (until - from) {
+            return Ok(self);
+        }
+        let text = format!(
+            "the {} from {} to {} is used, the rest is left out; for another part, write `from-s` and `until-s` under [part] \
+             of its sidecar",
+            manoeuvre.name(),
+            self.shown(from),
+            self.shown(until)
+        );
+        self.warnings.push(Code::Part.warning(text));
+        self.part(from, until)
+    }
+
+    /// A time of the log as text: seconds, and the reading of the clock.
+    fn shown(&self, time: f64) -> String {
+        let clock = self.clock.map(|clock| format!(" ({})", clock.at(time)));
+        format!("{time:.1} s{}", clock.unwrap_or_default())
+    }
+}
+
+/// The zig-zags among some manoeuvres, with their numbers.
+fn zig_zags(manoeuvres: &[FoundManoeuvre]) -> Vec<(usize, &FoundManoeuvre)> {
+    let numbered = (1..).zip(manoeuvres);
+    numbered.filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect()
+}
+
+/// The warning of a log in which no zig-zag is recognised and something else is.
+fn unrecognised(manoeuvres: &[FoundManoeuvre], file: &str) -> Option<Warning> {
+    let has_straight = manoeuvres.iter().any(|entry| entry.manoeuvre.is_none());
+    let text = format!(
+        "no zig-zag is recognised, so the whole record is used; `study find {file}` lists its manoeuvres; to use a part, \
+         write `from-s` and `until-s` under [part] of its sidecar"
+    );
+    has_straight.then(|| Code::WholeRecord.warning(text))
+}
