@@ -139,15 +139,11 @@ impl IntegralLeastSquares {
             let long_enough = |rows: &Range<usize>| rows.len() >= MIN_PIECE_ROWS;
             all.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
         }
-        let equations: usize = all.iter().map(|piece| piece.time.len()).sum();
+        let count: usize = all.iter().map(|piece| piece.time.len()).sum();
         // Initial states, the shared parameters, and as many degrees of freedom for their error.
         let needed = 2 * SHARED + 2 * all.len().max(1);
-        if equations < needed {
-            return Err(IdentifyError::TooFewPoints {
-                what: "headings in stretches without a gap",
-                needed,
-                count: equations,
-            });
+        if count < needed {
+            return Err(IdentifyError::TooFewPoints { what: "headings in stretches without a gap", needed, count });
         }
         Ok(all)
     }
