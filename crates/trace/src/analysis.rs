@@ -1,6 +1,6 @@
 //! Analysis of the records of one ship: a pipeline of stages, each a function of the results before it.
 //!
-//! prepare → base → full fit → noise → structures → names held against shapes → comparison → document
+//! prepare → base → full fit → noise law → structures → named effects or shapes → comparison → document
 
 use std::borrow::Cow;
 use std::sync::Arc;

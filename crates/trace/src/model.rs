@@ -73,7 +73,7 @@ pub struct ModelParameter {
 const BOUND_TOLERANCE: f64 = 1e-9;
 
 impl ModelParameter {
-    /// Whether a value was fitted and lies at an end of the range.
+    /// Whether a value is fitted and lies at a bound of its prior.
     pub fn is_at_bound(&self, value: f64) -> bool {
         let near = |end: f64| (value - end).abs() <= BOUND_TOLERANCE * end.abs().max(1e-6);
         self.prior.is_fitted() && (near(self.prior.lowest) || near(self.prior.highest))

@@ -97,7 +97,7 @@ fn at_rows(signal: &Polyline, time: &[f64]) -> Vec<f64> {
     time.iter().map(|&t| signal.at(t)).collect()
 }
 
-/// Sum of the squared distances from the mean.
+/// Sum of squared deviations from the mean.
 fn spread(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     values.iter().map(|value| (value - mean).powi(2)).sum()

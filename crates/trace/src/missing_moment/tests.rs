@@ -133,7 +133,7 @@ fn an_unstable_base_is_smoothed_as_well() {
     }
 }
 
-/// Cubic damping is seen as what it is: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
+/// Cubic damping shows its shape: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
 #[test]
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;

@@ -140,7 +140,7 @@ fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f6
     value(after - 1) * (1.0 - share) + value(after) * share
 }
 
-/// Running medians.
+/// Running median.
 fn medians(values: &[f64]) -> Vec<f64> {
     let half = MEDIAN_ROWS / 2;
     let at = |row: usize| {
