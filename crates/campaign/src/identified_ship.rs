@@ -108,7 +108,7 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Stored form of a fitted hull; its weight is one over the number `of` hulls.
+    /// Stored form of a fitted hull; its weight is one over the `count` of hulls.
     fn stored(&self, hull: &HullEstimate, count: usize) -> IdentifiedHull {
         let expected = &hull.expected;
         let coefficient = |(prior, value): (&HullCoefficient, &f64)| IdentifiedCoefficient {
@@ -121,7 +121,7 @@ impl<'a> RecordFacts<'a> {
         let HullReference { length, speed, propeller } = hull.reference;
         IdentifiedHull {
             form: expected.form.as_str().to_owned(),
-            weight: 1.0 / of as f64,
+            weight: 1.0 / count as f64,
             length_m: length,
             speed_m_s: speed,
             propeller_per_s: propeller,
