@@ -109,7 +109,9 @@ fn warnings_are_few_and_the_dearest_first() {
     let more = lines[3].strip_prefix("warning: ").and_then(|line| line.strip_suffix(" more in report.md"));
     assert!(more.and_then(|more| more.parse::<usize>().ok()).is_some_and(|more| more + 3 == noticed), "{lines:?}");
     let part = |title: &str| report.split("\n## ").find(|part| part.starts_with(title)).unwrap_or_default();
-    for said in ["the heading jumps", "-999", "lines before the header", "impossible rudder angle", "recognised by their names"] {
+    for said in
+        ["the heading jumps", "-999", "lines before the header", "impossible rudder angle", "recognised by their names"]
+    {
         assert!(part("Warnings").contains(said), "{said}\n{report}");
     }
     assert!(!run.err.contains("least-squares: ") && part("Notes").contains("least-squares: "), "{report}");
