@@ -102,20 +102,20 @@ mod tests {
     /// Draws of a seed are the same again, and have the mean of the estimate.
     #[test]
     fn an_estimate_is_drawn_again_with_its_seed() {
-        let known = testing::known();
+        let estimate = testing::identified_ship();
         let draws = |seed: u64| -> Vec<DrawnEstimate> {
-            let draws = EstimateDraws::new(&known, seed).expect("made up");
+            let draws = EstimateDraws::new(&estimate, seed).expect("made up");
             (0..2000).map(|number| draws.draw(number)).collect()
         };
         let drawn = draws(7);
         assert_eq!(drawn, draws(7));
         assert_ne!(drawn, draws(8));
-        let (place, count) = (known.members[0].fitted[0], drawn.len() as f64);
+        let (place, count) = (estimate.members[0].fitted[0], drawn.len() as f64);
         let mean = drawn.iter().map(|draw| draw.parameters[place].1).sum::<f64>() / count;
-        let sd = known.members[0].covariance[0][0].sqrt();
-        assert!((mean - known.members[0].parameters[place]).abs() < 4.0 * sd / count.sqrt());
+        let sd = estimate.members[0].covariance[0][0].sqrt();
+        assert!((mean - estimate.members[0].parameters[place]).abs() < 4.0 * sd / count.sqrt());
         assert!(drawn[0].structure == "nonlinear_damping" && drawn[0].weight == 1.0);
-        let none = IdentifiedShip { members: Vec::new(), ..known };
+        let none = IdentifiedShip { members: Vec::new(), ..estimate };
         assert_eq!(EstimateDraws::new(&none, 0).err(), Some(PredictError::Empty));
     }
 
