@@ -87,12 +87,10 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
         let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
         let all = distinct(stack.panels.iter().flat_map(marked));
         let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
-        let answers = if is_of_intervals { "intervals" } else { "answers" };
+        let kind = if is_of_intervals { "intervals" } else { "answers" };
         for panel in &stack.panels {
             let missing = all.iter().filter(|name| !marked(panel).contains(name));
-            notes.extend(
-                missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {answers}.")),
-            );
+            notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
     }
     let pale_names = distinct(pale_names).len();

@@ -51,14 +51,8 @@ pub fn figures(document: &PredictDocument) -> Table {
 }
 
 /// Plain name of a source of uncertainty.
-fn source_name(source: &str) -> &str {
-    match source {
-        "structure" => "choice of effects",
-        "process-noise" => "random yaw moment",
-        "steering-gear" => "rudder rate",
-        "initial-state" => "initial yaw rate",
-        source => source,
-    }
+fn source_name(source: &str) -> String {
+    source.replace("structure", "choice of effects").replace("process-noise", "random yaw moment").replace('-', " ")
 }
 
 /// The criteria of IMO.

@@ -328,21 +328,13 @@ fn every_measured_record_can_be_identified() {
     let desk = Desk::new();
     for (set, record, words) in [
         // Here its random moment explains the whole manoeuvre: δ_r = 75°, and a replay 38° off.
-        (
-            "esso_osaka",
-            "zigzag_13_57_45",
-            "Not used: maximum-likelihood, because it explains part of the manoeuvre as random gusts",
-        ),
+        ("esso_osaka", "zigzag_13_57_45", "Not used: maximum-likelihood, because it explains part of the manoeuvre"),
         // Here it has no interval, and a replay 66° off.
-        (
-            "esso_osaka",
-            "zigzag_13_04_24",
-            "° from output-error, because its replay is closest to the recorded headings",
-        ),
+        ("esso_osaka", "zigzag_13_04_24", "° from output-error, because its replay is closest"),
         (
             "esso_osaka",
             "turning_sep14_13_51_45",
-            "No K and T can be taken from this record, because the best replay (least-squares) misses the headings by",
+            "No K and T can be taken from this record, because the best replay (least-squares) misses",
         ),
         ("kvlcc2_hsva", "zigzag_20_10_s", "from output-error"),
         ("kvlcc2_hsva", "zigzag_10_10_s", "from output-error"),

@@ -49,11 +49,7 @@ fn a_model_and_its_ship_are_one_analysis() {
     let desk = Desk::new();
     both(&desk);
     let run = desk.draw(&["fit", "model.csv", "ship.csv", "--method", "output-error", "--out", "fit"]);
-    for part in [
-        "analysed together in prime time",
-        "1 record of L = 105 m, V = 8.59 m/s, time × 0.2000",
-        "each scale fitted alone",
-    ] {
+    for part in ["together in prime time", "1 record of L = 105 m, V = 8.59 m/s, time × 0.2000", "each scale fitted"] {
         assert!(run.is_done().out.contains(part), "{part}:\n{}", run.out);
     }
     let fit = desk.json("fit/fit.json");
@@ -93,7 +89,7 @@ fn a_trace_is_told_without_dimension() {
     let desk = Desk::new();
     both(&desk);
     let run = desk.draw(&["trace", "ship.csv", "model.csv", "--out", "traced", "--paper", "85"]);
-    assert!(run.is_done().out.contains("analysed together in prime time"), "{}", run.out);
+    assert!(run.is_done().out.contains("together in prime time"), "{}", run.out);
     let trace = desk.json("traced/trace.json");
     // Records of one amplitude do not exclude a stall, which goes with a larger K.
     assert!((value(&trace["model"]["prime"]["K"]) - 1.2224).abs() < 5e-2, "{}", trace["model"]);
@@ -107,7 +103,7 @@ fn a_trace_is_told_without_dimension() {
         trace["scales"]
     );
     let page = desk.text("traced/report.md");
-    for part in ["analysed together in prime time", "Prime values are without dimension", "steady.png"] {
+    for part in ["together in prime time", "Prime values are without dimension", "steady.png"] {
         assert!(page.contains(part), "{part}");
     }
     assert!(desk.path("traced/overshoots.png").is_file());
