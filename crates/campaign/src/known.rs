@@ -121,7 +121,7 @@ impl<'a> RecordFacts<'a> {
         let HullReference { length, speed, propeller } = hull.reference;
         StoredHull {
             form: expected.form.as_str().to_owned(),
-            weight: 1.0 / of as f64,
+            weight: 1.0 / count as f64,
             length_m: length,
             speed_m_s: speed,
             propeller_per_s: propeller,

@@ -102,7 +102,7 @@ mod tests {
     /// Draws of a seed are the same again, and have the mean of the estimate.
     #[test]
     fn an_estimate_is_drawn_again_with_its_seed() {
-        let known = testing::known();
+        let known = testing::identified_ship();
         let draws = |seed: u64| -> Vec<DrawnEstimate> {
             let draws = EstimateDraws::new(&known, seed).expect("made up");
             (0..2000).map(|number| draws.draw(number)).collect()

@@ -126,7 +126,7 @@ fn further(
     });
     checked.map_err(|fault| KeyFault {
         key: fault.key.parts().iter().fold(place, |key, part| key.child(part)),
-        problem: format!("{what}, {}", fault.problem),
+        problem: format!("{context}, {}", fault.problem),
         ..fault
     })
 }

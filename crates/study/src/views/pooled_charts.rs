@@ -107,8 +107,8 @@ pub const HEAD_END: &str = ": ";
 /// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
-        let bound =
-            design.cells[detail.cell].bound_percent2.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
+        let covariance = design.cells[detail.cell].bound_percent2;
+        let bound = covariance.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
         let panel = |(method, detail): (usize, &MethodDetail)| {
             let (origin, cloud) = (origin(design, method), detail.cloud.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
@@ -121,7 +121,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             let pen = Pen { dash: DOTTED, ..Pen::of(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
-            let sd_over_bound = design.cells[detail.cell].bound_percent2.zip(cloud);
+            let sd_over_bound = covariance.zip(cloud);
             let sd_over_bound = sd_over_bound.map(|(bound, cloud)| (cloud.covariance[1][1] / bound[1][1]).sqrt());
             let scatter = sd_over_bound.map_or_else(String::new, |ratio| {
                 format!("{HEAD_END}T scatters {} times the bound", significant(ratio, 3))

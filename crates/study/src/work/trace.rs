@@ -116,7 +116,7 @@ pub fn trace(
         speed_m_s: trial.particulars().map(|ship| ship.speed),
         trial_particulars: particulars(trial),
     };
-    let entries: Vec<RecordEntry> = records.iter().chain(others).enumerate().zip(&names).map(entry).collect();
+    let entries: Vec<RecordEntry> = records.iter().chain(validation).enumerate().zip(&names).map(entry).collect();
     let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
     let (staircase, table) = curves::staircase(analysis.staircase());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
