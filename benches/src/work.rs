@@ -1,4 +1,4 @@
-//! A piece of work, what stands beside it, and what is to be reached.
+//! A benchmark: the measured work, its reference, and its limit.
 
 use std::hint::black_box;
 use std::sync::OnceLock;
@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-/// What a piece of work is done on.
+/// Cores that a benchmark uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cores {
-    /// One thread, whatever the work would like.
+    /// A single thread.
     One,
     /// As many threads as rayon takes by default.
     All,
 }
 
-/// Something that can be done again and again.
+/// Repeatable work.
 pub struct Work {
     /// Unique within its group; part of a path.
     pub name: String,
-    /// What it is done on.
+    /// Cores that it uses.
     pub cores: Cores,
     /// Units of work in one go, so that a time can be quoted per unit.
     pub units: f64,
@@ -94,17 +94,17 @@ fn one_core() -> &'static ThreadPool {
 /// What is to be reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// At most this share of the time of what stands beside.
+    /// Largest time, relative to that of the reference.
     Ratio(f64),
-    /// All cores together do at least this share of cores times what one does, which stands beside.
+    /// Smallest throughput of all cores, relative to the number of cores times that of a single core, the reference.
     Scaling(f64),
 }
 
-/// Work, what it is held against, and what is to be reached.
+/// Work with its reference and its limit.
 pub struct TimedWork {
     /// What is measured.
     pub work: Work,
-    /// Name of the work of the group that it is held against.
+    /// Name of the reference in the group.
     pub beside: Option<String>,
     /// What is to be reached; `None` for work that is only shown.
     pub reach: Option<Reach>,
@@ -116,7 +116,7 @@ pub struct WorkGroup {
     pub name: &'static str,
     /// Heading of its table.
     pub title: &'static str,
-    /// What a reader has to know to read the table.
+    /// Explanation of the table.
     pub about: &'static str,
     /// The work, in the order of the table.
     pub rows: Vec<TimedWork>,

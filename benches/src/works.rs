@@ -1,4 +1,4 @@
-//! All pieces of work, in groups: what is measured, what stands beside it and what is to be reached.
+//! All benchmarks, in groups: the measured work, its reference and its limit.
 
 mod effects;
 mod identification;

@@ -1,6 +1,6 @@
 //! `ratios FOLDER` writes what `cargo bench -p kempf-benches` has stored as one table, `performance.csv` and
-//! `report.md`: every time of criterion (mean, 95 % interval) beside that of the work it is held against, both
-//! measured in one run, and whether the ratio is within its limit.
+//! `report.md`: every time of criterion (mean, 95 % interval) beside that of its reference, both measured in one run,
+//! and whether the ratio is within its limit.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

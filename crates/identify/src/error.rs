@@ -181,11 +181,8 @@ mod tests {
         assert_eq!(row(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
         assert_eq!(row("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
         assert_eq!(row(" \n"), "outside: no reason given");
-        let long_text = row(&"é\u{7}".repeat(100_000));
-        assert!(
-            long_text.chars().count() <= "outside: ".len() + MAX_REASON_CHARS && long_text.ends_with('…'),
-            "{long_text}"
-        );
+        let long = row(&"é\u{7}".repeat(100_000));
+        assert!(long.chars().count() <= "outside: ".len() + MAX_REASON_CHARS && long.ends_with('…'), "{long}");
         assert_eq!(IdentifyError::NoTrial.in_a_row(), "no-trial");
     }
 }

@@ -292,8 +292,7 @@ mod tests {
             let coordinates = || outline.iter().map(|place| place[part]);
             0.5 * (coordinates().fold(f64::MIN, f64::max) - coordinates().fold(f64::MAX, f64::min))
         };
-        let sd =
-            [index_K(&response, &small), index_T(&response, &small)].map(|quantity| quantity.sd.expect("a covariance"));
+        let sd = [index_K(&response, &small), index_T(&response, &small)].map(|index| index.sd.expect("a covariance"));
         for (part, sd) in sd.into_iter().enumerate() {
             assert_relative_eq!(half(part), 5.991465f64.sqrt() * sd, max_relative = 2e-3);
         }

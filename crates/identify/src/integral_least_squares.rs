@@ -37,7 +37,7 @@ const MIN_PIECE_ROWS: usize = 4;
 pub struct Settings {
     /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
-    /// Largest accepted condition number of the equations (see the method).
+    /// Largest accepted condition number of the equations.
     pub condition_limit: f64,
 }
 
@@ -139,15 +139,11 @@ impl IntegralLeastSquares {
             let long_enough = |rows: &Range<usize>| rows.len() >= MIN_PIECE_ROWS;
             all.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
         }
-        let equations: usize = all.iter().map(|piece| piece.time.len()).sum();
-        // Initial states, the shared parameters, and as many equations left to tell their error from.
+        let count: usize = all.iter().map(|piece| piece.time.len()).sum();
+        // Initial states, the shared parameters, and as many degrees of freedom for their error.
         let needed = 2 * SHARED + 2 * all.len().max(1);
-        if equations < needed {
-            return Err(IdentifyError::TooFewPoints {
-                what: "headings in stretches without a gap",
-                needed,
-                count: equations,
-            });
+        if count < needed {
+            return Err(IdentifyError::TooFewPoints { what: "headings in stretches without a gap", needed, count });
         }
         Ok(all)
     }

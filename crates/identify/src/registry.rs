@@ -79,29 +79,24 @@ mod tests {
     use crate::savitzky_golay::SavitzkyGolay;
     use crate::{characteristic_points, fourier_published, least_squares, output_error, srivc};
 
-    use super::IdentifierSettings;
+    use super::IdentifierSettings as Method;
 
     /// Counts that would exhaust memory or time, extreme numbers, and meaningless values.
     #[test]
     fn settings_out_of_range_are_refused() {
-        let published = |settings: fourier_published::Settings| IdentifierSettings::FourierPublished(settings);
+        let published = |settings: fourier_published::Settings| Method::FourierPublished(settings);
         let triples = |triples| published(fourier_published::Settings { triples, ..Default::default() });
-        let error = |settings| IdentifierSettings::OutputError(settings);
+        let error = |settings| Method::OutputError(settings);
         let default = output_error::Settings::default;
         let smoothed = |window_samples, order| {
             let smoothing = Some(SavitzkyGolay { window_samples, order });
-            IdentifierSettings::LeastSquares(least_squares::Settings { smoothing, ..Default::default() })
+            Method::LeastSquares(least_squares::Settings { smoothing, ..Default::default() })
         };
-        let projected = |harmonics| {
-            IdentifierSettings::FourierProjected(fourier_projected::Settings { harmonics, ..Default::default() })
-        };
+        let projected =
+            |harmonics| Method::FourierProjected(fourier_projected::Settings { harmonics, ..Default::default() });
         let points = |half_width_s, condition_limit| {
             let default = characteristic_points::Settings::default();
-            IdentifierSettings::CharacteristicPoints(characteristic_points::Settings {
-                half_width_s,
-                condition_limit,
-                ..default
-            })
+            Method::CharacteristicPoints(characteristic_points::Settings { half_width_s, condition_limit, ..default })
         };
         for (settings, key, found) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
@@ -122,11 +117,7 @@ mod tests {
                 "smallest-time-constant-s",
                 "1e-300",
             ),
-            (
-                IdentifierSettings::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }),
-                "max-iterations",
-                "1001",
-            ),
+            (Method::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
         ] {
             let error = settings.build().err().expect("it cannot end");
             assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");

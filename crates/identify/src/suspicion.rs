@@ -111,7 +111,7 @@ mod tests {
     const YUKUN: Particulars = Particulars { length: 105.0, speed: 8.59 };
 
     /// The warning on a changed record of YUKUN (K′ = 1.22, T′ = 1.33, 2.5°/s) with a given length and speed.
-    fn warning_text(ship: Particulars, change: impl Fn(&mut Case)) -> Option<String> {
+    fn text(ship: Particulars, change: impl Fn(&mut Case)) -> Option<String> {
         let mut case = Case { noise_deg: 0.1, ..Case::default() };
         change(&mut case);
         let record = case.trial().with_particulars(ship);
@@ -122,9 +122,9 @@ mod tests {
 
     #[test]
     fn what_ships_have_is_not_suspected() {
-        assert_eq!(warning_text(YUKUN, |_| {}), None);
+        assert_eq!(text(YUKUN, |_| {}), None);
         // A rudder that is read a fifth too large.
-        assert_eq!(warning_text(YUKUN, |case| (case.K, case.rate_deg_s) = (0.1 / 1.2, 3.0)), None);
+        assert_eq!(text(YUKUN, |case| (case.K, case.rate_deg_s) = (0.1 / 1.2, 3.0)), None);
         // A model of 1:20 by Froude: every time is shorter by √20.
         let model = Particulars { length: 105.0 / 20.0, speed: 8.59 / 20.0_f64.sqrt() };
         let quicker = 20.0_f64.sqrt();
@@ -132,18 +132,17 @@ mod tests {
             (case.K, case.T, case.rate_deg_s) = (0.1 * quicker, 16.3 / quicker, 2.5 * quicker);
             case.period_s = 1.0 / quicker;
         };
-        assert_eq!(warning_text(model, smaller), None);
+        assert_eq!(text(model, smaller), None);
     }
 
     /// A model of 7 m given as her ship of 320 m, by length alone or by both.
     #[test]
     fn a_model_given_as_her_ship_is_suspected() {
         let cure = "all of the ship or all of the model";
-        let slow = warning_text(Particulars { length: 320.0, speed: 1.18 }, |_| {}).expect("a Froude number of 0.021");
+        let slow = text(Particulars { length: 320.0, speed: 1.18 }, |_| {}).expect("a Froude number of 0.021");
         assert!(slow.contains("Froude number of 0.021 (ships have 0.025 to 0.6)") && slow.contains(cure), "{slow}");
         let model = Case::default().trial().with_particulars(Particulars { length: 320.0, speed: 7.97 });
-        let channels =
-            [Channel::Heading, Channel::Rudder].map(|channel| (channel, model.channel(channel).expect("one").to_vec()));
+        let channels = [Channel::Heading, Channel::Rudder].map(|key| (key, model.channel(key).expect("one").to_vec()));
         let speed = (Channel::Speed, vec![1.18; model.time().len()]);
         let columns = Columns {
             time: model.time().to_vec(),
@@ -163,16 +162,15 @@ mod tests {
     #[test]
     fn a_wrong_length_speed_scale_or_clock_is_suspected() {
         let all = "check the scale of the rudder, the clock, and the length and speed given";
-        let knots =
-            warning_text(Particulars { speed: 16.7, ..YUKUN }, |_| {}).expect("K′/T′ is a quarter of what it was");
+        let knots = text(Particulars { speed: 16.7, ..YUKUN }, |_| {}).expect("K′/T′ is a quarter of what it was");
         assert!(knots.contains("K′/T′ is 0.24 (ships have 0.25 to 2)") && knots.contains(all), "{knots}");
-        let long = warning_text(Particulars { length: 1050.0, ..YUKUN }, |_| {}).expect("K′ is 12");
+        let long = text(Particulars { length: 1050.0, ..YUKUN }, |_| {}).expect("K′ is 12");
         assert!(long.contains("K′ is 12.2") && long.contains("T′ is 0.13"), "{long}");
-        let slow = warning_text(YUKUN, |case| {
+        let slow = text(YUKUN, |case| {
             (case.K, case.T, case.rate_deg_s, case.period_s) = (0.1 / 3.0, 48.9, 2.5 / 3.0, 3.0);
         });
         let slow = slow.expect("a clock that is three times too slow");
         assert!(slow.contains("the rudder moves at 0.8°/s (usual 2 to 7 at this length)"), "{slow}");
-        assert!(warning_text(YUKUN, |case| case.rate_deg_s = 9.0).expect("too fast").contains("moves at 9.0°/s"));
+        assert!(text(YUKUN, |case| case.rate_deg_s = 9.0).expect("too fast").contains("moves at 9.0°/s"));
     }
 }

@@ -332,7 +332,7 @@ mod tests {
         assert!(all >= 80 && (0.80..=1.0).contains(&share), "{held} of {all}");
     }
 
-    /// Two ships without doubt: R is what the ship at full load does, to what a record tells of T.
+    /// Without uncertainty R is the figure of the ship at full load, within the reading error of T.
     #[test]
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut identified| {

@@ -123,22 +123,19 @@ mod tests {
     #[test]
     fn a_drawn_ship_is_reported_as_it_is_steered() {
         let mixture = testing::mixture(testing::identified_ship());
-        let (reported, ship) = (mixture.parameters(7), mixture.draw(7, &UncertaintySource::ALL));
-        let keys = reported.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
+        let (drawn, ship) = (mixture.parameters(7), mixture.draw(7, &UncertaintySource::ALL));
+        let keys = drawn.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
         assert_eq!(keys[..3], ["inverse_T", "K_over_T", "rudder_bias"]);
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");
-        let values: Vec<f64> = reported.parameters.iter().map(|(_, value)| *value).collect();
+        let values: Vec<f64> = drawn.parameters.iter().map(|(_, value)| *value).collect();
         assert_eq!(values, ship.response.parameters());
-        assert_eq!((reported.gear_rate_rad_s, reported.yaw_rate_rad_s), (ship.gear.rate, ship.yaw_rate));
-        assert_eq!((reported.structure.as_str(), reported.weight), ("nonlinear_damping", 1.0));
+        assert_eq!((drawn.gear_rate_rad_s, drawn.yaw_rate_rad_s), (ship.gear.rate, ship.yaw_rate));
+        assert_eq!((drawn.structure.as_str(), drawn.weight), ("nonlinear_damping", 1.0));
 
         let hulls = ["quadratic", "mmg"].map(testing::hull).to_vec();
         let mixture = testing::mixture(IdentifiedShip { hulls, ..testing::identified_ship() });
-        let mmg = (0..20).map(|number| mixture.parameters(number)).find(|reported| reported.structure == "mmg");
-        let reported = mmg.expect("half of them");
-        assert!(
-            reported.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && reported.weight == 0.5,
-            "{reported:?}"
-        );
+        let mmg = (0..20).map(|number| mixture.parameters(number)).find(|drawn| drawn.structure == "mmg");
+        let drawn = mmg.expect("half of them");
+        assert!(drawn.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && drawn.weight == 0.5, "{drawn:?}");
     }
 }

@@ -350,7 +350,7 @@ mod tests {
         assert!(plain.remarks.iter().any(|remark| remark.contains("--ballast")), "{:?}", plain.remarks);
     }
 
-    /// A record that is another manoeuvre fills in nothing and says why.
+    /// A record of another manoeuvre has no entry and gives a remark.
     #[test]
     fn other_manoeuvres_are_reported() {
         let ship = testing::mixture(testing::identified_ship());

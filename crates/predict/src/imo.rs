@@ -40,7 +40,7 @@ pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
 /// Rudder of that circle and its tolerance, rad. The resolution also allows the largest rudder angle, which no model
 /// states.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
-pub(crate) const RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
+pub(crate) const TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// A limit of the resolution.
 pub(crate) struct Limit {
@@ -120,7 +120,7 @@ impl Limit {
             |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
             CIRCLE => {
-                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= RUDDER_TOLERANCE)
+                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= TOLERANCE)
             }
             TWENTY => is_pair(20.0),
             _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),

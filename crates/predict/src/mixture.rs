@@ -422,7 +422,7 @@ mod tests {
         assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);
     }
 
-    /// A term in the measured sway says nothing where there is no sway.
+    /// A term in the measured sway needs a record with sway.
     #[test]
     fn a_model_that_needs_what_is_not_there_is_refused() {
         let mut stored = testing::identified_ship();

@@ -1,5 +1,5 @@
 //! A record folded about its middle: every row of a record in even steps has its mirror image, so that sums of even and
-//! odd functions of time run over half of them. It knows no model of the signal.
+//! odd functions of time run over half of them. It does not model the signal.
 
 /// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as
 /// few as stay in registers.

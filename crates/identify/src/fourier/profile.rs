@@ -138,7 +138,7 @@ impl Profile {
         }
     }
 
-    /// The same number from an orthogonal decomposition, where its columns are nearly dependent on the rows there are.
+    /// RSS from an orthogonal decomposition, where its columns are nearly dependent on the rows there are.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
         let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.length));

@@ -30,17 +30,15 @@ const SHIP: HullParticulars = HullParticulars {
 /// A hull whose every coefficient is a deviation above what was expected, known to a tenth of the deviation in every
 /// direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
-    let form =
-        HullForm::of_ship(Some(&particulars)).into_iter().find(|candidate| candidate.as_str() == form).expect("known");
-    let coefficients = form.coefficients();
-    let shifted = coefficients.iter().map(|coefficient| coefficient.mean + coefficient.sd);
-    let values = DVector::from_iterator(coefficients.len(), shifted);
+    let form = HullForm::of_ship(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
+    let priors = form.coefficients();
+    let values = DVector::from_iterator(priors.len(), priors.iter().map(|prior| prior.mean + prior.sd));
     let covariance = form.covariance() * 0.01;
     EarlierHull { form, particulars, values, covariance }
 }
 
-/// What is expected of a coefficient after earlier trials: how far from what her particulars say, and its deviation,
-/// both in deviations of that.
+/// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
+/// deviations of the latter.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
     let expected = ExpectedHull::of_ship(Some(ship), all);
     let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
@@ -134,7 +132,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     assert!(ExpectedHull::of_ship(Some(&ballast), &[])[0].law().is_none());
 }
 
-/// What is known of one ship alone is no difference: it is taken for the other.
+/// Particulars that only one of the ships declares are taken for the other.
 #[test]
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };

@@ -77,7 +77,7 @@ pub struct HullResidual {
     pub name: String,
     /// Root mean square heading error of the whole replay, rad.
     pub whole: f64,
-    /// The same in windows of 3.5 L/U₀, rad.
+    /// Root mean square heading error in windows of 3.5 L/U₀, rad.
     pub window: f64,
     /// Yaw rate with which the whole replay begins, rad/s.
     pub begins_with: f64,

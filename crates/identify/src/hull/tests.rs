@@ -78,20 +78,16 @@ fn quadratic(trials: &[Trial]) -> HullEstimate {
 /// All come back to within 2.5 standard deviations, and the moment of the rudder to within 15 %.
 #[test]
 fn a_hull_of_the_form_comes_back() {
-    let estimate = quadratic(&records(|_| 0.0));
-    for (place, (coefficient, truth)) in estimate.expected.coefficients.iter().zip(TRUTH).enumerate() {
-        let (value, sd) = (estimate.values[place], estimate.covariance[(place, place)].sqrt());
-        assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", coefficient.symbol);
-        assert!(
-            coefficient.key != "Nd" || (value / truth - 1.0).abs() < 0.15,
-            "{}: {value} {truth}",
-            coefficient.symbol
-        );
+    let fitted = quadratic(&records(|_| 0.0));
+    for (place, (prior, truth)) in fitted.expected.coefficients.iter().zip(TRUTH).enumerate() {
+        let (value, sd) = (fitted.values[place], fitted.covariance[(place, place)].sqrt());
+        assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", prior.symbol);
+        assert!(prior.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", prior.symbol);
     }
-    for left in &estimate.records {
+    for left in &fitted.records {
         assert!(to_deg(left.whole) < 0.2, "{}: {}°", left.name, to_deg(left.whole));
     }
-    assert!(estimate.moment.deviation < from_deg(0.2), "{:?}", estimate.moment);
+    assert!(fitted.moment.deviation < from_deg(0.2), "{:?}", fitted.moment);
 }
 
 /// Rudder, heading and speed of a record, and channels that do not vary.
@@ -245,10 +241,7 @@ fn the_hulls_that_records_speak_for_are_near_them() {
     // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(
-        found[0].expected.form.as_str() == "quadratic" && left.iter().all(|residual| *residual <= 3.0 * least),
-        "{left:?}"
-    );
+    assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
     assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
@@ -266,8 +259,7 @@ fn records_that_tell_no_hull_are_refused() {
     let expected = ExpectedHull::of_form(form());
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
-        let channels = [Channel::Heading, Channel::Speed]
-            .map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
+        let channels = [Channel::Heading, Channel::Speed].map(|key| (key, trial.channel(key).expect("one").to_vec()));
         let rudder = (Channel::Rudder, trial.rudder().to_vec());
         let channels = channels.into_iter().chain([rudder]).collect();
         let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };

@@ -72,8 +72,8 @@ mod tests {
 
     /// r L/U of a hull in the steady turn, and its pivot point ahead of midship in L.
     fn steady(ship: &Ship) -> Option<(String, [f64; 2])> {
-        let (Model::Hull(hull), Some(particulars)) = (&ship.model, ship.particulars) else { return None };
-        let step = 0.02 * particulars.length / particulars.speed;
+        let (Model::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
+        let step = 0.02 * scale.length / scale.speed;
         let mut state = vec![0.0; hull.dimension()];
         hull.approach(0.0, 0.0, &mut state);
         let mut solver = RungeKutta4::new(hull.dimension());
@@ -82,9 +82,6 @@ mod tests {
             solver.step(hull.as_ref(), f64::from(row) * step, step, &mut state, input);
         }
         let [rate, surge, sway] = [1, 2, 3].map(|place| state[place]);
-        Some((
-            ship.name.to_string(),
-            [rate * particulars.length / surge.hypot(sway), -sway / (rate * particulars.length)],
-        ))
+        Some((ship.name.to_string(), [rate * scale.length / surge.hypot(sway), -sway / (rate * scale.length)]))
     }
 }

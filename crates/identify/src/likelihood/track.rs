@@ -96,7 +96,7 @@ pub struct MotionColumns {
     pub rudder: Vec<f64>,
     /// H, s².
     pub constant: Vec<f64>,
-    /// The same of the yaw rate, at the rows where it is used.
+    /// Columns of the yaw rate, at the rows where it is used.
     pub rates: RateColumns,
 }
 
@@ -248,7 +248,7 @@ impl Track {
         self.fill_from(is_backward(inverse_time), inverse_time, columns);
     }
 
-    /// The same with the anchor at the last row, or at the first, whatever the sign of a.
+    /// Fills the columns with the anchor at the last row, or at the first, for either sign of a.
     pub fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut MotionColumns) {
         let (rows, anchor) = (self.time.len(), self.anchor_row(backward));
         let MotionColumns { homogeneous, rudder, constant, rates } = columns;

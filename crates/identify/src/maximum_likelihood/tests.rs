@@ -82,13 +82,11 @@ fn a_calm_record_has_the_answer_of_output_error() {
     let plain = output_error::Settings::default().build().expect("valid");
     for case in [noisy(), Case { K: -0.05, T: -60.0, rudder_deg: 20.0, ..noisy() }] {
         let trial = case.trial();
-        let estimate = method.identify(std::slice::from_ref(&trial)).expect("an answer");
+        let found = method.identify(std::slice::from_ref(&trial)).expect("an answer");
         let expected = plain.identify(std::slice::from_ref(&trial)).expect("an answer");
-        for (likely, nearest) in [
-            (estimate.K(), expected.K()),
-            (estimate.T(), expected.T()),
-            (estimate.rudder_bias(), expected.rudder_bias()),
-        ] {
+        for (likely, nearest) in
+            [(found.K(), expected.K()), (found.T(), expected.T()), (found.rudder_bias(), expected.rudder_bias())]
+        {
             assert_relative_eq!(likely.value, nearest.value, max_relative = 1e-6);
             for (a, b) in likely.ci95.expect("bounded").into_iter().zip(nearest.ci95.expect("bounded")) {
                 assert_relative_eq!(a, b, max_relative = 1e-4);

@@ -155,12 +155,8 @@ fn a_time_constant_at_the_end_of_the_search_says_so() {
         let bounded_fit = |smallest| bounded(smallest).build().expect("valid").identify(&trial).expect("steered");
         let (free, held) = (bounded_fit(1.0), bounded_fit(2.0 * case.T));
         assert_eq!(free.stop, StopReason::Converged);
-        assert!(free.warnings.iter().all(|warning| !warning.text.contains("limit of the search")));
+        assert!(free.warnings.iter().all(|warning| !warning.text.contains("limit of")));
         assert_eq!(held.stop, StopReason::RangeLimit, "T = {} s", held.response.T());
-        assert!(
-            held.warnings.iter().any(|warning| warning.text.contains("limit of the search")),
-            "{:?}",
-            held.warnings
-        );
+        assert!(held.warnings.iter().any(|warning| warning.text.contains("limit of")), "{:?}", held.warnings);
     }
 }

@@ -21,7 +21,8 @@ pub(super) struct Residuals {
     pub degrees_of_freedom: f64,
     /// Covariance of the shared unknowns for a white residual e, σ² (Z̃ᵀZ̃)⁻¹.
     pub white: Matrix3<f64>,
-    /// The same for a coloured residual, (Z̃ᵀZ̃)⁻¹ Ω (Z̃ᵀZ̃)⁻¹, Ω the long-run covariance of z̃ e.
+    /// Covariance of the shared unknowns for a coloured residual, (Z̃ᵀZ̃)⁻¹ Ω (Z̃ᵀZ̃)⁻¹, Ω the long-run covariance of
+    /// z̃ e.
     pub robust: Matrix3<f64>,
 }
 

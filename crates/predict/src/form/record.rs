@@ -7,7 +7,7 @@ use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
-use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, RUDDER_TOLERANCE, TEN, TWENTY};
+use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TOLERANCE, TWENTY};
 use crate::turn::{self, HeldTurn};
 
 /// Largest yaw rate of a straight approach, relative to the largest of the record.
@@ -134,10 +134,10 @@ fn circle(trial: &Trial) -> Classified {
     let shown = turn.figures(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
     let rudder = to_deg(turn.rudder);
-    if (turn.rudder - CIRCLE_RUDDER).abs() > RUDDER_TOLERANCE {
+    if (turn.rudder - CIRCLE_RUDDER).abs() > TOLERANCE {
         return Err(format!("a turning circle with {rudder:.1}° of rudder; the form needs 35° or the largest angle"));
     }
-    if turn.before.abs() > RUDDER_TOLERANCE {
+    if turn.before.abs() > TOLERANCE {
         let before = to_deg(turn.before);
         return Err(format!("the turning circle begins with the rudder at {before:.1}°, not from a straight course"));
     }
