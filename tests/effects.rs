@@ -27,7 +27,7 @@ fn with_effect(effect: &Arc<dyn Effect>, value: fn(&Parameter) -> f64) -> Respon
 
 /// A 10/10 zig-zag of 300 s.
 fn steer(response: Response) -> Simulated {
-    let vessel = Vessel::response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
+    let vessel = Vessel::from_response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
     zig_zag(vessel, 10.0, 10.0, from_deg(2.5), 300.0)
         .run(&StreamKey { seed: 7, cell: 0, replicate: 0 })
         .expect("a zig-zag with a typical effect comes to its end")

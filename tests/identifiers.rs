@@ -315,7 +315,7 @@ fn short_records_give_a_ship_or_a_typed_error() {
     let whole = [case().trial(0), Case { noise_deg: 0.3, begin: Begin::Mid, ..case() }.trial(3)];
     for method in methods() {
         for trial in &whole {
-            for rows in Trial::FEWEST_ROWS..130 {
+            for rows in Trial::MIN_ROWS..130 {
                 let short = records::without_rows(trial, |row| row >= rows);
                 check_answer(method.as_ref(), &short, &format!("{rows} rows"));
                 let kind = method.identify(&[short]).err().map(|error| error.kind());

@@ -87,7 +87,8 @@ fn reduced(parameters: &Parameters, scale: f64) -> Parameters {
 fn hull_zig_zag(parameters: Parameters, scale: f64) -> Arc<Truth> {
     let (time, speed) = (scale.sqrt().recip(), 7.97 / scale.sqrt());
     let hull = Mmg::at_speed(parameters, speed).expect("the set balances at any size");
-    let mut simulation = zig_zag(Vessel::hull(Arc::new(hull)), 20.0, 20.0, from_deg(2.32) / time, 900.0 * time);
+    let mut simulation =
+        zig_zag(Vessel::from_dynamics(Arc::new(hull)), 20.0, 20.0, from_deg(2.32) / time, 900.0 * time);
     simulation.recording.period = time;
     simulation.run(&StreamKey::default()).expect("KVLCC2 reaches its executes").truth
 }

@@ -58,7 +58,8 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
         for angle_deg in [10.0, 20.0] {
             for first in [Side::Starboard, Side::Port] {
                 let what = format!("{} {angle_deg}/{angle_deg} {first:?}", ship.id);
-                let simulation = own_zig_zag(Vessel::ship(&ship), rate_of(&ship), unit_of(&ship), angle_deg, first);
+                let simulation =
+                    own_zig_zag(Vessel::from_ship(&ship), rate_of(&ship), unit_of(&ship), angle_deg, first);
                 let (trial, truth) = run(&simulation, &what);
                 assert_finite(&what, &truth);
                 assert_eq!(truth.executes.len(), EXECUTES, "{what}");
@@ -104,16 +105,16 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
     let mut vessels: Vec<(String, Vessel, f64, f64)> = ships::all()
         .iter()
         .filter(|ship| !has_sides(ship))
-        .map(|ship| (ship.id.to_string(), Vessel::ship(ship), rate_of(ship), unit_of(ship)))
+        .map(|ship| (ship.id.to_string(), Vessel::from_ship(ship), rate_of(ship), unit_of(ship)))
         .collect();
     let mut derivatives = mariner::DERIVATIVES;
     for side in [&mut derivatives.Y, &mut derivatives.N] {
         (side.zero, side.zero_u, side.zero_uu) = (0.0, 0.0, 0.0);
     }
     let particulars = Particulars { length: 160.93, speed: 7.7175 };
-    let cargo_ship = Vessel::hull(Arc::new(Abkowitz::new(particulars, derivatives)));
+    let cargo_ship = Vessel::from_dynamics(Arc::new(Abkowitz::new(particulars, derivatives)));
     vessels.push(("mariner, evened".into(), cargo_ship, from_deg(5.0), 20.9));
-    let tanker = Vessel::hull(Arc::new(tanker::equations().evened()));
+    let tanker = Vessel::from_dynamics(Arc::new(tanker::equations().evened()));
     vessels.push(("tanker, evened".into(), tanker, from_deg(2.33), 37.0));
     for (name, parameters, speed, rate_deg, unit) in [
         ("kvlcc2, evened", kvlcc2::FULL_SCALE, 7.97, 2.32, 40.1),
@@ -121,7 +122,7 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
         ("seiun-like, evened", seiun_like::PARAMETERS, 8.59, 2.5, 12.2),
     ] {
         let hull = Mmg::at_speed(evened(parameters), speed).expect("the evened set balances");
-        vessels.push((name.into(), Vessel::hull(Arc::new(hull)), from_deg(rate_deg), unit));
+        vessels.push((name.into(), Vessel::from_dynamics(Arc::new(hull)), from_deg(rate_deg), unit));
     }
     assert_eq!(vessels.len(), ships::all().len(), "every ship has its turn");
     for (what, vessel, rate, unit) in vessels {
@@ -141,7 +142,8 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
 fn a_built_in_asymmetry_is_seen() {
     for ship in ships::all().iter().filter(|ship| has_sides(ship)) {
         let overshoot = |side| {
-            let (_, truth) = run(&own_zig_zag(Vessel::ship(ship), rate_of(ship), unit_of(ship), 10.0, side), &ship.id);
+            let (_, truth) =
+                run(&own_zig_zag(Vessel::from_ship(ship), rate_of(ship), unit_of(ship), 10.0, side), &ship.id);
             truth.executes[1].time
         };
         let (starboard, port) = (overshoot(Side::Starboard), overshoot(Side::Port));
@@ -151,7 +153,7 @@ fn a_built_in_asymmetry_is_seen() {
 
 fn training_ship(manoeuvre: Manoeuvre) -> Simulation {
     let particulars = Particulars { length: 105.0, speed: 8.59 };
-    let vessel = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0)).with_particulars(particulars);
+    let vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0)).with_particulars(particulars);
     let mut simulation = Simulation::new(vessel, manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.5));
     simulation

@@ -32,7 +32,7 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
         recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },
         sensors,
         ..Simulation::new(
-            Vessel::first_order(FirstOrder::from_indices(K, T, 0.0)),
+            Vessel::from_first_order(FirstOrder::from_indices(K, T, 0.0)),
             Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)),
         )
     }
@@ -42,7 +42,7 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
 pub fn damped_zig_zag(rows: usize) -> Simulation {
     let effect: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
     let ship: Response = ResponseModel::new(vec![effect]).with(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
-    Simulation { vessel: Vessel::response(ship), ..first_order_zig_zag(rows) }
+    Simulation { vessel: Vessel::from_response(ship), ..first_order_zig_zag(rows) }
 }
 
 /// The record of a trial.

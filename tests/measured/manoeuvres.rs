@@ -1,11 +1,11 @@
 //! Measured trials: the parts that the search finds against those bounded by hand.
 
 use kempf_tests::measured;
-use trial::find::{Approach, FoundManoeuvre, Signals, manoeuvres};
+use trial::find::{Approach, DetectedManoeuvre, Signals, manoeuvres};
 use trial::{Channel, Columns};
 
 /// The manoeuvres of a measured record.
-fn searched(columns: &Columns) -> Vec<FoundManoeuvre> {
+fn searched(columns: &Columns) -> Vec<DetectedManoeuvre> {
     let channel = |channel| columns.channels.get(&channel).map(Vec::as_slice);
     manoeuvres(&Signals {
         time: &columns.time,
@@ -17,7 +17,7 @@ fn searched(columns: &Columns) -> Vec<FoundManoeuvre> {
 }
 
 /// A measured record and the one manoeuvre in it, which has this name.
-fn only(file: &str, name: &str) -> Option<(Columns, FoundManoeuvre)> {
+fn only(file: &str, name: &str) -> Option<(Columns, DetectedManoeuvre)> {
     let table = measured::columns(file)?;
     let mut found = searched(&table);
     assert_eq!(found.len(), 1, "{file}: {found:?}");

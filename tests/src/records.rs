@@ -59,7 +59,7 @@ impl Case {
     /// The trial as a specification.
     pub fn simulation(&self) -> Simulation {
         let mut simulation = zig_zag(
-            Vessel::first_order(self.ship),
+            Vessel::from_first_order(self.ship),
             self.rudder_deg,
             self.heading_deg,
             from_deg(self.rate_deg_s),

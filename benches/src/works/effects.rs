@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Acts, Description, Effect, EffectReal, Manoeuvres, Now, Places, Proposal, listed};
-use ship::replay::{Recorded, replay_states};
+use ship::effects::{Action, Description, Effect, EffectReal, OperatingPoint, Proposal, RecordScales, Targets, listed};
+use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
 
 use crate::records::{K, ROWS, T, first_order_zig_zag, record};
@@ -18,17 +18,17 @@ impl Effect for CubicByHand {
         listed("nonlinear_damping", "r³").description()
     }
 
-    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
         None
     }
 
-    fn places(&self) -> Places {
-        Places::MOMENT
+    fn targets(&self) -> Targets {
+        Targets::MOMENT
     }
 }
 
-impl<R: Real> Acts<R> for CubicByHand {
-    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+impl<R: Real> Action<R> for CubicByHand {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let r = now.yaw_rate;
         -p[0] * r * r * r
     }
@@ -39,7 +39,7 @@ fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
     let values = [1.0 / T, K / T, 0.0, 60.0];
     let response = ResponseModel::new(vec![effect]).with(values.map(R::from).to_vec());
     let mut state = vec![R::default(); response.dimension()];
-    let recorded = Recorded::rudder(rudder);
+    let recorded = RecordedSignals::rudder(rudder);
     replay_states(&response, &recorded, rudder.times(), |_, _| 0.25, &mut state, |_, _, _| {});
     state[0]
 }

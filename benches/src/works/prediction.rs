@@ -1,6 +1,8 @@
 //! Predicting a manoeuvre from a thousand drawn ships.
 
-use document::{HeadingNoise, IdentifiedShip, KnownGear, RandomMoment, StoredEffect, ValidityRange, WeightedStructure};
+use document::{
+    HeadingNoise, IdentifiedEffect, IdentifiedGear, IdentifiedShip, RandomMoment, ValidityRange, WeightedStructure,
+};
 use predict::ShipMixture;
 use ship::angle::from_deg;
 use ship::effects::{Effect, listed};
@@ -14,7 +16,7 @@ const DRAWS: usize = 1000;
 
 /// Model of a ship of 75 m at 6 m/s, with the covariance of a good 10/10.
 fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> IdentifiedShip {
-    let damping = effect.map(|effect| StoredEffect {
+    let damping = effect.map(|effect| IdentifiedEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
         constants: Vec::new(),
@@ -36,7 +38,7 @@ fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> Identif
             degrees_of_freedom: None,
         }],
         noise: HeadingNoise { heading_sd_rad: from_deg(0.1), moment },
-        gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
+        gear: Some(IdentifiedGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
         seen: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
         length_m: Some(75.0),

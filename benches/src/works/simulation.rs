@@ -31,7 +31,7 @@ pub fn simulation() -> WorkGroup {
     let closed_form = first_order_zig_zag(ROWS);
     let integrated = Simulation { solver: Solver::RungeKutta(0.1), ..closed_form.clone() };
     let kvlcc2 = ships::find("kvlcc2").expect("a ship of the registry");
-    let hull = Simulation { vessel: Vessel::ship(&kvlcc2), ..closed_form.clone() };
+    let hull = Simulation { vessel: Vessel::from_ship(&kvlcc2), ..closed_form.clone() };
     let prepared = PreparedSimulation::new(closed_form.clone()).expect("a zig-zag");
     let of_a_study = Work::new("first order, trial of a study", move || prepared.run(&KEY));
     group.beside(of_a_study, &draws, Some(Reach::Ratio(1.5)));

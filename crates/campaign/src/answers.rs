@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use identify::{Answer, Errors};
+use identify::{OutsideErrors, OutsideFit};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -66,7 +66,7 @@ pub fn part_name(record: &str, number: usize) -> String {
 }
 
 /// Limits of a table of answers: one line per trial of a large study.
-const TABLE: Kind = Kind { name: "a table of answers", largest: 1 << 30 };
+const TABLE: Kind = Kind { name: "a table of answers", max_bytes: 1 << 30 };
 
 /// Known columns: those that are read, and those that a table may have kept from the list of trials.
 const COLUMNS: &str =
@@ -110,7 +110,7 @@ pub fn read(
         let line = row.position().map_or(0, |position| position.line());
         let read = columns.places(&row, &records).and_then(|places| Ok((places, columns.answer(&row)?)));
         let method = columns.text(&row, "method").map(str::to_owned);
-        let mut keep = |(places, answer): (Vec<TrialNumber>, Result<Answer, String>)| {
+        let mut keep = |(places, answer): (Vec<TrialNumber>, Result<OutsideFit, String>)| {
             let by_trial = answers.entry(method.clone()).or_default();
             places.into_iter().fold(None, |before, place| {
                 by_trial.insert(place, answer.clone());
@@ -262,15 +262,17 @@ impl AnswerColumns {
         }
     }
 
-    fn answer(&self, row: &StringRecord) -> Result<Result<Answer, String>, String> {
+    fn answer(&self, row: &StringRecord) -> Result<Result<OutsideFit, String>, String> {
         let number = |name: &str| self.number(row, name);
         let (k, t, bias) = (number("K_per_s")?, number("T_s")?, number("delta_r_deg")?);
         let sd = [number("K_sd_per_s")?, number("T_sd_s")?, number("delta_r_sd_deg")?.map(from_deg)];
-        let errors = if sd == [None; 3] { Errors::Unknown } else { Errors::Deviations(sd) };
+        let errors = if sd == [None; 3] { OutsideErrors::Unknown } else { OutsideErrors::Deviations(sd) };
         let missing = |name: &str| format!("{name} is missing or not a finite number");
         Ok(match (self.text(row, "failed"), k, t) {
             (Some(reason), _, _) => Err(reason.to_owned()),
-            (None, Some(k), Some(t)) => Ok(Answer { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors }),
+            (None, Some(k), Some(t)) => {
+                Ok(OutsideFit { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors })
+            }
             (None, None, _) => Err(missing("K_per_s")),
             (None, Some(_), None) => Err(missing("T_s")),
         })

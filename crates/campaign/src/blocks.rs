@@ -120,8 +120,8 @@ impl<'a> BlockStore<'a> {
         let results = ResultFolder::make(&self.folder)?;
         let bytes = encode(rows, &self.label(block), &self.layout);
         let bytes = bytes.map_err(|error| Failure::work(format!("{}: {error}", self.path(block).display())))?;
-        results.inside(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_text(self.design)?)?;
-        results.inside(ROWS)?.write(&rows_name(block), bytes)
+        results.subfolder(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_text(self.design)?)?;
+        results.subfolder(ROWS)?.write(&rows_name(block), bytes)
     }
 
     /// Timings of a block; empty where they are missing or damaged. Fails when the file cannot be read.
@@ -182,7 +182,7 @@ pub fn is_in(folder: &Path) -> Result<bool, Failure> {
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS, "parquet"), (BLOCK_TIMINGS, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
-            folder.inside(name)?.remove_all(|file| stem_of(file, extension).is_some())?;
+            folder.subfolder(name)?.remove_all(|file| stem_of(file, extension).is_some())?;
         }
     }
     Ok(())

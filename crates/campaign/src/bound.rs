@@ -9,7 +9,7 @@ use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderSource;
 use simulate::{Simulated, Simulation};
-use trial::noise_model::{Moment, NoiseModel};
+use trial::noise_model::{MomentKind, NoiseModel};
 
 use coloured::CompassError;
 
@@ -78,9 +78,9 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Op
     // Moments are given as the rudder angle that has the same one.
     let b = truth.K_over_T;
     let (moment, moment_level, moment_correlation) = match (disturbances.random_walk, disturbances.gusts) {
-        (0.0, None) => (Moment::None, 0.0, f64::INFINITY),
-        (walk, None) => (Moment::Walk, b * walk, f64::INFINITY),
-        (0.0, Some(gusts)) => (Moment::OrnsteinUhlenbeck, b * gusts.sd, gusts.correlation_time),
+        (0.0, None) => (MomentKind::None, 0.0, f64::INFINITY),
+        (walk, None) => (MomentKind::Walk, b * walk, f64::INFINITY),
+        (0.0, Some(gusts)) => (MomentKind::OrnsteinUhlenbeck, b * gusts.sd, gusts.correlation_time),
         (_, Some(_)) => return None,
     };
     Some(NoiseModel {

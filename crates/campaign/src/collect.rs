@@ -397,7 +397,7 @@ fn add_bounds(scenario: &Scenario, design: &mut Design) {
 /// Completes the result folder: facts of the cells, showcases, timings, and the manifest last.
 fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<StoredStudy, Failure> {
     let design = designed(scenario, &run.trials);
-    let shown = if scenario.words.output.showcase { scenario.cells.len() } else { 0 };
+    let shown = if scenario.prose.output.showcase { scenario.cells.len() } else { 0 };
     let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
     let mut timings = Timings::default();
     let store = BlockStore::new(folder.path(), &run.manifest, &design);

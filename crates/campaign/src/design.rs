@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::records::{RecordSet, RecordSplit};
-use crate::scenario::{DesignCell, MethodName, MissingPhysics, Scenario, Words, name};
+use crate::scenario::{DesignCell, MethodName, MissingPhysics, Prose, Scenario, name};
 
 /// Design of a study: the part of a scenario that tables and figures need.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -25,7 +25,7 @@ pub struct Design {
     pub cells: Vec<CellFacts>,
     /// Prose and presentation. They may change while the rows do not, so only the manifest stores them.
     #[serde(skip)]
-    pub words: Words,
+    pub prose: Prose,
 }
 
 /// Facts about a cell that do not depend on its rows.
@@ -103,7 +103,7 @@ impl Design {
             draws: scenario.draws.clone(),
             predicts,
             cells: scenario.cells.iter().map(bare).collect(),
-            words: scenario.words.clone(),
+            prose: scenario.prose.clone(),
         }
     }
 
@@ -162,6 +162,6 @@ impl Design {
             return vec![0];
         }
         let place = |title: &String| self.cells.iter().position(|cell| cell.labels.join(", ") == *title);
-        self.words.output.detail.iter().filter_map(place).collect()
+        self.prose.output.detail.iter().filter_map(place).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Priors of hull coefficients from earlier trials, stored in `fit.json` or `trace.json`.
 
 use document::IdentifiedShip;
-use document::stored_hull::StoredHull;
+use document::identified_hull::IdentifiedHull;
 use identify::hull::EarlierHull;
 use nalgebra::{DMatrix, DVector};
 use predict::{PredictError, drawable_hull};
@@ -14,7 +14,7 @@ pub fn hulls_of(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError>
     ship.hulls.iter().map(earlier_hull).collect()
 }
 
-fn earlier_hull(stored: &StoredHull) -> Result<EarlierHull, PredictError> {
+fn earlier_hull(stored: &IdentifiedHull) -> Result<EarlierHull, PredictError> {
     drawable_hull::check(stored)?;
     let particulars = HullParticulars { length: stored.length_m, speed: stored.speed_m_s, ..stored.particulars()? };
     let size = stored.coefficients.len();

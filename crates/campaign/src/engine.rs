@@ -17,7 +17,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::known::{self, RecordFacts};
+use crate::identified_ship::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
@@ -51,8 +51,8 @@ pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
 /// Simulates one trial: its record, and the further records of the same ship that the scenario specifies.
 pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, String> {
     let key = key(scenario, task);
-    let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
-    let records = specimen.specification.records(&key).map(|(simulation, key)| simulation.run(&key));
+    let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
+    let records = trial_spec.specification.records(&key).map(|(simulation, key)| simulation.run(&key));
     records.collect::<Result<_, _>>().map_err(|error| error.to_string())
 }
 
@@ -62,16 +62,16 @@ pub struct Truths {
     /// First-order response nearest to the ship; the ship itself where it is first order.
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects.
-    pub own: Option<FirstOrder>,
+    pub base: Option<FirstOrder>,
 }
 
 /// True responses of one trial. Fails when its drawn values define no ship.
 pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     let key = key(scenario, task);
-    let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
-    let Specification { truth, base, .. } = &*specimen.specification;
-    let nearest = truth.or_else(|| Some(nearest_first_order(&specimen.specification, &key)?.response));
-    Ok(Truths { nearest, own: base.filter(|_| truth.is_none()) })
+    let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
+    let Specification { truth, base, .. } = &*trial_spec.specification;
+    let nearest = truth.or_else(|| Some(nearest_first_order(&trial_spec.specification, &key)?.response));
+    Ok(Truths { nearest, base: base.filter(|_| truth.is_none()) })
 }
 
 /// Runner of the trials of one study; references and prepared simulations are shared within a cell.
@@ -103,11 +103,11 @@ impl<'a> TrialRunner<'a> {
     fn simulate(
         &self,
         cell: usize,
-        specimen: &TrialSpecification,
+        trial_spec: &TrialSpecification,
         key: &StreamKey,
     ) -> Result<Vec<Simulated>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
-        let mut records = specimen.specification.records(key);
+        let mut records = trial_spec.specification.records(key);
         let (simulation, key) = records.next().expect("a trial has a record");
         let first = match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
             None => simulation.run(&key),
@@ -125,14 +125,15 @@ impl<'a> TrialRunner<'a> {
         let key = key(self.scenario, task);
         let start = Instant::now();
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
-        let trial = cell.specimen(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|specimen| {
-            blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
-            let simulated = self.simulate(task.cell, &specimen, &key);
-            Ok((simulated.map_err(|error| format!("{} {error}", NO_TRIAL[1]))?, specimen))
-        });
+        let trial =
+            cell.trial_spec(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|trial_spec| {
+                blank.drawn = (!trial_spec.drawn.is_empty()).then(|| trial_spec.drawn.as_slice().into());
+                let simulated = self.simulate(task.cell, &trial_spec, &key);
+                Ok((simulated.map_err(|error| format!("{} {error}", NO_TRIAL[1]))?, trial_spec))
+            });
         let simulation = start.elapsed();
         let (rows, methods) = match trial {
-            Ok((simulated, specimen)) => self.answers(task.cell, &key, blank, simulated, &specimen),
+            Ok((simulated, trial_spec)) => self.answers(task.cell, &key, blank, simulated, &trial_spec),
             Err(reason) => {
                 let blank = StudyRow { failure: Some(reason.into()), ..blank };
                 ((0..cell.methods.len()).map(|method| StudyRow { method, ..blank.clone() }).collect(), Vec::new())
@@ -148,14 +149,14 @@ impl<'a> TrialRunner<'a> {
         key: &StreamKey,
         blank: StudyRow,
         simulated: Vec<Simulated>,
-        specimen: &TrialSpecification,
+        trial_spec: &TrialSpecification,
     ) -> (Vec<StudyRow>, Vec<Duration>) {
         let cell = &self.scenario.cells[index];
         let individual;
         let reference = if cell.is_fixed() {
             self.references[index - self.first_cell].get_or_init(|| self.shared(index))
         } else {
-            individual = TrialReference::of(specimen, &simulated, key, cell.traces());
+            individual = TrialReference::of(trial_spec, &simulated, key, cell.traces());
             &individual
         };
         let blank = StudyRow {
@@ -167,7 +168,7 @@ impl<'a> TrialRunner<'a> {
             ..blank
         };
         let trials: Vec<Trial> = simulated.into_iter().map(|record| record.trial).collect();
-        let specification = &*specimen.specification;
+        let specification = &*trial_spec.specification;
         let check = self.scenario.predictions.as_ref();
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
         let input = TrialInput { trials: &trials, key, reference, missing: &specification.missing, check };
@@ -178,10 +179,10 @@ impl<'a> TrialRunner<'a> {
     /// Reference of a cell whose trials share one specification, computed from its first trial.
     fn shared(&self, cell: usize) -> TrialReference {
         let key = key(self.scenario, Task { cell, replicate: 0 });
-        let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return TrialReference::default() };
-        match self.simulate(cell, &specimen, &key) {
-            Ok(simulated) => TrialReference::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
-            Err(_) => TrialReference { nearest: specimen.specification.truth, ..TrialReference::default() },
+        let Ok(trial_spec) = self.scenario.cells[cell].trial_spec(&key) else { return TrialReference::default() };
+        match self.simulate(cell, &trial_spec, &key) {
+            Ok(simulated) => TrialReference::of(&trial_spec, &simulated, &key, self.scenario.cells[cell].traces()),
+            Err(_) => TrialReference { nearest: trial_spec.specification.truth, ..TrialReference::default() },
         }
     }
 }
@@ -215,7 +216,7 @@ impl TrialInput<'_> {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
                 let row = answer.map(|estimate| self.estimated(&blank, &estimate));
-                (row.map_err(|error| error.in_a_row().into()), time)
+                (row.map_err(|error| error.row_text().into()), time)
             }
         };
         (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
@@ -230,7 +231,10 @@ impl TrialInput<'_> {
             validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
             evaluations: Some(estimate.evaluations as f64),
             stop: Some(estimate.stop.as_str()),
-            predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),
+            predicted: self
+                .check
+                .as_ref()
+                .map(|check| check.figures(|facts| identified_ship::from_estimate(estimate, facts))),
             ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
         }
     }
@@ -254,7 +258,7 @@ impl TrialInput<'_> {
     /// Row of a trace, validated on the undisturbed second manoeuvre.
     fn traced_in_a_calm(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
-        let validation = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
+        let validation = validation.and_then(|trial| analysis.replay_in_calm(trial, [trial.heading()[0], 0.0]));
         self.traced(blank, analysis, validation.as_ref())
     }
 
@@ -266,8 +270,9 @@ impl TrialInput<'_> {
             |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
         // Effects may need a speed and a sway.
-        let identified =
-            |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])));
+        let identified = |facts: &RecordFacts| {
+            Some(identified_ship::from_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])))
+        };
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading))),

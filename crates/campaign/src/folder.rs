@@ -37,7 +37,7 @@ impl ResultFolder {
     /// Subfolder, created if it is missing.
     ///
     /// Fails where the name is that of a link, whose target does not belong to the study.
-    pub fn inside(&self, name: &str) -> Result<Self, Failure> {
+    pub fn subfolder(&self, name: &str) -> Result<Self, Failure> {
         let path = self.place(name)?;
         if disk::is_link(&path).on("look for", &path)? {
             return Err(Failure::input(format!(
@@ -80,7 +80,7 @@ impl ResultFolder {
     }
 
     /// Writes a file and waits until it is on the disk: for content that cannot be computed again.
-    pub fn keep(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+    pub fn write_synced(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let mut file = self.create(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
         file.flush().on("write", &file.path)?;

@@ -12,7 +12,7 @@
 //! | writing to disk | [`files`], [`folder`], [`disk`] |
 //! | summaries and their statistics | [`summary`], [`statistics`] |
 //! | plot data and document entries | [`curves`], [`stored_figures`] |
-//! | the identified ship, for predictions | [`known`] |
+//! | the identified ship, for predictions | [`identified_ship`] |
 //! | comparison of methods on measured and simulated records | [`benchmark`] |
 
 pub mod answers;
@@ -29,7 +29,7 @@ pub mod engine;
 pub mod failure;
 pub mod files;
 pub mod folder;
-pub mod known;
+pub mod identified_ship;
 pub mod manifest;
 pub mod observer;
 pub mod parquet_table;

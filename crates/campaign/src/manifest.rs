@@ -11,7 +11,7 @@ use crate::failure::{Failure, OnPath};
 use crate::files::{DESIGN, MANIFEST};
 use crate::folder::ResultFolder;
 use crate::scenario::hex;
-use crate::scenario::{Scenario, Words, identity};
+use crate::scenario::{Prose, Scenario, identity};
 
 /// The manifest of a study: the same whichever shards of it are in the folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -88,7 +88,7 @@ impl Manifest {
                 threads: rayon::current_num_threads(),
                 wall_time_s: 0.0,
             },
-            assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
+            assumptions: scenario.influential_defaults().into_iter().map(|(_, sentence)| sentence).collect(),
             crates: env!("KEMPF_NUMERIC_CRATES").split_terminator(',').map(str::to_owned).collect(),
             sha256: BTreeMap::new(),
             scenario: scenario.text.clone(),
@@ -135,8 +135,8 @@ impl Manifest {
     }
 
     /// Prose and presentation of the scenario.
-    pub fn words(&self) -> Words {
-        Words::of(&self.scenario)
+    pub fn prose(&self) -> Prose {
+        Prose::of(&self.scenario)
     }
 
     /// Writes the manifest of a folder.
@@ -144,7 +144,7 @@ impl Manifest {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
         let text =
             toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
-        folder.keep(MANIFEST, REPEAT.to_owned() + &text)
+        folder.write_synced(MANIFEST, REPEAT.to_owned() + &text)
     }
 
     /// Manifest at a path; `None` without a file.

@@ -6,7 +6,7 @@ use predict::{ShipMixture, figures, standard};
 use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;
 
-use crate::known::RecordFacts;
+use crate::identified_ship::RecordFacts;
 use crate::rows::PredictedFigure;
 use crate::scenario::Predictions;
 

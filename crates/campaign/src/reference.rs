@@ -28,13 +28,13 @@ pub struct TrialReference {
 
 impl TrialReference {
     /// Reference of the trial of a key; `traces` if a trace is among the methods.
-    pub fn of(specimen: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
-        let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
-        let near = if truth.is_none() || traces { nearest_first_order(&specimen.specification, key) } else { None };
+    pub fn of(trial_spec: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
+        let Specification { simulation, validation, truth, base, .. } = &*trial_spec.specification;
+        let near = if truth.is_none() || traces { nearest_first_order(&trial_spec.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
         let base = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
-        let simulations = || specimen.specification.records(key).map(|(simulation, _)| simulation);
+        let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
         let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         // Defined for white heading noise only.

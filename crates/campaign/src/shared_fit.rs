@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
-use ::trace::comparison::before as of_base;
+use ::trace::comparison::base_result as of_base;
 use ::trace::record::PreparedRecord;
 use ::trace::replay_errors::{HORIZONS, ReplayDepth};
 use document::IdentifiedShip;
@@ -16,7 +16,7 @@ use simulate::StreamKey;
 use trial::{Channel, Trial};
 
 use crate::engine::{self, TrialInput, TrialOutcome, TrialRunner};
-use crate::known::{self, RecordFacts};
+use crate::identified_ship::{self, RecordFacts};
 use crate::prediction_check::is_in_lengths;
 use crate::reference::TrialReference;
 use crate::rows::{PredictedFigure, StudyRow};
@@ -145,7 +145,7 @@ impl SharedTrials<'_> {
     fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
         let answer = procedure.identify(self.fitted, key)?;
         let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)), None);
-        Some(answer.map(fit).map_err(|error| error.in_a_row().into_owned()))
+        Some(answer.map(fit).map_err(|error| error.row_text().into_owned()))
     }
 
     /// An answer with the identified ship for predictions; `settings` are those of a trace.
@@ -188,11 +188,13 @@ impl SharedTrials<'_> {
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
-        known::of_analysis(analysis, &RecordFacts::of(trials).with_motion(Some(analysis), &[]))
+        identified_ship::from_analysis(analysis, &RecordFacts::of(trials).with_motion(Some(analysis), &[]))
     };
     match answer {
         FitAnswer::StraightOn => None,
-        FitAnswer::Response(estimate) => known::of_estimate(estimate, &RecordFacts::of(fitted)).filter(sound),
+        FitAnswer::Response(estimate) => {
+            identified_ship::from_estimate(estimate, &RecordFacts::of(fitted)).filter(sound)
+        }
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
             let without: Vec<Trial> = fitted.iter().map(|trial| trial.clone().without(&withheld)).collect();

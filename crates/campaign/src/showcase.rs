@@ -35,12 +35,12 @@ pub struct Showcase {
     /// K and T of every method.
     pub intervals: Intervals,
     /// The answers of the methods.
-    pub methods: Vec<ShownAnswer>,
+    pub methods: Vec<ShowcaseAnswer>,
 }
 
 /// The answer of one method, with the texts of its warnings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ShownAnswer {
+pub struct ShowcaseAnswer {
     /// The answer.
     #[serde(flatten)]
     pub entry: MethodEntry,
@@ -56,7 +56,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = Task { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;
-    let truth_of_ship = cell.specimen(&engine::key(scenario, first)).ok()?.specification.truth;
+    let truth_of_ship = cell.trial_spec(&engine::key(scenario, first)).ok()?.specification.truth;
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answer = |method: &Method| {
@@ -67,7 +67,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
     let shown = |(entry, estimate): (MethodEntry, Option<Estimate>)| {
         let warnings = estimate.into_iter().flat_map(|estimate| estimate.warnings).map(|warning| warning.text);
-        ShownAnswer { entry, warnings: warnings.collect() }
+        ShowcaseAnswer { entry, warnings: warnings.collect() }
     };
     let names = scenario.method_names();
     let fits = FourierCurve::of(cell, &names, trial);

@@ -65,7 +65,7 @@ impl StoredStudy {
         let showcases = serde_json::from_slice(&bytes).map_err(|problem| refuse(problem.to_string()))?;
         let (bytes, refuse) = text(TIMINGS)?;
         let timings = Timings::of_text(&bytes, &design).map_err(refuse)?;
-        let design = Design { words: manifest.words(), ..design };
+        let design = Design { prose: manifest.prose(), ..design };
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
     }
 
@@ -82,7 +82,7 @@ impl StoredStudy {
         if manifest != self.manifest {
             manifest.write(folder)?;
         }
-        Ok(Self { design: Design { words: manifest.words(), ..design }, manifest, ..self })
+        Ok(Self { design: Design { prose: manifest.prose(), ..design }, manifest, ..self })
     }
 
     /// Passes every row to `take`, in order. Fails when one is missing or belongs to another study.
@@ -139,7 +139,11 @@ fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Res
 /// Writes a file unless its SHA-256 is unchanged, and records it.
 fn write(name: &str, text: &[u8], folder: &ResultFolder, sha256: &mut BTreeMap<String, String>) -> Result<(), Failure> {
     let digest = hex(&Sha256::digest(text));
-    if sha256.insert(name.to_owned(), digest.clone()) == Some(digest) { Ok(()) } else { folder.keep(name, text) }
+    if sha256.insert(name.to_owned(), digest.clone()) == Some(digest) {
+        Ok(())
+    } else {
+        folder.write_synced(name, text)
+    }
 }
 
 /// Completes a folder that holds all rows: writes design, showcases, timings, and the manifest last. Returns the study
@@ -161,6 +165,6 @@ pub(crate) fn finish(
     manifest.write(folder)?;
     // As written, rounded to the nanosecond.
     let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
-    let design = Design { words: manifest.words(), ..design };
+    let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })
 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use simulate::limits::MOST_STEPS;
+use simulate::limits::MAX_STEPS;
 
 use crate::engine::{TrialRunner, key};
 use crate::scenario::Scenario;
@@ -105,9 +105,9 @@ fn is_refused_or_ends(text: &str) {
             Err(message) => assert!(message.contains("--> all.toml:") && message.contains("= help: "), "{message}"),
             Ok(scenario) => {
                 let task = Task { cell: 0, replicate: 0 };
-                if let Ok(specimen) = scenario.cells[0].specimen(&key(&scenario, task)) {
-                    let steps = specimen.specification.simulation.cost().steps;
-                    assert!(steps <= MOST_STEPS as f64, "{steps} steps in\n{changed}");
+                if let Ok(trial_spec) = scenario.cells[0].trial_spec(&key(&scenario, task)) {
+                    let steps = trial_spec.specification.simulation.cost().steps;
+                    assert!(steps <= MAX_STEPS as f64, "{steps} steps in\n{changed}");
                 }
                 let rows = TrialRunner::new(&scenario, 0..=0).run(task).rows;
                 assert_eq!(rows.len(), scenario.cells[0].methods.len());

@@ -13,7 +13,7 @@ use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
 use crate::single_records::{Amplitude, SingleRecords};
 use crate::trial_particulars::TrialParticularsEntry;
-use crate::warning::{Code, Source, Warning};
+use crate::warning::{Warning, WarningCode, WarningSource};
 
 /// Schema name.
 pub const SCHEMA: &str = "fit/2";
@@ -196,18 +196,20 @@ impl FitDocument {
     }
 
     /// Method drawn in the figures; `None` where none has an estimate.
-    pub fn shown_method(&self) -> Option<&str> {
+    pub fn drawn_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
         answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
     }
 
     /// Whether a channel has faulty readings, or is an order in place of an angle.
     pub fn has_faulty_readings(&self) -> bool {
-        self.warnings.iter().any(|warning| matches!(warning.code, Code::FaultyReadings | Code::RudderOrder))
+        self.warnings
+            .iter()
+            .any(|warning| matches!(warning.code, WarningCode::FaultyReadings | WarningCode::RudderOrder))
     }
 
     /// Warnings on the recommended estimate, the most severe first.
-    pub fn of_answer(&self) -> impl Iterator<Item = &Warning> {
+    pub fn answer_warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|warning| !self.is_note(warning))
     }
 
@@ -218,7 +220,7 @@ impl FitDocument {
 
     fn is_note(&self, warning: &Warning) -> bool {
         let taken = self.verdict.as_ref().map(|verdict| &verdict.method);
-        matches!(&warning.source, Source::Method(method) if Some(method) != taken)
+        matches!(&warning.source, WarningSource::Method(method) if Some(method) != taken)
     }
 }
 
@@ -232,7 +234,7 @@ impl VerdictEntry {
 /// Reason for the recommended estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Reason {
+pub enum VerdictReason {
     /// Least heading error of all first-order responses.
     NearestReplay,
     /// A random yaw moment acts, which maximum likelihood models.
@@ -284,7 +286,7 @@ pub struct VerdictEntry {
     #[serde(rename = "T_s", default, skip_serializing_if = "Option::is_none")]
     pub t_s: Option<Quantity>,
     /// Reason for the recommendation.
-    pub reason: Reason,
+    pub reason: VerdictReason,
     /// Kind of the residual of output error, where it has an estimate.
     pub residual: Option<ResidualKind>,
     /// Root mean square of that residual, deg.

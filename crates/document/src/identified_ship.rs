@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
-use ship::vessel::prime::is_of_wind;
+use ship::vessel::prime::is_windage;
 use ship::{Particulars, ResponseModel};
 
 use crate::error::IdentifiedShipError;
+use crate::identified_hull::IdentifiedHull;
 use crate::noise::{HeadingNoise, RandomMoment};
-use crate::stored_hull::StoredHull;
 
 /// Effect in a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct StoredEffect {
+pub struct IdentifiedEffect {
     /// Identifier.
     pub id: String,
     /// Form.
@@ -30,7 +30,7 @@ pub struct WeightedStructure {
     /// Probability among the structures of the file.
     pub weight: f64,
     /// Effects in the order in which the rudder passes through them.
-    pub effects: Vec<StoredEffect>,
+    pub effects: Vec<IdentifiedEffect>,
     /// 1/T (1/s), K/T (1/s²), δ_r (rad) and the parameters of the effects, in the units these declare.
     pub parameters: Vec<f64>,
     /// Indices of the fitted parameters.
@@ -43,7 +43,7 @@ pub struct WeightedStructure {
 
 /// Steering gear identified from records.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct KnownGear {
+pub struct IdentifiedGear {
     /// Rudder rate, rad/s.
     pub rate_rad_s: f64,
     /// Standard deviation of the rudder rate, rad/s.
@@ -67,7 +67,7 @@ pub struct IdentifiedShip {
     /// Heading noise of the records.
     pub noise: HeadingNoise,
     /// Steering gear; `null` where the records do not show it, and the rudder then moves in steps.
-    pub gear: Option<KnownGear>,
+    pub gear: Option<IdentifiedGear>,
     /// Root mean square yaw rate at the end of straight approaches, rad/s; 0 without one.
     pub approach_yaw_rate_rad_s: f64,
     /// Range of validity.
@@ -79,13 +79,13 @@ pub struct IdentifiedShip {
     /// Hull models of three degrees of freedom, the nearest to the records first. Where there are any, predictions use
     /// them instead of the structures.
     #[serde(default)]
-    pub hulls: Vec<StoredHull>,
+    pub hulls: Vec<IdentifiedHull>,
 }
 
 impl WeightedStructure {
     /// Response model; fails for an unknown effect, and for parameters or a covariance of the wrong size.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
-        let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
+        let effect = |written: &IdentifiedEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
             effects::named(&written.id, &written.form, &written.constants)
                 .ok_or_else(|| IdentifiedShipError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
@@ -169,7 +169,7 @@ impl IdentifiedShip {
         }
         scaled.noise.moment = self.noise.moment.scaled(second);
         if let Some(gear) = &mut scaled.gear {
-            *gear = KnownGear { rate_rad_s: gear.rate_rad_s / second, sd_rad_s: gear.sd_rad_s / second };
+            *gear = IdentifiedGear { rate_rad_s: gear.rate_rad_s / second, sd_rad_s: gear.sd_rad_s / second };
         }
         scaled.approach_yaw_rate_rad_s /= second;
         scaled.seen.yaw_rate_rad_s /= second;
@@ -185,7 +185,7 @@ impl IdentifiedShip {
         calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
             (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
-            if let Some(place) = hull.coefficients.iter().position(|coefficient| is_of_wind(&coefficient.key)) {
+            if let Some(place) = hull.coefficients.iter().position(|coefficient| is_windage(&coefficient.key)) {
                 hull.coefficients[place].value = 0.0;
                 hull.covariance.iter_mut().for_each(|row| row[place] = 0.0);
                 hull.covariance[place].fill(0.0);
@@ -193,7 +193,7 @@ impl IdentifiedShip {
         }
         for member in &mut calm.members {
             let model = member.model()?;
-            for (effect, range) in model.placed().filter(|(effect, _)| effect.sees_heading()) {
+            for (effect, range) in model.placed().filter(|(effect, _)| effect.is_heading_dependent()) {
                 for (place, parameter) in range.clone().zip(effect.parameters()) {
                     member.parameters[place] = parameter.neutral;
                 }
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
 
     fn ship() -> IdentifiedShip {
-        let effect = StoredEffect { id: "nonlinear_damping".into(), form: "r³".into(), constants: Vec::new() };
+        let effect = IdentifiedEffect { id: "nonlinear_damping".into(), form: "r³".into(), constants: Vec::new() };
         let member = WeightedStructure {
             weight: 1.0,
             effects: vec![effect],

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | a number with its uncertainty | [`Quantity`] |
 //! | the noise of a record | [`noise`] |
-//! | an identified ship in files | [`identified_ship`], [`stored_hull`] |
+//! | an identified ship in files | [`identified_ship`], [`identified_hull`] |
 //! | the document of a fit | [`fit`], [`scales`], [`earlier_trials`] |
 //! | the estimate of a method | [`method`] |
 //! | the document of a trace | [`trace`] |
@@ -18,6 +18,7 @@ pub mod error;
 mod error_code;
 pub mod fit;
 mod form;
+pub mod identified_hull;
 pub mod identified_ship;
 pub mod method;
 pub mod names;
@@ -26,7 +27,6 @@ mod quantity;
 pub mod scales;
 mod shown;
 pub mod single_records;
-pub mod stored_hull;
 pub mod trace;
 mod trial_particulars;
 pub mod warning;
@@ -34,9 +34,9 @@ pub mod warning;
 pub use error::IdentifiedShipError;
 pub use error_code::ErrorCode;
 pub use form::ImoFormEntry;
-pub use identified_ship::{IdentifiedShip, KnownGear, StoredEffect, ValidityRange, WeightedStructure};
-pub use noise::{HeadingNoise, Moment, RandomMoment};
+pub use identified_hull::{IdentifiedCoefficient, IdentifiedHull, RandomYawMoment};
+pub use identified_ship::{IdentifiedEffect, IdentifiedGear, IdentifiedShip, ValidityRange, WeightedStructure};
+pub use noise::{HeadingNoise, MomentKind, RandomMoment};
 pub use quantity::Quantity;
-pub use stored_hull::{RandomYawMoment, StoredCoefficient, StoredHull};
 pub use trial_particulars::TrialParticularsEntry;
-pub use warning::{Code, Severity, Source, Warning, Warnings};
+pub use warning::{Severity, Warning, WarningCode, WarningSource, Warnings};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Kind of a random yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Moment {
+pub enum MomentKind {
     /// No random moment.
     #[default]
     None,
@@ -18,7 +18,7 @@ pub enum Moment {
     Walk,
 }
 
-impl Moment {
+impl MomentKind {
     /// All kinds by number of parameters.
     pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
 }
@@ -60,12 +60,12 @@ pub struct HeadingNoise {
 
 impl RandomMoment {
     /// Kind of the moment.
-    pub fn kind(self) -> Moment {
+    pub fn kind(self) -> MomentKind {
         match self {
-            Self::None => Moment::None,
-            Self::White { .. } => Moment::White,
-            Self::Walk { .. } => Moment::Walk,
-            Self::OrnsteinUhlenbeck { .. } => Moment::OrnsteinUhlenbeck,
+            Self::None => MomentKind::None,
+            Self::White { .. } => MomentKind::White,
+            Self::Walk { .. } => MomentKind::Walk,
+            Self::OrnsteinUhlenbeck { .. } => MomentKind::OrnsteinUhlenbeck,
         }
     }
 
@@ -142,7 +142,7 @@ mod tests {
         let larger = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: 0.03, correlation_s: 20.0 };
         let mean = HeadingNoise::mean(&[noise(1.0, GUSTS), noise(3.0, larger)]).expect("two records");
         assert_eq!(mean.heading_sd_rad, 2.0);
-        assert!((mean.moment.size() - 0.02).abs() < 1e-15 && mean.moment.kind() == Moment::OrnsteinUhlenbeck);
+        assert!((mean.moment.size() - 0.02).abs() < 1e-15 && mean.moment.kind() == MomentKind::OrnsteinUhlenbeck);
         assert_eq!(HeadingNoise::mean(&[noise(1.0, RandomMoment::None)]).expect("one").moment, RandomMoment::None);
         assert_eq!(HeadingNoise::mean(&[]), None);
     }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::fit::CriterionVerdict;
-use crate::noise::Moment;
+use crate::noise::MomentKind;
 use crate::scales::Scaling;
 use crate::trace::{Dependence, HeadingWander, Verdict};
 
@@ -19,4 +19,4 @@ macro_rules! display_as_in_files {
     )+};
 }
 
-display_as_in_files!(CriterionVerdict, Dependence, HeadingWander, Moment, Scaling, Verdict);
+display_as_in_files!(CriterionVerdict, Dependence, HeadingWander, MomentKind, Scaling, Verdict);

@@ -11,7 +11,7 @@ use ship::Particulars;
 use crate::earlier_trials::EarlierTrials;
 use crate::identified_ship::IdentifiedShip;
 use crate::names;
-use crate::noise::Moment;
+use crate::noise::MomentKind;
 use crate::single_records::{Amplitude, SingleRecords};
 use crate::warning::Warning;
 
@@ -242,7 +242,7 @@ pub struct RecordNoiseEntry {
     #[schemars(with = "Option<String>")]
     pub heading_wander: Option<HeadingWander>,
     /// Kind of the random moment.
-    pub moment: Moment,
+    pub moment: MomentKind,
     /// Standard deviation of gusts, of the mean of a white moment over one second, or of the change of a walk in one
     /// second.
     pub moment_sd_rudder_deg: Option<f64>,

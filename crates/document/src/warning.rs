@@ -22,7 +22,7 @@ pub enum Severity {
 /// Subject of a warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Code {
+pub enum WarningCode {
     /// The rudder of a record does not move.
     RudderAtRest,
     /// Angles may be in another unit than their column name.
@@ -129,7 +129,7 @@ pub enum Code {
     TurnedSign,
 }
 
-impl Code {
+impl WarningCode {
     /// Severity of warnings of this kind.
     pub fn severity(self) -> Severity {
         match self {
@@ -158,14 +158,14 @@ impl Code {
 
     /// Warning of this kind, with the source `Study` until a caller sets it.
     pub fn warning(self, text: impl Into<String>) -> Warning {
-        Warning::new(self, Source::Study, text)
+        Warning::new(self, WarningSource::Study, text)
     }
 }
 
 /// Source of a warning.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Source {
+pub enum WarningSource {
     /// Record, by its file.
     Record(String),
     /// Model or loading description, by its file.
@@ -176,7 +176,7 @@ pub enum Source {
     Study,
 }
 
-impl Source {
+impl WarningSource {
     /// Warnings with this source.
     pub fn of(&self, warnings: impl IntoIterator<Item = Warning>) -> impl Iterator<Item = Warning> {
         warnings.into_iter().map(|warning| Warning { source: self.clone(), ..warning })
@@ -187,18 +187,18 @@ impl Source {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Warning {
     /// Subject.
-    pub code: Code,
+    pub code: WarningCode,
     /// Severity.
     pub severity: Severity,
     /// Source.
-    pub source: Source,
+    pub source: WarningSource,
     /// Text: one sentence, without the source.
     pub text: String,
 }
 
 impl Warning {
     /// Warning with the severity of its code.
-    pub fn new(code: Code, source: Source, text: impl Into<String>) -> Self {
+    pub fn new(code: WarningCode, source: WarningSource, text: impl Into<String>) -> Self {
         Self { code, severity: code.severity(), source, text: text.into() }
     }
 }
@@ -206,9 +206,9 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match &self.source {
-            Source::Record(name) => write!(f, "{}: {}", names::record(name), self.text),
-            Source::File(name) | Source::Method(name) => write!(f, "{name}: {}", self.text),
-            Source::Study => f.write_str(&self.text),
+            WarningSource::Record(name) => write!(f, "{}: {}", names::record(name), self.text),
+            WarningSource::File(name) | WarningSource::Method(name) => write!(f, "{name}: {}", self.text),
+            WarningSource::Study => f.write_str(&self.text),
         }
     }
 }
@@ -219,7 +219,7 @@ pub struct Warnings(Vec<Warning>);
 
 impl Warnings {
     /// Adds a warning.
-    pub fn push(&mut self, code: Code, source: Source, text: impl Into<String>) {
+    pub fn push(&mut self, code: WarningCode, source: WarningSource, text: impl Into<String>) {
         self.0.push(Warning::new(code, source, text));
     }
 
@@ -245,13 +245,13 @@ mod tests {
     fn the_worst_comes_first_and_equals_keep_their_order() {
         let mut warnings = Warnings::default();
         for (code, text) in [
-            (Code::LeftOut, "mended"),
-            (Code::Part, "choice"),
-            (Code::Gap, "doubt"),
-            (Code::Clock, "another choice"),
-            (Code::YawRate, "another doubt"),
+            (WarningCode::LeftOut, "mended"),
+            (WarningCode::Part, "choice"),
+            (WarningCode::Gap, "doubt"),
+            (WarningCode::Clock, "another choice"),
+            (WarningCode::YawRate, "another doubt"),
         ] {
-            warnings.push(code, Source::Study, text);
+            warnings.push(code, WarningSource::Study, text);
         }
         let order: Vec<String> = warnings.ranked().iter().map(Warning::to_string).collect();
         assert_eq!(order, ["doubt", "another doubt", "choice", "another choice", "mended"]);
@@ -259,11 +259,12 @@ mod tests {
 
     #[test]
     fn json_has_code_severity_source_and_text() {
-        let text = |source| serde_json::to_string(&Warning::new(Code::HeadingJump, source, "it jumps")).expect("plain");
-        let of_record = text(Source::Record("run.csv".into()));
+        let text =
+            |source| serde_json::to_string(&Warning::new(WarningCode::HeadingJump, source, "it jumps")).expect("plain");
+        let of_record = text(WarningSource::Record("run.csv".into()));
         let fields = r#""code":"heading-jump","severity":"doubt","source":"#;
         assert_eq!(of_record, format!(r#"{{{fields}{{"record":"run.csv"}},"text":"it jumps"}}"#));
-        assert_eq!(text(Source::Study), format!(r#"{{{fields}"study","text":"it jumps"}}"#));
+        assert_eq!(text(WarningSource::Study), format!(r#"{{{fields}"study","text":"it jumps"}}"#));
         let again: Warning = serde_json::from_str(&of_record).expect("the same");
         assert_eq!(again.to_string(), "run.csv: it jumps");
     }

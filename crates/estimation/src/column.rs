@@ -60,7 +60,7 @@ impl<const N: usize> Kernel for Gram<'_, N> {
 
 /// Projection of a column on the constant and on a unit column.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Removed {
+pub struct ColumnProjection {
     /// Mean.
     pub mean: f64,
     /// Product with the unit column.
@@ -69,7 +69,7 @@ pub struct Removed {
 
 /// Removes from a column, in place, its projection on the constant and on `unit` (unit length, zero mean, as many
 /// rows).
-pub fn project(unit: &[f64], column: &mut [f64]) -> Removed {
+pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
     run(Project { unit, column })
 }
 
@@ -79,10 +79,10 @@ struct Project<'a> {
 }
 
 impl Kernel for Project<'_> {
-    type Output = Removed;
+    type Output = ColumnProjection;
 
     #[inline(always)]
-    fn call(self) -> Removed {
+    fn call(self) -> ColumnProjection {
         let Self { unit, column } = self;
         let mean = sum(column) / column.len() as f64;
         for x in column.iter_mut() {
@@ -92,7 +92,7 @@ impl Kernel for Project<'_> {
         for (x, u) in column.iter_mut().zip(unit) {
             *x -= share * u;
         }
-        Removed { mean, share }
+        ColumnProjection { mean, share }
     }
 }
 
@@ -150,7 +150,7 @@ pub fn extremes(x: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::on_every_set;
+    use crate::lanes::on_every_instruction_set;
     use approx::assert_relative_eq;
 
     fn columns(rows: usize) -> [Vec<f64>; 3] {
@@ -195,9 +195,9 @@ mod tests {
     fn every_instruction_set_gives_the_same_bits() {
         for rows in [5, 8, 271, 1201] {
             let [x, y, z] = columns(rows);
-            let products = on_every_set(|| Gram([&x, &y, &z]));
+            let products = on_every_instruction_set(|| Gram([&x, &y, &z]));
             assert!(products.iter().all(|(_, output)| output == &products[0].1), "{products:?}");
-            let projected = on_every_set(|| Projected { unit: &x, column: z.clone() });
+            let projected = on_every_instruction_set(|| Projected { unit: &x, column: z.clone() });
             assert!(projected.iter().all(|(_, output)| output == &projected[0].1), "{projected:?}");
         }
     }
@@ -209,7 +209,7 @@ mod tests {
     }
 
     impl Kernel for Projected<'_> {
-        type Output = (Removed, Vec<f64>);
+        type Output = (ColumnProjection, Vec<f64>);
 
         #[inline(always)]
         fn call(mut self) -> Self::Output {

@@ -15,7 +15,7 @@ pub use matrix::{identity, product, sandwich, sum};
 use crate::lanes::{Kernel, run};
 
 /// Largest number of states of a [`Whitener`].
-pub const MOST: usize = 5;
+pub const MAX_STATES: usize = 5;
 
 /// Longest period of a repeating sequence of readings: two sensors in turn.
 const MAX_PERIOD: usize = 2;
@@ -92,7 +92,7 @@ pub struct System<const N: usize> {
 impl<const N: usize> System<N> {
     /// System with one reading per row: the first state, or its sum with the state `beside`, with the noise variance of
     /// that row. `row_steps` has the index of the time step before every row; that of the first row is ignored.
-    pub fn of_rows(
+    pub fn from_rows(
         steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
         row_steps: &[usize],
@@ -183,9 +183,11 @@ impl<const N: usize> Filter<N> {
 
     /// Whitener of the filter, independent of the number of states at compile time.
     pub fn whitener(&self) -> Whitener {
-        let wide = |row: &[f64; N]| -> [f64; MOST] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
-        let matrix =
-            |f: &[[f64; N]; N]| -> [[f64; MOST]; MOST] { std::array::from_fn(|k| f.get(k).map_or([0.0; MOST], wide)) };
+        let wide =
+            |row: &[f64; N]| -> [f64; MAX_STATES] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
+        let matrix = |f: &[[f64; N]; N]| -> [[f64; MAX_STATES]; MAX_STATES] {
+            std::array::from_fn(|k| f.get(k).map_or([0.0; MAX_STATES], wide))
+        };
         Whitener {
             states: N,
             transitions: self.system.steps.iter().map(|step| matrix(&step.transition)).collect(),
@@ -241,10 +243,10 @@ macro_rules! with_states {
 #[derive(Debug, Clone)]
 pub struct Whitener {
     states: usize,
-    transitions: Vec<[[f64; MOST]; MOST]>,
+    transitions: Vec<[[f64; MAX_STATES]; MAX_STATES]>,
     sensors: Vec<Sensor>,
     /// Gains, each with 1/√S.
-    gains: Vec<([f64; MOST], f64)>,
+    gains: Vec<([f64; MAX_STATES], f64)>,
     /// Every reading with the index of its gain.
     readings: Vec<(Reading, u32)>,
     /// Sum Σ log S over the readings.
@@ -271,8 +273,8 @@ impl Whitener {
     }
 
     /// Predicted states before every reading of a column, given the earlier readings.
-    pub fn predicted(&self, column: &[f64]) -> Vec<[f64; MOST]> {
-        let mut x = [[0.0]; MOST];
+    pub fn predicted(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
+        let mut x = [[0.0]; MAX_STATES];
         let predict = |(&value, &(Reading { step, sensor }, gain)): (&f64, &(Reading, u32))| {
             if let Some(step) = step {
                 x = advanced(&self.transitions[step], &x);
@@ -289,7 +291,7 @@ impl Whitener {
     /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse covariance of the
     /// noise.
     pub fn apply_transposed(&self, column: &mut [f64]) {
-        let mut later = [0.0; MOST];
+        let mut later = [0.0; MAX_STATES];
         for (value, &(Reading { step, sensor }, gain)) in column.iter_mut().zip(&self.readings).rev() {
             let (gain, weight) = &self.gains[gain as usize];
             *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
@@ -354,7 +356,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
 /// Product F x for several state vectors side by side.
 #[inline(always)]
 fn advanced<const N: usize, const COLUMNS: usize>(
-    f: &[[f64; MOST]; MOST],
+    f: &[[f64; MAX_STATES]; MAX_STATES],
     x: &[[f64; COLUMNS]; N],
 ) -> [[f64; COLUMNS]; N] {
     let mut next = [[0.0; COLUMNS]; N];

@@ -3,7 +3,7 @@
 //!
 //! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across
 //! lanes are written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide
-//! registers takes the same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
+//! registers takes the same steps with narrow ones. [`on_every_instruction_set`] is for the tests that prove it.
 
 use pulp::Arch;
 /// Loop over lanes: `call` has to be `#[inline(always)]`, or it stays compiled for the narrowest registers.
@@ -16,7 +16,7 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
 }
 
 /// Name of the widest instruction set of this machine.
-pub fn set() -> &'static str {
+pub fn instruction_set() -> &'static str {
     struct Nothing;
     impl Kernel for Nothing {
         type Output = ();
@@ -24,7 +24,7 @@ pub fn set() -> &'static str {
         fn call(self) {}
     }
     // The widest comes last.
-    on_every_set(|| Nothing)
+    on_every_instruction_set(|| Nothing)
         .into_iter()
         .filter(|(name, ())| *name != "chosen")
         .map(|(name, ())| name)
@@ -33,7 +33,7 @@ pub fn set() -> &'static str {
 }
 
 /// Outputs of a kernel as plain code and with every instruction set of this machine, with the name of each.
-pub fn on_every_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
+pub fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "only one family has several sets"))]
     let mut outputs = vec![("plain", kernel().call()), ("chosen", run(kernel()))];
     #[cfg(target_arch = "x86_64")]

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// Error of a linear least-squares problem without a unique solution.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub enum Unsolvable {
+pub enum LeastSquaresError {
     /// Fewer rows than columns.
     #[error("needs at least {needed} equations, found {found}")]
     TooFewRows {
@@ -44,14 +44,14 @@ pub struct LeastSquares {
 impl LeastSquares {
     /// Solution by singular values of the scaled columns; every column has as many rows as `y`.
     ///
-    /// Fails with [`Unsolvable::TooFewRows`] for fewer rows than columns, and with
-    /// [`Unsolvable::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
-    pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, Unsolvable> {
+    /// Fails with [`LeastSquaresError::TooFewRows`] for fewer rows than columns, and with
+    /// [`LeastSquaresError::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
+    pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, LeastSquaresError> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {
-            return Err(Unsolvable::TooFewRows { needed: width, found: rows });
+            return Err(LeastSquaresError::TooFewRows { needed: width, found: rows });
         }
-        let singular = |condition| Unsolvable::Singular { condition, limit: condition_limit };
+        let singular = |condition| LeastSquaresError::Singular { condition, limit: condition_limit };
         let norm = |column: &&[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
         let scale: Vec<f64> = columns.iter().map(norm).collect();
         if scale.iter().any(|&length| !(length.is_finite() && length > 0.0)) {
@@ -113,6 +113,6 @@ mod tests {
         let x: Vec<f64> = (0..9).map(f64::from).collect();
         let twice: Vec<f64> = x.iter().map(|x| 2.0 * x).collect();
         let error = LeastSquares::solve(&[&x, &twice], &x, 1e8).expect_err("parallel");
-        assert!(matches!(error, Unsolvable::Singular { .. }), "{error}");
+        assert!(matches!(error, LeastSquaresError::Singular { .. }), "{error}");
     }
 }

@@ -33,34 +33,34 @@ pub struct Normal {
 
 /// Settings of a search: damping schedule and stopping rules.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rules {
+pub struct SearchSettings {
     /// Maximum number of accepted steps.
     pub steps: usize,
     /// Initial damping λ, relative to the second derivatives.
     pub damping: f64,
-    /// Factor on the damping after a step whose decrease of J is at least `trusted` times the predicted decrease.
+    /// Factor on the damping after a step whose decrease of J is at least `trust_ratio` times the predicted decrease.
     pub shrink: f64,
     /// Smallest ratio of actual to predicted decrease at which the damping shrinks.
-    pub trusted: f64,
+    pub trust_ratio: f64,
     /// Factor on the damping after a step that does not lower J.
     pub grow: f64,
     /// Lower bound of the damping after an accepted step, and after a rejected one.
-    pub least: [f64; 2],
+    pub min_damping: [f64; 2],
     /// Number of rejected steps in a row that ends a search.
-    pub tries: usize,
+    pub max_rejections: usize,
     /// Predicted decrease of J below which a search has converged.
-    pub promise: f64,
+    pub min_decrease: f64,
     /// Absolute and relative tolerance for a small decrease of J.
-    pub enough: [f64; 2],
+    pub tolerance: [f64; 2],
     /// Number of steps in a row with such a small decrease that ends a search.
-    pub in_a_row: usize,
+    pub max_small_steps: usize,
 }
 
 /// Reason why a search stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum SearchEnd {
     /// Converged: steps no longer lower J.
-    Settled,
+    Converged,
     /// No step lowers J, however short: a minimum to rounding, or a kink near one.
     Stalled,
     /// Maximum number of steps reached.
@@ -81,7 +81,7 @@ pub struct Minimum {
     /// Number of accepted steps.
     pub steps: usize,
     /// Stopping reason.
-    pub end: End,
+    pub end: SearchEnd,
 }
 
 /// Ridge, relative to the second derivatives, that keeps a step finite without damping.
@@ -153,27 +153,27 @@ impl StepWorkspace {
 }
 
 /// Minimises J between the bounds, from a starting point.
-pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Rules) -> Minimum {
+pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &SearchSettings) -> Minimum {
     let unknowns = start.len();
     let (mut at, mut next) = (start, DVector::zeros(unknowns));
     let mut normal = Normal::zeros(unknowns);
     let mut value = problem.linearise(at.as_slice(), &mut normal);
     let mut work = StepWorkspace::new(unknowns);
     let (mut damping, mut small_steps) = (rules.damping, 0);
-    let mut end = if value.is_finite() { End::StepLimit } else { End::NotFinite };
+    let mut end = if value.is_finite() { SearchEnd::StepLimit } else { SearchEnd::NotFinite };
     let mut steps = 0;
-    'search: while steps < rules.steps && end == End::StepLimit {
+    'search: while steps < rules.steps && end == SearchEnd::StepLimit {
         work.prepare(problem, &at, &normal);
         let mut tries = 0;
         let lower = loop {
-            if tries == rules.tries {
-                end = End::Stalled;
+            if tries == rules.max_rejections {
+                end = SearchEnd::Stalled;
                 break 'search;
             }
             tries += 1;
             if let Some(promise) = work.damped_step(&normal, damping) {
-                if promise < rules.promise {
-                    end = End::Settled;
+                if promise < rules.min_decrease {
+                    end = SearchEnd::Converged;
                     break 'search;
                 }
                 for k in 0..unknowns {
@@ -182,22 +182,23 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Rules
                 }
                 let trial = problem.value(next.as_slice());
                 if trial <= value {
-                    if value - trial >= rules.trusted * promise {
-                        damping = (damping * rules.shrink).max(rules.least[0]);
+                    if value - trial >= rules.trust_ratio * promise {
+                        damping = (damping * rules.shrink).max(rules.min_damping[0]);
                     }
                     break trial;
                 }
             }
-            damping = (damping * rules.grow).max(rules.least[1]);
+            damping = (damping * rules.grow).max(rules.min_damping[1]);
         };
         std::mem::swap(&mut at, &mut next);
-        small_steps = if value - lower <= rules.enough[0] + rules.enough[1] * value { small_steps + 1 } else { 0 };
+        small_steps =
+            if value - lower <= rules.tolerance[0] + rules.tolerance[1] * value { small_steps + 1 } else { 0 };
         value = problem.linearise(at.as_slice(), &mut normal);
         steps += 1;
         if !value.is_finite() {
-            end = End::NotFinite;
-        } else if small_steps == rules.in_a_row {
-            end = End::Settled;
+            end = SearchEnd::NotFinite;
+        } else if small_steps == rules.max_small_steps {
+            end = SearchEnd::Converged;
         }
     }
     Minimum { at, value, normal, steps, end }
@@ -208,17 +209,17 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    const RULES: Rules = Rules {
+    const RULES: SearchSettings = SearchSettings {
         steps: 50,
         damping: 1e-3,
         shrink: 0.2,
-        trusted: 0.0,
+        trust_ratio: 0.0,
         grow: 4.0,
-        least: [1e-9, 0.0],
-        tries: 30,
-        promise: 1e-25,
-        enough: [0.0, 1e-14],
-        in_a_row: 2,
+        min_damping: [1e-9, 0.0],
+        max_rejections: 30,
+        min_decrease: 1e-25,
+        tolerance: [0.0, 1e-14],
+        max_small_steps: 2,
     };
 
     /// Rosenbrock's valley as the squares of 10 (y − x²) and 1 − x, with a bound on x.
@@ -258,12 +259,12 @@ mod tests {
     fn a_search_says_why_it_ended() {
         let start = DVector::from_vec(vec![-1.2, 1.0]);
         assert_eq!(
-            minimise(&mut Valley { max_x: 5.0 }, start.clone(), &Rules { steps: 3, ..RULES }).end,
-            End::StepLimit
+            minimise(&mut Valley { max_x: 5.0 }, start.clone(), &SearchSettings { steps: 3, ..RULES }).end,
+            SearchEnd::StepLimit
         );
-        let eager = Rules { promise: 1e9, ..RULES };
-        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, start, &eager).end, End::Settled);
+        let eager = SearchSettings { min_decrease: 1e9, ..RULES };
+        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, start, &eager).end, SearchEnd::Converged);
         let nowhere = DVector::from_vec(vec![f64::NAN, 1.0]);
-        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, nowhere, &RULES).end, End::NotFinite);
+        assert_eq!(minimise(&mut Valley { max_x: 5.0 }, nowhere, &RULES).end, SearchEnd::NotFinite);
     }
 }

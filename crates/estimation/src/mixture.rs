@@ -34,11 +34,11 @@ impl NormalMixture {
         let reach = |sign: f64| move |(_, mean, sd): &(f64, f64, f64)| mean + sign * 10.0 * sd;
         let low = self.parts.iter().map(reach(-1.0)).fold(f64::INFINITY, f64::min);
         let high = self.parts.iter().map(reach(1.0)).fold(f64::NEG_INFINITY, f64::max);
-        bisect(low, high, |x| self.below(x) < probability)
+        bisect(low, high, |x| self.cdf(x) < probability)
     }
 
     /// Distribution function of the mixture, P(X < x).
-    pub fn below(&self, x: f64) -> f64 {
+    pub fn cdf(&self, x: f64) -> f64 {
         let law = Normal::standard();
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
         let part = |(weight, mean, sd): &(f64, f64, f64)| match *sd > 0.0 {
@@ -91,13 +91,13 @@ pub fn ratio(pairs: &[NormalPair]) -> MixtureSummary {
     let mixture = |part: &dyn Fn(&NormalPair) -> (f64, f64)| NormalMixture {
         parts: pairs.iter().map(|pair| (pair.weight, part(pair).0, part(pair).1)).collect(),
     };
-    let below = mixture(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).below(0.0);
+    let below = mixture(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).cdf(0.0);
     if (0.025..=0.975).contains(&below) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
         return (value, None);
     }
     let sign = if below < 0.5 { 1.0 } else { -1.0 };
     let is_below = |k: f64| {
-        mixture(&|pair| (sign * (pair.numerator.0 - k * pair.denominator.0), pair.variance_at(k).sqrt())).below(0.0)
+        mixture(&|pair| (sign * (pair.numerator.0 - k * pair.denominator.0), pair.variance_at(k).sqrt())).cdf(0.0)
     };
     let spread = |pair: &NormalPair| {
         let ratio = pair.numerator.0 / pair.denominator.0;

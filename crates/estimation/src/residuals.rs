@@ -186,7 +186,7 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
 
 /// p-value of constant variance: normal numbers with one variance have a cumulative sum of squares as far from a
 /// straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large, with this probability.
-pub fn evenness(numbers: &[f64]) -> f64 {
+pub fn constant_variance_p_value(numbers: &[f64]) -> f64 {
     let n = numbers.len() as f64;
     let total: f64 = numbers.iter().map(|x| x * x).sum();
     if total <= 0.0 || !total.is_finite() {
@@ -303,11 +303,11 @@ mod tests {
     fn uneven_numbers_are_found() {
         let mut generator = ChaCha8Rng::seed_from_u64(3);
         let mut draw = || -> Vec<f64> { (0..300).map(|_| StandardNormal.sample(&mut generator)).collect() };
-        let low = (0..400).filter(|_| evenness(&draw()) < 0.05).count();
+        let low = (0..400).filter(|_| constant_variance_p_value(&draw()) < 0.05).count();
         assert!(low <= 30, "{low} of 400 below 0.05");
         let (mut louder, mut single) = (draw(), draw());
         louder[150..].iter_mut().for_each(|x| *x *= 2.0);
         single[100] = 8.0;
-        assert!(evenness(&louder) < 1e-4 && evenness(&single) < 1e-4);
+        assert!(constant_variance_p_value(&louder) < 1e-4 && constant_variance_p_value(&single) < 1e-4);
     }
 }

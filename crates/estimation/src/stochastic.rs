@@ -4,13 +4,13 @@
 
 use nalgebra::DMatrix;
 
-use crate::kalman::{Filter, MOST, Sensor, Step, System, Whitener};
+use crate::kalman::{Filter, MAX_STATES, Sensor, Step, System, Whitener};
 use crate::with_states;
 
 impl<const N: usize> Step<N> {
     /// Exact step over `h` seconds of x' = G x + w with white noise w of the given intensity on the last state of G
     /// (Van Loan 1978). States beyond those of G are zero.
-    pub fn over(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
+    pub fn from_generator(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
         let m = generator.nrows();
         let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
         block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));
@@ -56,11 +56,11 @@ impl<const N: usize> System<N> {
     }
 }
 
-impl System<MOST> {
+impl System<MAX_STATES> {
     /// Whitener of the first `states` states, the others being zero; `tolerance` is that of a stationary gain.
     pub fn whitener(&self, states: usize, tolerance: f64) -> Whitener {
         with_states!(states, N => {
-            let first = |wide: &[[f64; MOST]; MOST]| -> [[f64; N]; N] {
+            let first = |wide: &[[f64; MAX_STATES]; MAX_STATES]| -> [[f64; N]; N] {
                 std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j]))
             };
             let steps = self.steps.iter().map(|step| Step {

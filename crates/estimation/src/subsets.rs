@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Term that may be removed from the model.
 #[derive(Debug, Clone)]
-pub struct Removable {
+pub struct RemovableTerm {
     /// Indices of its amplitudes among the unknowns, each with its distance from the neutral value.
     pub sizes: Vec<(usize, f64)>,
     /// Indices of its shape parameters among the unknowns.
@@ -28,7 +28,7 @@ pub struct Removable {
 }
 
 /// Largest number of terms whose subsets are all weighted.
-pub const MOST_TERMS: usize = 12;
+pub const MAX_TERMS: usize = 12;
 
 /// Cholesky factor that grows row by row, with the solution of L z = Δ.
 struct GrowingFactor<'a> {
@@ -77,8 +77,8 @@ impl<'a> GrowingFactor<'a> {
 /// Log evidence plus log prior odds of every subset, relative to the full model with even odds. Bit k of the index is
 /// set if term k is included.
 ///
-/// `covariance` is the posterior covariance of the unknowns. At most [`MOST_TERMS`] terms.
-pub fn subsets(covariance: &DMatrix<f64>, terms: &[Removable]) -> Vec<f64> {
+/// `covariance` is the posterior covariance of the unknowns. At most [`MAX_TERMS`] terms.
+pub fn subset_log_weights(covariance: &DMatrix<f64>, terms: &[RemovableTerm]) -> Vec<f64> {
     let mut weights = vec![0.0; 1 << terms.len()];
     let mut walk = SubsetWalk {
         terms,
@@ -91,7 +91,7 @@ pub fn subsets(covariance: &DMatrix<f64>, terms: &[Removable]) -> Vec<f64> {
 }
 
 struct SubsetWalk<'a> {
-    terms: &'a [Removable],
+    terms: &'a [RemovableTerm],
     /// Factor over the amplitudes of the removed terms.
     sizes: GrowingFactor<'a>,
     /// Factor over all unknowns of the removed terms.
@@ -125,7 +125,7 @@ impl SubsetWalk<'_> {
 }
 
 /// Conditional mean of the unknowns when the amplitudes of the removed terms are neutral (quadratic approximation).
-pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Removable]) -> DVector<f64> {
+pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&RemovableTerm]) -> DVector<f64> {
     let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.sizes.iter().copied()).collect();
     let block = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
     let distance = DVector::from_fn(sizes.len(), |i, _| sizes[i].1);
@@ -143,7 +143,7 @@ pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Rem
 }
 
 /// Conditions a covariance, in place, on neutral amplitudes of a term.
-pub fn condition(covariance: &mut DMatrix<f64>, out: &Removable) {
+pub fn condition_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
     for &(unknown, _) in &out.sizes {
         let column: DVector<f64> = covariance.column(unknown).into();
         let variance = column[unknown];
@@ -212,9 +212,9 @@ mod tests {
             -0.5 * (residual.norm_squared() + penalty + determinant)
         }
 
-        fn removable(&self, mean: &DVector<f64>, k: usize) -> Removable {
+        fn removable(&self, mean: &DVector<f64>, k: usize) -> RemovableTerm {
             let log_prior = -0.5 * ((self.mean[k] / self.sd[k]).powi(2) + std::f64::consts::TAU.ln()) - self.sd[k].ln();
-            Removable { sizes: vec![(k + 1, mean[k + 1])], shapes: Vec::new(), log_prior, log_odds: 0.0 }
+            RemovableTerm { sizes: vec![(k + 1, mean[k + 1])], shapes: Vec::new(), log_prior, log_odds: 0.0 }
         }
     }
 
@@ -228,8 +228,8 @@ mod tests {
             let all: Vec<usize> = (0..count).collect();
             let (precision, mean) = problem.posterior(&all);
             let covariance = precision.cholesky().expect("positive").inverse();
-            let removable: Vec<Removable> = all.iter().map(|&k| problem.removable(&mean, k)).collect();
-            let weights = subsets(&covariance, &removable);
+            let removable: Vec<RemovableTerm> = all.iter().map(|&k| problem.removable(&mean, k)).collect();
+            let weights = subset_log_weights(&covariance, &removable);
             let full = problem.evidence(&all);
             for (subset, log) in weights.iter().enumerate() {
                 let kept: Vec<usize> = all.iter().copied().filter(|k| subset >> k & 1 == 1).collect();
@@ -250,7 +250,7 @@ mod tests {
         let (precision, mean) = problem.posterior(&[0, 1, 2, 3]);
         let covariance = precision.cholesky().expect("positive").inverse();
         let out = [problem.removable(&mean, 1), problem.removable(&mean, 3)];
-        let moved = conditional(&covariance, &mean, &out.iter().collect::<Vec<_>>());
+        let moved = conditional_mean(&covariance, &mean, &out.iter().collect::<Vec<_>>());
         let (_, refitted) = problem.posterior(&[0, 2]);
         for (value, expected) in [(moved[0], refitted[0]), (moved[1], refitted[1]), (moved[3], refitted[2])] {
             assert!((value - expected).abs() < 1e-9, "{value} and {expected}");

@@ -14,7 +14,7 @@ mod equation_8;
 mod points;
 mod points_fit;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
@@ -129,7 +129,7 @@ impl Identifier for CharacteristicPoints {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let base = self.settings.base_course_deg.map(from_deg);
-        let analysed: Vec<AnalysedTrial> = Samples::from_trials(trials, Trial::FEWEST_ROWS)?
+        let analysed: Vec<AnalysedTrial> = Samples::from_trials(trials, Trial::MIN_ROWS)?
             .into_iter()
             .map(|samples| {
                 let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
@@ -193,7 +193,7 @@ fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
             BaseHeadingOrigin::Zero => "heading 0",
             BaseHeadingOrigin::Middle => "the middle of its headings",
         };
-        Some(Code::Method.warning(format!(
+        Some(WarningCode::Method.warning(format!(
             "{} has no straight approach: {assumed} was taken for the base course; set base-course-deg if you know it",
             trial.title()
         )))

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use estimation::least_squares::Unsolvable;
+use estimation::least_squares::LeastSquaresError;
 use thiserror::Error;
 
 /// A failed identification: a result like any other, it becomes a row of the study.
@@ -108,11 +108,13 @@ pub enum IdentifyError {
     Outside(String),
 }
 
-impl From<Unsolvable> for IdentifyError {
-    fn from(unsolvable: Unsolvable) -> Self {
+impl From<LeastSquaresError> for IdentifyError {
+    fn from(unsolvable: LeastSquaresError) -> Self {
         match unsolvable {
-            Unsolvable::TooFewRows { needed, found } => Self::TooFewPoints { what: "equations", needed, count: found },
-            Unsolvable::Singular { condition, limit } => Self::Singular { condition, limit },
+            LeastSquaresError::TooFewRows { needed, found } => {
+                Self::TooFewPoints { what: "equations", needed, count: found }
+            }
+            LeastSquaresError::Singular { condition, limit } => Self::Singular { condition, limit },
         }
     }
 }
@@ -163,7 +165,7 @@ impl IdentifyError {
     }
 
     /// Text in a row: the short name, and behind `outside` the reason that was given.
-    pub fn in_a_row(&self) -> Cow<'static, str> {
+    pub fn row_text(&self) -> Cow<'static, str> {
         match self {
             Self::Outside(_) => self.to_string().into(),
             error => error.kind().into(),
@@ -177,12 +179,12 @@ mod tests {
 
     #[test]
     fn an_outside_message_is_a_single_short_line() {
-        let row = |message: &str| IdentifyError::outside(message).in_a_row().into_owned();
+        let row = |message: &str| IdentifyError::outside(message).row_text().into_owned();
         assert_eq!(row(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
         assert_eq!(row("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
         assert_eq!(row(" \n"), "outside: no reason given");
         let long = row(&"é\u{7}".repeat(100_000));
         assert!(long.chars().count() <= "outside: ".len() + MAX_REASON_CHARS && long.ends_with('…'), "{long}");
-        assert_eq!(IdentifyError::NoTrial.in_a_row(), "no-trial");
+        assert_eq!(IdentifyError::NoTrial.row_text(), "no-trial");
     }
 }

@@ -15,7 +15,7 @@
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
 
-use document::Code;
+use document::WarningCode;
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 use ship::angle::to_deg;
@@ -276,7 +276,7 @@ impl Identifier for FourierProjected {
         let mut warnings = fourier::warnings(&fits);
         for (trial, noise) in trials.iter().zip(&noises) {
             if noise.white < MIN_WHITE_SHARE * noise.residual {
-                warnings.push(Code::ColouredResidual.warning(format!(
+                warnings.push(WarningCode::ColouredResidual.warning(format!(
                     "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg) but truncation of \
                      the series or a disturbance; the intervals count all of it as noise",
                     trial.title(),

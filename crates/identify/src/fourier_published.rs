@@ -9,7 +9,7 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::column::extremes;
 use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
@@ -228,7 +228,7 @@ fn warnings(fits: &[Fitted], drawn: &DrawnTriples) -> Vec<Warning> {
     if drawn.negative > 0 {
         let kept = drawn.answers.len();
         let text = format!("{} of {kept} triples give a negative K or T and are part of the estimate", drawn.negative);
-        warnings.push(Code::NegativeIndex.warning(text));
+        warnings.push(WarningCode::NegativeIndex.warning(text));
     }
     warnings
 }

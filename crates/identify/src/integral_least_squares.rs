@@ -11,7 +11,7 @@ mod noise;
 
 use std::ops::Range;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -88,7 +88,7 @@ impl Identifier for IntegralLeastSquares {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let samples = Samples::from_trials(trials, Trial::FEWEST_ROWS)?;
+        let samples = Samples::from_trials(trials, Trial::MIN_ROWS)?;
         let mut pieces = self.stretches(&samples)?;
         let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
@@ -152,12 +152,12 @@ impl IntegralLeastSquares {
 fn warnings(trials: &[Trial], pieces: usize) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if pieces > trials.len() {
-        warnings.push(Code::Gap.warning(format!(
+        warnings.push(WarningCode::Gap.warning(format!(
             "gaps cut the record into {pieces} stretches, each with its own initial state; longest-gap-s sets the limit"
         )));
     }
     for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
-        warnings.push(Code::HeadingFromYawRate.warning(format!(
+        warnings.push(WarningCode::HeadingFromYawRate.warning(format!(
             "the heading of {} is the integral of its yaw rate, so its noise is not white and the intervals are too narrow",
             trial.title()
         )));

@@ -6,7 +6,7 @@
 //! (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström (2007),
 //! Errors-in-variables methods in system identification, Automatica 43, 939–958.
 
-use document::Code;
+use document::WarningCode;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -178,7 +178,7 @@ impl Identifier for MotionRegression {
             let bias = -unscaled[(0, 0)] * noise.rate_and_error * variance / a;
             diagnostics.push(("noise_bias_of_inverse_T_percent", 100.0 * bias));
             if bias.abs() > MAX_QUIET_BIAS {
-                warnings.push(Code::NoiseBias.warning(format!(
+                warnings.push(WarningCode::NoiseBias.warning(format!(
                     "noise in the differentiated signal biases 1/T by about {:+.0} %, and K with it; the standard \
                      deviations do not include this bias",
                     100.0 * bias
@@ -214,7 +214,7 @@ impl MotionRegression {
     fn equations(&self, trials: &[Trial]) -> Result<Equations, IdentifyError> {
         let mut equations = Equations::default();
         // Also refuses records that are not a manoeuvre.
-        for (trial, samples) in trials.iter().zip(Samples::from_trials(trials, Trial::FEWEST_ROWS)?) {
+        for (trial, samples) in trials.iter().zip(Samples::from_trials(trials, Trial::MIN_ROWS)?) {
             match self.settings.signal {
                 Signal::Heading => self.add(&samples.time, &samples.heading, &samples.rudder, &mut equations),
                 Signal::YawRate => {

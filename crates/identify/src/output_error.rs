@@ -8,7 +8,7 @@
 //! global minimum is narrower than the scan. Source of the method: Ljung (1999), System Identification: Theory for the
 //! User, chapter 7.
 
-use document::Code;
+use document::WarningCode;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -309,11 +309,11 @@ impl RangeScan {
         let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::select(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
+        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             let text = format!("T = {time} s lies at or beyond the limit of the search, ±{end} s");
-            warnings.push(Code::AtBound.warning(text));
+            warnings.push(WarningCode::AtBound.warning(text));
         }
         Ok(Estimate {
             response,

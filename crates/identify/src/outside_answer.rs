@@ -1,7 +1,7 @@
 //! K, T and δ_r of an outside estimator, and their conversion to an [`Estimate`].
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use nalgebra::{Matrix3, Vector3};
 use ship::FirstOrder;
 
@@ -10,7 +10,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 
 /// K, T and δ_r of an outside estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
+pub struct OutsideFit {
     /// K, 1/s.
     pub K: f64,
     /// T, s.
@@ -18,12 +18,12 @@ pub struct Answer {
     /// δ_r, rad.
     pub rudder_bias: f64,
     /// Their errors.
-    pub errors: Errors,
+    pub errors: OutsideErrors,
 }
 
 /// Errors of K (1/s), T (s) and δ_r (rad), in this order, as an outside estimator reports them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Errors {
+pub enum OutsideErrors {
     /// Not reported.
     Unknown,
     /// Standard deviations.
@@ -39,7 +39,7 @@ const UNCORRELATED: &str = "errors of K and T are treated as independent, becaus
 /// Largest relative asymmetry of a covariance and excess of a correlation over 1: rounding.
 const ROUNDING: f64 = 1e-6;
 
-impl Answer {
+impl OutsideFit {
     /// The estimate: a first-order response, and the covariance of (1/T, K/T, δ_r) to first order in the errors.
     ///
     /// With J = ∂(1/T, K/T, δ_r)/∂(K, T, δ_r) it is J C Jᵀ; C is diagonal where only standard deviations are given. A
@@ -61,7 +61,7 @@ impl Answer {
         let (uncertainty, warning) = match self.covariance().map(transformed).filter(is_finite) {
             None => {
                 let reason = match self.errors {
-                    Errors::Covariance(_) => "the covariance of the outside estimator is not positive definite",
+                    OutsideErrors::Covariance(_) => "the covariance of the outside estimator is not positive definite",
                     _ => "the outside estimator gave no error of K or of T",
                 };
                 (Uncertainty::None { reason }, None)
@@ -86,13 +86,13 @@ impl Answer {
     /// a covariance.
     fn covariance(&self) -> Option<(Matrix3<f64>, Option<Warning>)> {
         match self.errors {
-            Errors::Unknown => None,
-            Errors::Deviations([K, T, rudder_bias]) => {
+            OutsideErrors::Unknown => None,
+            OutsideErrors::Deviations([K, T, rudder_bias]) => {
                 let variance = |sd: Option<f64>| sd.filter(|sd| sd.is_finite() && *sd >= 0.0).map(|sd| sd * sd);
                 let diagonal = Vector3::new(variance(K)?, variance(T)?, variance(rudder_bias).unwrap_or(0.0));
-                Some((Matrix3::from_diagonal(&diagonal), Some(Code::IndependentErrors.warning(UNCORRELATED))))
+                Some((Matrix3::from_diagonal(&diagonal), Some(WarningCode::IndependentErrors.warning(UNCORRELATED))))
             }
-            Errors::Covariance(matrix) => is_covariance(&matrix).then_some((matrix, None)),
+            OutsideErrors::Covariance(matrix) => is_covariance(&matrix).then_some((matrix, None)),
         }
     }
 }
@@ -120,11 +120,11 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn answer(errors: Errors) -> Answer {
-        Answer { K: 0.1, T: 16.0, rudder_bias: 0.01, errors }
+    fn answer(errors: OutsideErrors) -> OutsideFit {
+        OutsideFit { K: 0.1, T: 16.0, rudder_bias: 0.01, errors }
     }
 
-    fn estimate(errors: Errors) -> Estimate {
+    fn estimate(errors: OutsideErrors) -> Estimate {
         answer(errors).estimate().expect("a ship")
     }
 
@@ -139,12 +139,12 @@ mod tests {
                 assert!(found.ci95.is_some());
             }
         };
-        let alone = estimate(Errors::Deviations(sd.map(Some)));
+        let alone = estimate(OutsideErrors::Deviations(sd.map(Some)));
         check(&alone);
-        assert_eq!(alone.warnings, [Code::IndependentErrors.warning(UNCORRELATED)]);
+        assert_eq!(alone.warnings, [WarningCode::IndependentErrors.warning(UNCORRELATED)]);
         let mut matrix = Matrix3::from_diagonal(&Vector3::from(sd.map(|sd| sd * sd)));
         (matrix[(0, 1)], matrix[(1, 0)]) = (0.9 * sd[0] * sd[1], 0.9 * sd[0] * sd[1]);
-        let correlated = estimate(Errors::Covariance(matrix));
+        let correlated = estimate(OutsideErrors::Covariance(matrix));
         check(&correlated);
         assert!(correlated.warnings.is_empty());
         // K/T is known far better where the errors go together.
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn missing_errors_stay_missing() {
-        let half = estimate(Errors::Deviations([Some(0.004), Some(0.9), None]));
+        let half = estimate(OutsideErrors::Deviations([Some(0.004), Some(0.9), None]));
         assert!(half.K().sd.is_some() && half.T().sd.is_some());
         assert_eq!((half.rudder_bias().sd, half.rudder_bias().ci95), (None, None));
         let bad = Matrix3::from_diagonal(&Vector3::new(1e-6, -1.0, 1e-6));
@@ -165,19 +165,19 @@ mod tests {
         let beyond = Matrix3::new(1e-4, 5e-2, 0.0, 5e-2, 1.0, 0.0, 0.0, 0.0, 1e-6);
         // Every pair of correlations is possible, all three together are not.
         let contradiction = Matrix3::new(1.0, 0.9, 0.9, 0.9, 1.0, -0.9, 0.9, -0.9, 1.0) * 1e-6;
-        match estimate(Errors::Covariance(contradiction)).uncertainty {
+        match estimate(OutsideErrors::Covariance(contradiction)).uncertainty {
             Uncertainty::None { reason } => assert!(reason.contains("not positive definite"), "{reason}"),
             other => panic!("{other:?}"),
         }
         let none = [
-            Errors::Unknown,
-            Errors::Deviations([Some(0.004), None, Some(0.1)]),
-            Errors::Deviations([Some(f64::INFINITY), Some(1.0), None]),
-            Errors::Deviations([Some(-0.1), Some(1.0), None]),
-            Errors::Deviations([Some(1e200), Some(1.0), None]),
-            Errors::Covariance(bad),
-            Errors::Covariance(skew),
-            Errors::Covariance(beyond),
+            OutsideErrors::Unknown,
+            OutsideErrors::Deviations([Some(0.004), None, Some(0.1)]),
+            OutsideErrors::Deviations([Some(f64::INFINITY), Some(1.0), None]),
+            OutsideErrors::Deviations([Some(-0.1), Some(1.0), None]),
+            OutsideErrors::Deviations([Some(1e200), Some(1.0), None]),
+            OutsideErrors::Covariance(bad),
+            OutsideErrors::Covariance(skew),
+            OutsideErrors::Covariance(beyond),
         ];
         for errors in none {
             let found = estimate(errors);
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn no_ship_is_made_of_nonsense() {
-        let of = |K, T| Answer { K, T, ..answer(Errors::Unknown) }.estimate();
+        let of = |K, T| OutsideFit { K, T, ..answer(OutsideErrors::Unknown) }.estimate();
         for (K, T) in [(0.1, 0.0), (-0.1, 16.0), (0.1, -16.0), (0.0, 16.0), (1e300, 1e-300), (0.1, f64::INFINITY)] {
             assert_eq!(of(K, T).expect_err("no ship").kind(), "not-a-ship", "{K} {T}");
         }

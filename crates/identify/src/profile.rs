@@ -5,7 +5,7 @@
 //! Fisher information and the scores. Work space is allocated once. Sources: variable projection, Golub and Pereyra
 //! (1973); its step, Kaufman (1975).
 
-use estimation::column::{Removed, dot, gram, project, sum};
+use estimation::column::{ColumnProjection, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
@@ -19,7 +19,7 @@ struct TrialColumns {
     /// Mean and length of φ₁ before it became a unit column.
     homogeneous: (f64, f64),
     /// Components of G, H and the heading that were projected out.
-    removed: [Removed; 3],
+    removed: [ColumnProjection; 3],
     /// Heading, projected.
     heading: Vec<f64>,
     /// ∂ψ/∂a, projected.
@@ -58,7 +58,7 @@ impl Profile {
                     track,
                     columns: MotionColumns::default(),
                     homogeneous: (0.0, 0.0),
-                    removed: [Removed::default(); 3],
+                    removed: [ColumnProjection::default(); 3],
                     heading: vec![0.0; rows],
                     sensitivity: Vec::new(),
                     residual: vec![0.0; rows],

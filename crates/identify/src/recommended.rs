@@ -13,8 +13,8 @@
 //!
 //! As a method it makes both fits and returns the recommended estimate, so that a study can test the rule.
 
-use document::Code;
-use document::fit::{Reason, ResidualKind};
+use document::WarningCode;
+use document::fit::{ResidualKind, VerdictReason};
 use serde::{Deserialize, Serialize};
 use trial::Trial;
 
@@ -38,7 +38,7 @@ const MAX_REPLAY_RATIO: f64 = 30.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recommendation {
     /// The reason.
-    pub reason: Reason,
+    pub reason: VerdictReason,
     /// Lack of fit of output error; `None` without its estimate or without a noise level.
     pub lack: Option<LackOfFit>,
     /// Whether all records declare a calm, which excludes random moments.
@@ -54,15 +54,15 @@ impl Recommendation {
         let has_moment = |fit: &Estimate| fit.noise.is_some_and(|noise| !noise.moment.is_none());
         let rms = |fit: &Estimate| pooled(trials, &fit.response).unwrap_or(f64::INFINITY);
         let is_far = |fit: &Estimate| output_error.is_some_and(|nearest| rms(fit) > MAX_REPLAY_RATIO * rms(nearest));
-        let has_jumps = |fit: &Estimate| fit.warnings.iter().any(|warning| warning.code == Code::HeadingJump);
+        let has_jumps = |fit: &Estimate| fit.warnings.iter().any(|warning| warning.code == WarningCode::HeadingJump);
         let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
         let reason = match maximum_likelihood.filter(|estimate| estimate.K().ci95.is_some()) {
-            Some(_) if has_noise => Reason::RudderNoise,
-            Some(fit) if !has_moment(fit) && has_jumps(fit) => Reason::HeadingJumps,
+            Some(_) if has_noise => VerdictReason::RudderNoise,
+            Some(fit) if !has_moment(fit) && has_jumps(fit) => VerdictReason::HeadingJumps,
             Some(fit) if output_error.is_none() || (is_random && has_moment(fit) && !is_far(fit)) => {
-                Reason::RandomMoment
+                VerdictReason::RandomMoment
             }
-            _ => Reason::NearestReplay,
+            _ => VerdictReason::NearestReplay,
         };
         Self { reason, lack, is_calm }
     }
@@ -70,8 +70,10 @@ impl Recommendation {
     /// Id of the recommended method.
     pub fn method(&self) -> &'static str {
         match self.reason {
-            Reason::NearestReplay => "output-error",
-            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => "maximum-likelihood",
+            VerdictReason::NearestReplay => "output-error",
+            VerdictReason::RandomMoment | VerdictReason::RudderNoise | VerdictReason::HeadingJumps => {
+                "maximum-likelihood"
+            }
         }
     }
 
@@ -118,8 +120,8 @@ impl Identifier for Recommended {
         let nearest = self.output_error.identify(trials);
         let likely = self.maximum_likelihood.identify(trials);
         match Recommendation::of(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
-            Reason::NearestReplay => nearest,
-            Reason::RandomMoment | Reason::RudderNoise | Reason::HeadingJumps => likely,
+            VerdictReason::NearestReplay => nearest,
+            VerdictReason::RandomMoment | VerdictReason::RudderNoise | VerdictReason::HeadingJumps => likely,
         }
     }
 }
@@ -168,16 +170,16 @@ mod tests {
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial()];
         let base = nearest(&trials);
         let reason = |other: &Estimate| Recommendation::of(&trials, Some(&base), Some(other)).reason;
-        let jumping = Estimate { warnings: vec![Code::HeadingJump.warning("it jumps")], ..base.clone() };
-        assert_eq!(reason(&base), Reason::NearestReplay);
-        assert_eq!(reason(&jumping), Reason::HeadingJumps);
+        let jumping = Estimate { warnings: vec![WarningCode::HeadingJump.warning("it jumps")], ..base.clone() };
+        assert_eq!(reason(&base), VerdictReason::NearestReplay);
+        assert_eq!(reason(&jumping), VerdictReason::HeadingJumps);
         assert_eq!(
             Recommendation { reason: reason(&jumping), lack: None, is_calm: false }.method(),
             "maximum-likelihood"
         );
-        assert_eq!(reason(&in_gusts(&jumping)), Reason::NearestReplay);
+        assert_eq!(reason(&in_gusts(&jumping)), VerdictReason::NearestReplay);
         let bare = Uncertainty::None { reason: "none" };
-        assert_eq!(reason(&Estimate { uncertainty: bare, ..jumping }), Reason::NearestReplay);
+        assert_eq!(reason(&Estimate { uncertainty: bare, ..jumping }), VerdictReason::NearestReplay);
     }
 
     /// A replay may be 29 times as far as the nearest where the moment is random, and not 31 times.
@@ -195,7 +197,10 @@ mod tests {
             assert!((ratio(&response) / times - 1.0).abs() < 0.02, "{} is not {times}", ratio(&response));
             Recommendation::of(&trials, Some(&base), Some(&Estimate { response, ..in_gusts(&base) })).reason
         };
-        assert_eq!([5.0, 29.0, 31.0].map(reason), [Reason::RandomMoment, Reason::RandomMoment, Reason::NearestReplay]);
+        assert_eq!(
+            [5.0, 29.0, 31.0].map(reason),
+            [VerdictReason::RandomMoment, VerdictReason::RandomMoment, VerdictReason::NearestReplay]
+        );
     }
 
     /// A moment that no term of a ship explains is random, unless the record declares a calm.
@@ -208,8 +213,11 @@ mod tests {
             let outcome = Recommendation::of(&trials, Some(&base), Some(&in_gusts(&base)));
             (outcome.reason, outcome.residual())
         };
-        assert_eq!(outcome(windy()), (Reason::RandomMoment, Some(ResidualKind::Random)));
-        assert_eq!(outcome(windy().with_conditions(calm)), (Reason::NearestReplay, Some(ResidualKind::LacksEffect)));
+        assert_eq!(outcome(windy()), (VerdictReason::RandomMoment, Some(ResidualKind::Random)));
+        assert_eq!(
+            outcome(windy().with_conditions(calm)),
+            (VerdictReason::NearestReplay, Some(ResidualKind::LacksEffect))
+        );
     }
 
     #[test]
@@ -218,8 +226,8 @@ mod tests {
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial().with_noise(noise)];
         let base = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
         let reason = |other: &Estimate| Recommendation::of(&trials, Some(&base), Some(other)).reason;
-        assert_eq!(reason(&base), Reason::RudderNoise);
+        assert_eq!(reason(&base), VerdictReason::RudderNoise);
         let bare = Uncertainty::None { reason: "none" };
-        assert_eq!(reason(&Estimate { uncertainty: bare, ..base.clone() }), Reason::NearestReplay);
+        assert_eq!(reason(&Estimate { uncertainty: bare, ..base.clone() }), VerdictReason::NearestReplay);
     }
 }

@@ -56,7 +56,7 @@ methods! {
 
 /// Ids of the methods of a usual fit, the best first. Without `srivc`, whose estimate is that of `output-error`, and
 /// `fourier-published`, whose T is biased even without noise.
-pub const USUAL: [&str; 6] = [
+pub const DEFAULT_METHODS: [&str; 6] = [
     "output-error",
     "maximum-likelihood",
     "integral-least-squares",
@@ -65,11 +65,11 @@ pub const USUAL: [&str; 6] = [
     "characteristic-points",
 ];
 
-/// The methods of [`USUAL`] with their default settings, the best first.
+/// The methods of [`DEFAULT_METHODS`] with their default settings, the best first.
 pub fn usual() -> Vec<Box<dyn Identifier>> {
     let all = defaults().into_iter().map(|settings| settings.build().expect("default settings are valid"));
-    let mut methods: Vec<Box<dyn Identifier>> = all.filter(|method| USUAL.contains(&method.id())).collect();
-    methods.sort_by_key(|method| USUAL.iter().position(|id| *id == method.id()));
+    let mut methods: Vec<Box<dyn Identifier>> = all.filter(|method| DEFAULT_METHODS.contains(&method.id())).collect();
+    methods.sort_by_key(|method| DEFAULT_METHODS.iter().position(|id| *id == method.id()));
     methods
 }
 

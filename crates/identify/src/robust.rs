@@ -1,7 +1,7 @@
 //! Covariance of a least-squares estimate with a coloured residual. Source: Newey and West (1987), A simple, positive
 //! semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix, Econometrica 55, 703–708.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::column::dot;
 use estimation::covariance::newey_west;
 use nalgebra::Matrix3;
@@ -23,13 +23,13 @@ pub(crate) fn select(white: Covariance, robust: &Covariance, lag1: f64, rows: us
             "successive errors of the replay are alike (correlation {lag1:.2}): the model lacks an effect, or the compass \
              error lasts; the intervals allow for it"
         );
-        return (Uncertainty::Covariance(robust.clone()), Some(Code::ColouredResidual.warning(warning)));
+        return (Uncertainty::Covariance(robust.clone()), Some(WarningCode::ColouredResidual.warning(warning)));
     }
     let warning = format!(
         "successive errors of the replay alternate (correlation {lag1:.2}), as if two instruments that disagree were \
          read in turn; the intervals do not allow for it; check the heading column"
     );
-    (Uncertainty::Covariance(white), Some(Code::ColouredResidual.warning(warning)))
+    (Uncertainty::Covariance(white), Some(WarningCode::ColouredResidual.warning(warning)))
 }
 
 /// `true` if the lag-1 autocorrelation is relevant and outside three standard deviations of white noise.

@@ -214,7 +214,7 @@ mod tests {
         let heading = centred(&track.heading);
         for sign in [1.0, -1.0] {
             let inverse_time = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
-            let results = estimation::lanes::on_every_set(|| Sweep {
+            let results = estimation::lanes::on_every_instruction_set(|| Sweep {
                 track: &track,
                 heading: &heading,
                 inverse_time: &inverse_time,

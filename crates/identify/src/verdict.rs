@@ -2,7 +2,7 @@
 //!
 //! The rule is that of [`Recommendation`]; [`answer::entry`](crate::answer::entry) makes the entries of the answers.
 
-use document::fit::{Belief, Reason, VerdictEntry};
+use document::fit::{Belief, VerdictEntry, VerdictReason};
 use document::method::MethodEntry;
 use ship::FirstOrder;
 use ship::angle::to_deg;
@@ -93,7 +93,7 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let nearest = answered().min_by(|a, b| rms(a).total_cmp(&rms(b)))?;
     let straight_lines_deg = straight.filter(|straight| rms(&nearest) >= *straight);
     let taken = answered().find(is_own).filter(|_| straight_lines_deg.is_none());
-    let reason = taken.map_or(Reason::NearestReplay, |_| recommendation.reason);
+    let reason = taken.map_or(VerdictReason::NearestReplay, |_| recommendation.reason);
     let taken = taken.unwrap_or(nearest);
     let is_far = |entry: &&MethodEntry| rms(entry) > MAX_ERROR_RATIO * rms(&nearest) && entry.method != taken.method;
     let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(size(lack)));
@@ -146,7 +146,7 @@ mod tests {
             let t = Quantity { ci95, ..Quantity::bare(t) };
             [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
         };
-        let nearest = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
+        let nearest = Recommendation { reason: VerdictReason::NearestReplay, lack: None, is_calm: false };
         let reason = |entries: &[MethodEntry], scatter: f64| {
             let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
             disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
@@ -177,7 +177,7 @@ mod tests {
             heading_rmse_deg: Some(rms),
             ..MethodEntry::default()
         };
-        let taken = Recommendation { reason: Reason::NearestReplay, lack: None, is_calm: false };
+        let taken = Recommendation { reason: VerdictReason::NearestReplay, lack: None, is_calm: false };
         let outcome = |rms: f64, straight: f64| {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();

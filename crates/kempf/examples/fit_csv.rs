@@ -8,7 +8,7 @@ use kempf::prelude::*;
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/records/first-order.csv".into());
     let path = PathBuf::from(path);
-    let log = Log::open(&path, Sidecar::found_beside(&path).as_deref(), &[])?;
+    let log = Log::open(&path, Sidecar::existing_beside(&path).as_deref(), &[])?;
     let ReadRecord { trial, warnings } = log.into_zig_zag(None)?;
     let (records, mut all_warnings) = ([trial], Warnings::default());
     all_warnings.extend(warnings);
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         match &estimate {
             Some(estimate) => {
                 println!("{:24} K = {:.4} 1/s, T = {:.2} s", method.id(), estimate.K().value, estimate.T().value);
-                all_warnings.extend(Source::Method(method.id().to_owned()).of(estimate.warnings.clone()));
+                all_warnings.extend(WarningSource::Method(method.id().to_owned()).of(estimate.warnings.clone()));
             }
             None => println!("{:24} {}", method.id(), entry.reason.as_deref().unwrap_or("no answer")),
         }

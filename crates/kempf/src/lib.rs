@@ -23,7 +23,7 @@
 //! ```
 //! use kempf::prelude::*;
 //!
-//! let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+//! let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 //! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(5);
 //! let mut simulation = Simulation::new(ship, zig_zag);
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.5));
@@ -52,7 +52,7 @@ pub mod prelude {
     pub use campaign::summary::summarise;
     pub use campaign::{NoObserver, Observer};
     pub use document::fit::{Belief, VerdictEntry};
-    pub use document::{Source, Warning, Warnings};
+    pub use document::{Warning, WarningSource, Warnings};
     pub use identify::{
         Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, answer, output_error,
         registry, verdict,

@@ -6,13 +6,13 @@
 //!
 //! F and B are drawn independently, each with the errors of its parameters and the random moment of one trial, T with
 //! the standard deviation of its reading. The moment in B represents that in T. Where F is the hull of B at another
-//! loading, both share the errors of its trial ([`document::stored_hull`]). This module reads no file and fits no
+//! loading, both share the errors of its trial ([`document::identified_hull`]). This module reads no file and fits no
 //! model.
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
 use document::identified_ship::{IdentifiedShip, is_same_length};
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use indexmap::IndexMap;
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -104,7 +104,7 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
     let [of_full, of_trial] = [full, trial].map(structure);
     let mut warnings = Vec::new();
     if of_full != of_trial {
-        warnings.push(different("structure", &of_full, &of_trial, loading));
+        warnings.push(difference_warning("structure", &of_full, &of_trial, loading));
     }
     let is_same = match (full.length_m, trial.length_m) {
         (Some(a), Some(b)) => is_same_length(a, b),
@@ -113,15 +113,15 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
     if !is_same {
         let [of_full, of_trial] = [full, trial]
             .map(|ship| ship.length_m.map_or_else(|| String::from("unknown"), |length| format!("{length} m")));
-        warnings.push(different("scale", &format!("length {of_full}"), &of_trial, loading));
+        warnings.push(difference_warning("scale", &format!("length {of_full}"), &of_trial, loading));
     }
     warnings
 }
 
 /// The warning of two models that differ in something, the first at `loading`.
-pub fn different(what: &str, full: &str, trial: &str, loading: &str) -> Warning {
+pub fn difference_warning(what: &str, full: &str, trial: &str, loading: &str) -> Warning {
     let text = format!("different {what}: {full} at {loading}, {trial} in the condition of the trial");
-    Code::ModelsApart.warning(text)
+    WarningCode::ModelsApart.warning(text)
 }
 
 /// Results of the drawn ships in order; `None` for a ship that does not complete the manoeuvre.
@@ -154,14 +154,14 @@ pub fn correct(
     loading: &str,
     draws: usize,
 ) -> Result<Correction, PredictError> {
-    let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart_from(ballast) };
+    let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().independent_of(ballast) };
     let mut warnings = Vec::new();
     let speed = |mixture: &ShipMixture| mixture.first().speed_m_s;
     if let (Some(of_full), Some(of_trial)) = (speed(full), speed(ballast))
         && (of_full / of_trial - 1.0).abs() > SPEED_TOLERANCE
     {
         let [of_full, of_trial] = [of_full, of_trial].map(|speed| format!("{speed:.2} m/s"));
-        let Warning { code, text, .. } = different("approach speeds", &of_full, &of_trial, loading);
+        let Warning { code, text, .. } = difference_warning("approach speeds", &of_full, &of_trial, loading);
         warnings.push(code.warning(text + "; the ratio F/B includes this difference"));
     }
     let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
@@ -177,7 +177,7 @@ pub fn correct(
         enough(format!("{} ({condition})", record.name()), results.iter().flatten().count(), draws)?;
         if ship.is_unseen(paired.rudder, results.iter().flatten().map(|result| result.largest_rate)) {
             let text = format!("the model {condition} is extrapolated beyond its records");
-            warnings.push(Code::ModelsApart.warning(text));
+            warnings.push(WarningCode::ModelsApart.warning(text));
         }
     }
     let readings: Vec<f64> = drawn(draws, |replicate| {
@@ -279,7 +279,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     if share < 1.0 {
         messages.push(format!("only {:.0} % of the pairs of drawn ships get this far", 100.0 * share));
     }
-    let warnings = messages.into_iter().map(|text| Code::Correction.warning(text)).collect();
+    let warnings = messages.into_iter().map(|text| WarningCode::Correction.warning(text)).collect();
     Some(Corrected { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
 }
 
@@ -324,7 +324,7 @@ mod tests {
             for name in names {
                 let Some(figure) = correction.figures.get(name) else { continue };
                 let truth = truth[name].expect("whole");
-                held += usize::from(figure.result.holds90(truth));
+                held += usize::from(figure.result.contains_90(truth));
                 all += 1;
             }
         }
@@ -372,7 +372,7 @@ mod tests {
         let other = correct(&copy, &ballast, &trial, FULL_LOAD, 200).expect("sails");
         assert!(other.figures.len() > 5);
         for figure in other.figures.values() {
-            assert!(figure.result.holds90(figure.measured) && figure.factor.holds90(1.0), "{figure:?}");
+            assert!(figure.result.contains_90(figure.measured) && figure.factor.contains_90(1.0), "{figure:?}");
             assert!(figure.factor.ci90[1] > figure.factor.ci90[0], "drawn apart");
         }
     }

@@ -1,6 +1,6 @@
 //! Ships drawn from a hull of three degrees of freedom, from the normal law of its coefficients.
 
-use document::{IdentifiedShipError, StoredHull};
+use document::{IdentifiedHull, IdentifiedShipError};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -18,7 +18,7 @@ const MAX_TRIES: usize = 100;
 /// A hull that ships are drawn from.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableHull {
-    pub stored: StoredHull,
+    pub stored: IdentifiedHull,
     form: HullForm,
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
@@ -28,13 +28,13 @@ pub(crate) struct DrawableHull {
 }
 
 /// Checks a hull; fails for an unknown form, wrong coefficients, or a matrix that is not a covariance.
-pub fn check(hull: &StoredHull) -> Result<(), PredictError> {
+pub fn check(hull: &IdentifiedHull) -> Result<(), PredictError> {
     DrawableHull::new(hull).map(drop)
 }
 
 impl DrawableHull {
     /// Prepares the draws; fails as [`check`] does.
-    pub fn new(stored: &StoredHull) -> Result<Self, PredictError> {
+    pub fn new(stored: &IdentifiedHull) -> Result<Self, PredictError> {
         let form = stored.form()?;
         let range = |key| Particular::named(key).expect("it is one").range;
         let [length, speed] = ["length-m", "speed-m-s"].map(range);
@@ -65,7 +65,7 @@ impl DrawableHull {
 
     fn with(&self, values: &[f64]) -> Option<ScaledHull> {
         let hull = self.form.with(values)?;
-        let StoredHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.stored;
+        let IdentifiedHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.stored;
         (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
     }
 
@@ -168,7 +168,7 @@ mod tests {
         let ratio: f64 = 4.0;
         let (length, speed) = (stored.length_m * ratio, stored.speed_m_s * ratio.sqrt());
         let large = stored.scaled_to(length, speed);
-        let of = |stored: &StoredHull, state: [f64; 4]| {
+        let of = |stored: &IdentifiedHull, state: [f64; 4]| {
             let mut rate = [0.0; 4];
             let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
             DrawableHull::new(stored).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
@@ -192,7 +192,7 @@ mod tests {
         let one = testing::hull("quadratic");
         let [full, trial] = [testing::at_same_loading(&one, 3.0), one.clone()]
             .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::identified_ship() }));
-        let full = full.apart_from(&trial);
+        let full = full.independent_of(&trial);
         let values = |ship: &ShipMixture, number| {
             let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
             let ship::vessel::prime::CalmHull::Quadratic(values) = hull else { panic!("{hull:?}") };
@@ -212,7 +212,7 @@ mod tests {
         let stored = ship();
         let text = serde_json::to_string(&stored).expect("plain data");
         assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), stored);
-        let refused = |change: fn(&mut StoredHull)| {
+        let refused = |change: fn(&mut IdentifiedHull)| {
             let mut hull = testing::hull("mmg");
             change(&mut hull);
             DrawableHull::new(&hull).expect_err("refused").to_string()

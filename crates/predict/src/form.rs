@@ -32,7 +32,7 @@ pub const TRACK_REACH_LENGTHS: f64 = 15.0;
 pub const STOPPING: &str = "stopping";
 
 /// Largest number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
-pub const DECIMALS: usize = 2;
+pub const MAX_DECIMALS: usize = 2;
 
 /// The form.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +47,7 @@ pub struct Form {
 ///
 /// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
-    standard::of_imo().into_iter().flat_map(|kind| [kind.clone().to(Side::Port), kind]).collect()
+    standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().to(Side::Port), kind]).collect()
 }
 
 /// Declarations of a file, with the length of the ship, m.
@@ -241,7 +241,7 @@ fn of_interval(interval: &PredictionInterval, source: String) -> ImoFormEntry {
 
 /// Decimals of an entry.
 fn decimals(interval: &PredictionInterval) -> usize {
-    interval.decimals().min(DECIMALS)
+    interval.decimals().min(MAX_DECIMALS)
 }
 
 /// Number with a true minus sign, and without a sign before a zero.

@@ -63,7 +63,7 @@ const IN_CIRCLE: Limit = Limit {
     manoeuvre: CIRCLE,
     figure: "advance_lengths",
     unit: Unit::ShipLengths,
-    value: |_| Some(imo::ADVANCE_LENGTHS),
+    value: |_| Some(imo::MAX_ADVANCE_LENGTHS),
 };
 
 const IN_TEN: Limit = Limit {
@@ -84,7 +84,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
         field: "distance to turn 10° with 10° rudder",
         figure: "initial_turning_lengths",
         unit: Unit::ShipLengths,
-        value: |_| Some(imo::INITIAL_TURNING_LENGTHS),
+        value: |_| Some(imo::MAX_INITIAL_TURNING_LENGTHS),
         ..IN_TEN
     },
     IN_TEN,
@@ -99,7 +99,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
         name: "20/20 first overshoot",
         section: "zig-zag 20°/20°",
         manoeuvre: TWENTY,
-        value: |_| Some(imo::FIRST_OVERSHOOT_20_20_DEG),
+        value: |_| Some(imo::MAX_FIRST_OVERSHOOT_20_20_DEG),
         ..IN_TEN
     },
     IN_CIRCLE,
@@ -107,7 +107,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
         name: "tactical diameter",
         field: "tactical diameter",
         figure: "tactical_diameter_lengths",
-        value: |_| Some(imo::TACTICAL_DIAMETER_LENGTHS),
+        value: |_| Some(imo::MAX_TACTICAL_DIAMETER_LENGTHS),
         ..IN_CIRCLE
     },
 ];
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn probabilities_are_shares_of_the_draws() {
         let mixture = testing::mixture(testing::identified_ship());
-        let predictions: Vec<Prediction> = crate::standard::of_imo()
+        let predictions: Vec<Prediction> = crate::standard::imo_manoeuvres()
             .iter()
             .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
             .collect();

@@ -39,7 +39,7 @@ impl PredictionInterval {
     }
 
     /// Whether a value lies within nine tenths of the draws.
-    pub fn holds90(&self, value: f64) -> bool {
+    pub fn contains_90(&self, value: f64) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&value)
     }
 }
@@ -53,7 +53,7 @@ mod tests {
         let interval = PredictionInterval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
         assert_eq!((interval.median, interval.ci50), (2.0, [1.0, 3.0]));
         assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
-        assert!(interval.holds90(0.3) && !interval.holds90(0.1));
+        assert!(interval.contains_90(0.3) && !interval.contains_90(0.1));
         assert_eq!(PredictionInterval::of(&mut []), None);
         assert_eq!(PredictionInterval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
     }

@@ -135,7 +135,7 @@ impl ShipMixture {
 
     /// The same ships with independent random numbers; only the errors of the trials stay common, where every ship has
     /// a single hull that is converted from the hull of the other mixture.
-    pub fn apart_from(self, other: &Self) -> Self {
+    pub fn independent_of(self, other: &Self) -> Self {
         let follows = |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
             ([hull], [source]) => hull.is_from(source),
             _ => false,
@@ -323,7 +323,7 @@ impl DrawableStructure {
 mod tests {
     use super::*;
     use crate::testing;
-    use document::stored_hull::StoredHull;
+    use document::identified_hull::IdentifiedHull;
 
     /// Mean and covariance of the draws are those that are known.
     #[test]
@@ -366,7 +366,7 @@ mod tests {
     /// Of two files that are as probable it is the first, though its two hulls share what the one of the other has.
     #[test]
     fn the_most_probable_ship_is_of_the_most_probable_file() {
-        let hull = |weight| StoredHull { weight, ..testing::hull("quadratic") };
+        let hull = |weight| IdentifiedHull { weight, ..testing::hull("quadratic") };
         let [several, mut alone] = [vec![hull(0.4), hull(0.6)], vec![hull(1.0)]]
             .map(|hulls| IdentifiedShip { hulls, ..testing::identified_ship() });
         alone.members[0].parameters[0] *= 1.1;
@@ -380,7 +380,7 @@ mod tests {
     #[test]
     fn hulls_begin_with_the_error_of_their_replays() {
         let rate = 1e-3;
-        let hulls = vec![StoredHull { beginning_yaw_rate_rad_s: rate, ..testing::hull("quadratic") }];
+        let hulls = vec![IdentifiedHull { beginning_yaw_rate_rad_s: rate, ..testing::hull("quadratic") }];
         let stored = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::identified_ship() };
         let of = |stored: IdentifiedShip, sources: &[UncertaintySource]| {
             let mixture = testing::mixture(stored);
@@ -398,7 +398,7 @@ mod tests {
     fn a_rudder_logged_late_is_told_and_steered_on_time() {
         let mut stored = testing::identified_ship();
         let late = ship::effects::SteeringLag::DeadTime;
-        stored.members[0].effects.push(document::identified_ship::StoredEffect {
+        stored.members[0].effects.push(document::identified_ship::IdentifiedEffect {
             id: ship::effects::Effect::id(&late).into(),
             form: ship::effects::Effect::form(&late).into(),
             constants: Vec::new(),
@@ -427,7 +427,7 @@ mod tests {
     fn a_model_that_needs_what_is_not_there_is_refused() {
         let mut stored = testing::identified_ship();
         let (id, form) = ("sway_coupling_measured".into(), "measured sway".into());
-        stored.members[0].effects[0] = document::identified_ship::StoredEffect { id, form, constants: vec![1.0] };
+        stored.members[0].effects[0] = document::identified_ship::IdentifiedEffect { id, form, constants: vec![1.0] };
         let error = ShipMixture::new(vec![(stored, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }

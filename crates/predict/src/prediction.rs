@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use ship::Particulars;
 use simulate::Manoeuvre;
-use trial::manoeuvre::{from_words, to_words};
+use trial::manoeuvre::{deserialize_text, serialize_text};
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
@@ -75,7 +75,7 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
-    #[serde(serialize_with = "to_words", deserialize_with = "from_words")]
+    #[serde(serialize_with = "serialize_text", deserialize_with = "deserialize_text")]
     #[schemars(with = "String")]
     pub kind: Manoeuvre,
     /// Its figures by name, with the unit.

@@ -231,7 +231,7 @@ fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByNa
         let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
         let interval = PredictionInterval::of(&mut values).filter(|interval| figures::is_sound(name, interval))?;
-        Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
+        Some((name.to_owned(), Compared { measured, interval, inside90: interval.contains_90(measured) }))
     };
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use ship::vessel::prime::FASTEST;
+use ship::vessel::prime::MAX_SPEED;
 use simulate::motion;
 use simulate::simulation::{Simulated, Truth};
 use simulate::vessel::Solver;
@@ -79,9 +79,9 @@ const MAX_CORRELATION_SHARE: f64 = 0.5;
 /// The simulated vessel of a drawn ship.
 fn vessel(ship: &DrawnShip) -> Vessel {
     match &ship.hull {
-        Some(hull) => Vessel::hull(Arc::new(hull.clone()))
+        Some(hull) => Vessel::from_dynamics(Arc::new(hull.clone()))
             .with_particulars(Particulars { length: hull.length, speed: hull.speed }),
-        None => Vessel::response(ship.response.clone()),
+        None => Vessel::from_response(ship.response.clone()),
     }
 }
 
@@ -131,7 +131,7 @@ impl SimulatedManoeuvre {
             simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
         let passage = Self::of(simulation, &ship.key, timescale)?;
-        match ship.hull.as_ref().and_then(|hull| passage.runs_away(FASTEST * hull.speed)) {
+        match ship.hull.as_ref().and_then(|hull| passage.runs_away(MAX_SPEED * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),
                 heading: passage.heading[row],

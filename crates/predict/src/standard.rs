@@ -17,7 +17,7 @@ const PULL_OUT: f64 = 40.0;
 const AFTER_WILLIAMSON: f64 = 20.0;
 
 /// The manoeuvres of the IMO criteria, to starboard.
-pub fn of_imo() -> Vec<Manoeuvre> {
+pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
     let zig_zag = |angle_deg| Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(angle_deg));
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }

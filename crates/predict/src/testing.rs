@@ -1,8 +1,8 @@
 //! Synthetic ships and records for tests.
 
 use document::{
-    HeadingNoise, IdentifiedShip, KnownGear, RandomMoment, RandomYawMoment, StoredCoefficient, StoredEffect,
-    StoredHull, ValidityRange, WeightedStructure,
+    HeadingNoise, IdentifiedCoefficient, IdentifiedEffect, IdentifiedGear, IdentifiedHull, IdentifiedShip,
+    RandomMoment, RandomYawMoment, ValidityRange, WeightedStructure,
 };
 use nalgebra::DMatrix;
 use ship::angle::from_deg;
@@ -27,7 +27,11 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
     IdentifiedShip {
         members: vec![WeightedStructure {
             weight: 1.0,
-            effects: vec![StoredEffect { id: "nonlinear_damping".into(), form: "r³".into(), constants: Vec::new() }],
+            effects: vec![IdentifiedEffect {
+                id: "nonlinear_damping".into(),
+                form: "r³".into(),
+                constants: Vec::new(),
+            }],
             parameters,
             fitted: vec![0, 1, 2, 3],
             covariance: (0..4).map(|i| (0..4).map(|j| correlation(i, j) * sd[i] * sd[j]).collect()).collect(),
@@ -37,7 +41,7 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
             heading_sd_rad: from_deg(0.1),
             moment: RandomMoment::White { rudder_rad_root_s: from_deg(0.3) },
         },
-        gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
+        gear: Some(IdentifiedGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
         seen: ValidityRange { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
         length_m: Some(75.0),
@@ -47,13 +51,13 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
 }
 
 /// A hull of a form as it is expected of the ship of [`identified_ship`], with a tenth of the expected deviations.
-pub(crate) fn hull(form: &str) -> StoredHull {
+pub(crate) fn hull(form: &str) -> IdentifiedHull {
     let (length_m, speed_m_s) = (75.0, 6.0);
     let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
-    let forms = HullForm::of_ship(Some(&particulars)).into_iter();
+    let forms = HullForm::candidates(Some(&particulars)).into_iter();
     let priors = forms.filter(|candidate| candidate.as_str() == form).flat_map(|form| form.coefficients().to_vec());
-    let coefficients: Vec<StoredCoefficient> = priors
-        .map(|prior| StoredCoefficient {
+    let coefficients: Vec<IdentifiedCoefficient> = priors
+        .map(|prior| IdentifiedCoefficient {
             key: prior.key.into(),
             symbol: prior.symbol.into(),
             value: prior.mean,
@@ -61,10 +65,10 @@ pub(crate) fn hull(form: &str) -> StoredHull {
             expected_sd: prior.sd,
         })
         .collect();
-    let variance = |coefficient: &StoredCoefficient| (0.1 * coefficient.expected_sd).powi(2);
+    let variance = |coefficient: &IdentifiedCoefficient| (0.1 * coefficient.expected_sd).powi(2);
     let row =
         |i: usize| (0..coefficients.len()).map(|j| if i == j { variance(&coefficients[i]) } else { 0.0 }).collect();
-    StoredHull {
+    IdentifiedHull {
         form: form.into(),
         weight: 1.0,
         length_m,
@@ -80,7 +84,7 @@ pub(crate) fn hull(form: &str) -> StoredHull {
 }
 
 /// A hull taken from another one to the same loading, with deviations so many times those of the other.
-pub(crate) fn at_same_loading(hull: &StoredHull, factor: f64) -> StoredHull {
+pub(crate) fn at_same_loading(hull: &IdentifiedHull, factor: f64) -> IdentifiedHull {
     let form = hull.form().expect("made up");
     let size = hull.coefficients.len();
     let covariance = DMatrix::from_fn(size, size, |i, j| factor * factor * hull.covariance[i][j]);
@@ -99,7 +103,7 @@ pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64,
     let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
     let requested: Manoeuvre = kind.parse().expect("known");
     let manoeuvre = standard::steered(&requested, mixture.timescale()).expect("steered");
-    let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
+    let mut simulation = Simulation::new(Vessel::from_response(ship.response), manoeuvre);
     simulation.gear = ship.gear;
     simulation.disturbances = ship.disturbances;
     simulation.sensors.heading_noise = noise;

@@ -1,8 +1,8 @@
 //! A Python function as an identification method.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-use identify::{Answer, Errors};
 use identify::{Estimate, Identifier, IdentifyError};
+use identify::{OutsideErrors, OutsideFit};
 use nalgebra::Matrix3;
 use pyo3::prelude::*;
 use trial::Trial;
@@ -35,8 +35,8 @@ impl Identifier for PyIdentifier {
         };
         let (K, T, rudder_bias, covariance) =
             Python::attach(|py| ask(py).map_err(|raised| IdentifyError::outside(&raised.to_string())))?;
-        let errors =
-            covariance.map_or(Errors::Unknown, |rows| Errors::Covariance(Matrix3::from_row_slice(&rows.concat())));
-        Answer { K, T, rudder_bias, errors }.estimate()
+        let errors = covariance
+            .map_or(OutsideErrors::Unknown, |rows| OutsideErrors::Covariance(Matrix3::from_row_slice(&rows.concat())));
+        OutsideFit { K, T, rudder_bias, errors }.estimate()
     }
 }

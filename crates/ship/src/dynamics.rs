@@ -47,7 +47,7 @@ pub enum Regressor {
 
 impl Regressor {
     /// Message for records without it.
-    pub fn lacking(self) -> &'static str {
+    pub fn missing_message(self) -> &'static str {
         match self {
             Self::Speed => "the records have no speed",
             Self::Sway => "the records have no sway velocity",

@@ -8,7 +8,7 @@ use estimation::number::Real;
 
 /// Recorded signals that are the input of a replay.
 #[derive(Debug, Clone, Copy)]
-pub struct Recorded<'a> {
+pub struct RecordedSignals<'a> {
     /// Rudder angle, rad.
     pub rudder: &'a Polyline,
     /// Speed through the water, m/s.
@@ -23,7 +23,7 @@ pub struct Recorded<'a> {
     pub propeller: Option<&'a Polyline>,
 }
 
-impl<'a> Recorded<'a> {
+impl<'a> RecordedSignals<'a> {
     /// Record with a rudder only.
     pub fn rudder(rudder: &'a Polyline) -> Self {
         Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
@@ -88,7 +88,7 @@ impl Ramp {
 /// that overflows is passed on: the caller receives motion that is not finite.
 pub fn replay<D, V>(
     dynamics: &D,
-    recorded: &Recorded,
+    recorded: &RecordedSignals,
     times: &[f64],
     largest_step: f64,
     state: &mut [f64],
@@ -113,7 +113,7 @@ pub fn replay<D, V>(
 /// time. Steps between two times are no longer than `largest_step` of these times (s).
 pub fn replay_states<R, D, S, V>(
     dynamics: &D,
-    recorded: &Recorded,
+    recorded: &RecordedSignals,
     times: &[f64],
     largest_step: S,
     state: &mut [R],

@@ -9,12 +9,12 @@ use crate::number::Tangent;
 
 /// Time constants that steps must resolve: one at all times, others within time spans.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pace {
+pub struct TimeConstants {
     always: f64,
     spans: Vec<([f64; 2], f64)>,
 }
 
-impl Pace {
+impl TimeConstants {
     /// Time constant, s, at all times.
     pub fn always(time: f64) -> Self {
         Self { always: time, spans: Vec::new() }
@@ -48,7 +48,7 @@ pub trait Replayable<R: Real = f64>: Dynamics<R> {
     fn needs(&self, channel: Regressor) -> bool;
 
     /// Time constants that steps must resolve.
-    fn pace(&self) -> Pace;
+    fn time_constants(&self) -> TimeConstants;
 }
 
 /// [`Replayable`] ship that can also be replayed in dual numbers, for sensitivities to the initial state.

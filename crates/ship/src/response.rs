@@ -14,10 +14,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{Effect, EffectReal, Now, Parameter, Places, Scale, SwayCoupling};
+use crate::effects::{Effect, EffectReal, OperatingPoint, Parameter, Scale, SwayCoupling, Targets};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
-use crate::replayable::{Pace, Replayable, ReplayedShip};
+use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
@@ -34,7 +34,7 @@ pub const BASE: [Parameter; BASE_PARAMETERS] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
-    acts: Places,
+    acts: Targets,
 }
 
 impl Place {
@@ -79,14 +79,14 @@ impl ResponseModel {
             let place = Place {
                 parameters: (parameters, parameters + effect.parameters().len()),
                 states: (states, states + effect.states()),
-                acts: effect.places(),
+                acts: effect.targets(),
             };
             (parameters, states) = (place.parameters.1, place.states.1);
             if effect.states() > 0 {
                 with_memory = index + 1;
             }
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
-            if f64::acts(effect.as_ref()).sway_coupling(&neutral).is_some() {
+            if f64::action(effect.as_ref()).sway_coupling(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
@@ -128,7 +128,7 @@ impl ResponseModel {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
             let place = self.places[index];
-            let effect = R::acts(self.effects[index].as_ref());
+            let effect = R::action(self.effects[index].as_ref());
             Some((effect.sway_coupling(&parameters[place.parameters()])?, place.states.0))
         });
         Response { model: self, parameters, coupling }
@@ -181,7 +181,7 @@ impl<R: EffectReal> Response<R> {
 
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
-        self.pace().shortest(f64::NEG_INFINITY, f64::INFINITY)
+        self.time_constants().shortest(f64::NEG_INFINITY, f64::INFINITY)
     }
 
     fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[R], Place)> {
@@ -192,8 +192,8 @@ impl<R: EffectReal> Response<R> {
             .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters()], place))
     }
 
-    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a Input<R>) -> Now<'a, R> {
-        Now {
+    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a Input<R>) -> OperatingPoint<'a, R> {
+        OperatingPoint {
             t,
             heading: state[0],
             yaw_rate: state[1],
@@ -208,7 +208,7 @@ impl<R: EffectReal> Response<R> {
     fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
         for (effect, p, place) in self.effects().filter(|(.., place)| place.acts.rudder) {
-            rudder = R::acts(effect).rudder(p, &state[place.states()], rudder);
+            rudder = R::action(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
         let mut scale = Scale::none();
@@ -216,12 +216,12 @@ impl<R: EffectReal> Response<R> {
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
             if place.acts.scale {
-                let factor = R::acts(effect).scale(p, z, &now);
+                let factor = R::action(effect).scale(p, z, &now);
                 scale.damping = scale.damping * factor.damping;
                 scale.gain = scale.gain * factor.gain;
             }
             if place.acts.moment {
-                acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
+                acceleration = acceleration + R::action(effect).yaw_acceleration(p, z, &now);
             }
         }
         Instant { rudder, scale, acceleration }
@@ -252,9 +252,9 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
     }
 
     /// Time constants that steps must resolve.
-    fn pace(&self) -> Pace {
+    fn time_constants(&self) -> TimeConstants {
         let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
-        let mut pace = Pace::always(values[0].abs().recip());
+        let mut pace = TimeConstants::always(values[0].abs().recip());
         for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
             let p = &values[place.parameters()];
             let (time, span) = (effect.shortest_time(p), effect.fast_span(p));
@@ -271,8 +271,8 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
         for (effect, p, place) in self.effects() {
             let z = &mut state[place.states()];
-            R::acts(effect).approach(p, &now, z);
-            now.rudder = R::acts(effect).rudder(p, z, now.rudder);
+            R::action(effect).approach(p, &now, z);
+            now.rudder = R::action(effect).rudder(p, z, now.rudder);
         }
         if let Some((coupling, s)) = self.coupling {
             // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces it.
@@ -324,10 +324,10 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
             for (effect, p, place) in self.effects().take(self.model.with_memory) {
                 let z = &state[place.states()];
                 if !z.is_empty() {
-                    R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
+                    R::action(effect).rates(p, z, &now, before, &mut rate[place.states()]);
                 }
                 if place.acts.rudder {
-                    before = R::acts(effect).rudder(p, z, before);
+                    before = R::action(effect).rudder(p, z, before);
                 }
             }
             if let Some((_, s)) = self.coupling {
@@ -343,8 +343,8 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         let mut before = input.rudder;
         for (effect, p, place) in self.effects().take(self.model.with_memory) {
             let z = &mut state[place.states()];
-            R::acts(effect).settle(p, z, before);
-            before = R::acts(effect).rudder(p, z, before);
+            R::action(effect).settle(p, z, before);
+            before = R::action(effect).rudder(p, z, before);
         }
     }
 
@@ -361,7 +361,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
     }
 
     fn dead_time(&self) -> R {
-        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::acts(effect).dead_time(p))
+        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::action(effect).dead_time(p))
     }
 
     /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.

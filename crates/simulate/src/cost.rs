@@ -6,7 +6,7 @@ use ship::narrow_band::NarrowBand;
 use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 
 use crate::error::{Check, Expected, SpecificationError};
-use crate::limits::MOST_STEPS;
+use crate::limits::MAX_STEPS;
 use crate::propagate::{ClosedForm, exposed};
 use crate::simulation::Simulation;
 use crate::vessel::Solver;
@@ -52,7 +52,7 @@ impl Simulation {
     /// Checks the number of steps; fails with the key and value of the longest part.
     pub(crate) fn check_cost(&self) -> Check {
         let Cost { steps, longest: (key, value), .. } = self.cost();
-        let most = MOST_STEPS as f64;
+        let most = MAX_STEPS as f64;
         if steps <= most {
             return Ok(());
         }
@@ -130,7 +130,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::MOST_EXECUTES;
+    use crate::limits::MAX_EXECUTES;
     use crate::tests::{KEY, zig_zag};
     use crate::{SimulateError, Vessel};
     use ship::FirstOrder;
@@ -151,16 +151,12 @@ mod tests {
             s.recording.duration = None;
         };
         assert_eq!(refused(&|s| executes(s, 1_000_000_000)), "manoeuvre.zig-zag.executes");
-        assert_eq!(
-            refused(&|s| executes(s, MOST_EXECUTES)),
-            "manoeuvre.zig-zag.executes",
-            "a hundred days of zig-zags"
-        );
+        assert_eq!(refused(&|s| executes(s, MAX_EXECUTES)), "manoeuvre.zig-zag.executes", "a hundred days of zig-zags");
         assert_eq!(refused(&|s| s.recording.after_execute = Some(90_000)), "recording.after-execute");
         assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
         assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {
-            s.vessel = Vessel::first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
+            s.vessel = Vessel::from_first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
         };
         assert_eq!(refused(&fast), "recording.duration-s");
         let slow = |s: &mut Simulation| {

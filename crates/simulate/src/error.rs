@@ -8,7 +8,7 @@ use ship::angle::DEGREE;
 use thiserror::Error;
 use trial::TrialError;
 
-use crate::limits::{LONGEST_TIME, MOST_ROWS};
+use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
 /// Requirement on a value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,12 +81,12 @@ const WHOLE: [&str; 2] = ["sensor.heading-wander.", "sensor.heading-spikes."];
 
 impl SpecificationError {
     /// `true` if the presence of the key is the error, `false` if it is its value.
-    pub fn is_of_name(&self) -> bool {
+    pub fn is_about_key(&self) -> bool {
         matches!(self.expected, Expected::Other(_)) || self.key == "vessel.dead_time"
     }
 
     /// Message in the units of a scenario: what was found, what was expected, and advice.
-    pub fn words(&self) -> [String; 3] {
+    pub fn message_parts(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
         let problem = match expected {
             Expected::Other(message) | Expected::Value(message) => return message.map(str::to_owned),
@@ -119,9 +119,9 @@ impl SpecificationError {
                 "add `duration-s = …` (seconds), or let `executes` end the zig-zag"
             }
             (_, Expected::Execute(_)) => "start the record earlier, or leave the key out to record from the start",
-            (_, Expected::AtMost(limit)) if limit == LONGEST_TIME => "give a time in seconds",
+            (_, Expected::AtMost(limit)) if limit == MAX_TIME_S => "give a time in seconds",
             (key, Expected::AtMost(limit)) if key.ends_with("duration-s") => {
-                let periods = (MOST_ROWS - 1) as f64;
+                let periods = (MAX_ROWS - 1) as f64;
                 let sampling_s = shown(limit / periods);
                 return format!(
                     "record less, or more rarely: with `sampling-s` = {sampling_s} that limit is {periods} rows"
@@ -260,14 +260,14 @@ pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Check {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
-/// Checks a duration, s: not negative, and no longer than [`LONGEST_TIME`](crate::limits::LONGEST_TIME).
+/// Checks a duration, s: not negative, and no longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
 pub(crate) fn time(key: &'static str, value: f64) -> Check {
     not_negative(key, value)?;
-    at_most(key, value, LONGEST_TIME)
+    at_most(key, value, MAX_TIME_S)
 }
 
 /// Checks a duration, s, above zero.
 pub(crate) fn positive_time(key: &'static str, value: f64) -> Check {
     positive(key, value)?;
-    at_most(key, value, LONGEST_TIME)
+    at_most(key, value, MAX_TIME_S)
 }

@@ -88,12 +88,12 @@ impl<'a> Helm<'a> {
 
     /// Acts on the trigger at time `t` (s) and returns the rudder order, rad; `None` if no order is given now.
     pub fn act(&mut self, t: f64) -> Option<f64> {
-        let sees_heading = matches!(self.trigger(), Trigger::Deviation { .. });
+        let is_heading_dependent = matches!(self.trigger(), Trigger::Deviation { .. });
         let Some(order) = self.manoeuvre.step(self.orders).order else {
             (self.finished, self.end) = (true, t);
             return None;
         };
-        if sees_heading && self.reaction_time > 0.0 {
+        if is_heading_dependent && self.reaction_time > 0.0 {
             self.due = Some(t + self.reaction_time);
             return None;
         }

@@ -23,7 +23,7 @@
 //! use ship::{FirstOrder, angle::from_deg};
 //! use kempf_simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 //!
-//! let vessel = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+//! let vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 //! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(5);
 //! let mut simulation = Simulation::new(vessel, zig_zag);
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.32));

@@ -3,7 +3,7 @@
 use trial::manoeuvre::Manoeuvre;
 
 use crate::error::{self, Check, Expected};
-use crate::limits::MOST_EXECUTES;
+use crate::limits::MAX_EXECUTES;
 
 /// Checks every value of a manoeuvre; fails with the first invalid one.
 pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
@@ -24,7 +24,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
         }
         Manoeuvre::ZigZag { heading, executes, .. } => {
             error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
-            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MOST_EXECUTES)?;
+            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MAX_EXECUTES)?;
         }
         Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
             return error::refused(

@@ -8,7 +8,7 @@ use trial::degrees::Degrees;
 
 use crate::error::{self, Check, Expected};
 use crate::helm::{MAX_PERIOD_S, MIN_PERIOD_S};
-use crate::limits::{MOST_EXECUTES, MOST_ROWS};
+use crate::limits::{MAX_EXECUTES, MAX_ROWS};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::{Purpose, StreamKey, normal};
@@ -67,7 +67,7 @@ impl Recording {
 
     /// Largest duration of a record, s.
     pub(crate) fn max_duration(&self) -> f64 {
-        (MOST_ROWS - 1) as f64 * self.period
+        (MAX_ROWS - 1) as f64 * self.period
     }
 
     /// Number of rows; `None` without a duration.
@@ -85,7 +85,7 @@ impl Recording {
         }
         match (self.after_execute, self.offset) {
             (Some(number), offset) => {
-                error::count("recording.after-execute", number, MOST_EXECUTES)?;
+                error::count("recording.after-execute", number, MAX_EXECUTES)?;
                 error::time("recording.offset-s", offset.unwrap_or(0.0))?;
             }
             (None, Some(_)) => error::refused(
@@ -169,7 +169,7 @@ impl Sampler {
     fn new(start: f64, recording: &Recording, deviation: Option<Jitter>) -> Self {
         let rows = recording.rows();
         // One more than the limit, so that a record without end is noticed.
-        let remaining = rows.unwrap_or(MOST_ROWS + 1);
+        let remaining = rows.unwrap_or(MAX_ROWS + 1);
         let samples = Vec::with_capacity(rows.unwrap_or(0).min(MAX_RESERVED_ROWS));
         let mut sampler =
             Self { start, period: recording.period, remaining, deviation, next: start, samples, jitter: Vec::new() };

@@ -8,7 +8,7 @@ use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder};
 use trial::manoeuvre::Trigger;
 
-use crate::limits::{MOST_EXECUTES, MOST_STEPS};
+use crate::limits::{MAX_EXECUTES, MAX_STEPS};
 use crate::propagate::{AwaitedHeading, Limits, Propagator, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
@@ -126,8 +126,8 @@ impl<'a, P: Propagator> Run<'a, P> {
             if noticed {
                 if let Some(order) = self.helm.act(t) {
                     self.execute(t, order);
-                    if self.executes.len() > MOST_EXECUTES {
-                        return Err(SimulateError::TooLong { time: t, what: "executes", most: MOST_EXECUTES });
+                    if self.executes.len() > MAX_EXECUTES {
+                        return Err(SimulateError::TooLong { time: t, what: "executes", most: MAX_EXECUTES });
                     }
                     return Ok(Progress::Executed);
                 }
@@ -189,8 +189,8 @@ impl<'a, P: Propagator> Run<'a, P> {
         loop {
             // A travel of zero length counts, too, so that the loop always ends.
             self.steps += 1;
-            if self.steps > MOST_STEPS {
-                return Err(SimulateError::TooLong { time: ship.time(), what: "steps", most: MOST_STEPS });
+            if self.steps > MAX_STEPS {
+                return Err(SimulateError::TooLong { time: ship.time(), what: "steps", most: MAX_STEPS });
             }
             if ship.time() >= to {
                 return Ok(false);

@@ -14,7 +14,7 @@ use trial::degrees::Degrees;
 
 use crate::disturbance::GaussMarkov;
 use crate::error::{self, Check, Expected};
-use crate::limits::{LONGEST_TIME, MOST_ROWS};
+use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
 /// Instruments; a key that is left out means no error.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -128,14 +128,14 @@ impl Sensors {
             error::positive("sensor.heading-spikes.size-deg", spikes.size)?;
             error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(MAX_SPIKE_DEG))?;
         }
-        error::count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MOST_ROWS)?;
+        error::count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MAX_ROWS)?;
         error::not_negative("sensor.yaw-rate-noise-deg-s", self.yaw_rate_noise.unwrap_or(0.0))?;
         error::finite("sensor.yaw-rate-bias-deg-s", self.yaw_rate_bias.unwrap_or(0.0))?;
         error::finite("sensor.yaw-rate-scale-error", self.yaw_rate_scale_error.unwrap_or(0.0))?;
         error::not_negative("sensor.rudder-noise-deg", self.rudder_noise)?;
         error::not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
         error::time("sensor.jitter-s", self.jitter)?;
-        error::between("sensor.heading-delay-s", self.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
+        error::between("sensor.heading-delay-s", self.heading_delay, -MAX_TIME_S, MAX_TIME_S)?;
         self.drop_out.validate()
     }
 

@@ -16,7 +16,7 @@ use crate::disturbance::Disturbances;
 use crate::error::{self, Check, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder, Helmsman};
-use crate::limits::MOST_ROWS;
+use crate::limits::MAX_ROWS;
 use crate::manoeuvre::{check_manoeuvre, key_of};
 use crate::measure::{self, Scene, View};
 use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
@@ -64,7 +64,7 @@ impl BeforeExecute {
 /// use kempf_simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
 /// use ship::{FirstOrder, angle::from_deg};
 ///
-/// let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+/// let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 /// let zig_zag = Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0));
 /// let mut simulation = Simulation::new(ship, zig_zag);
 /// simulation.recording.duration = Some(200.0);
@@ -230,7 +230,7 @@ impl Simulation {
             _ => {}
         }
         self.check_cost()?;
-        let most = self.manoeuvre.most_executes();
+        let most = self.manoeuvre.max_executes();
         if let Some(number) = self.recording.after_execute.filter(|number| *number > most) {
             let value = number as f64;
             return Err(SpecificationError {
@@ -344,8 +344,8 @@ impl Simulation {
                 }
             }
         }
-        if rows.samples.len() > MOST_ROWS {
-            return Err(SimulateError::TooLong { time: run.time(), what: "rows", most: MOST_ROWS });
+        if rows.samples.len() > MAX_ROWS {
+            return Err(SimulateError::TooLong { time: run.time(), what: "rows", most: MAX_ROWS });
         }
         Ok(self.look_back(rows, instruments, &run.finish()))
     }

@@ -39,27 +39,27 @@ impl std::fmt::Debug for Vessel {
 
 impl Vessel {
     /// Vessel of a response model; without effects it has a closed form.
-    pub fn response(response: Response) -> Self {
+    pub fn from_response(response: Response) -> Self {
         let first_order = response.model().effects().is_empty().then(|| response.first_order());
         let random_headings = response.random_headings().collect();
         Self { dynamics: Arc::new(response), first_order, random_headings, particulars: None }
     }
 
     /// Vessel of a first-order response.
-    pub fn first_order(ship: FirstOrder) -> Self {
-        Self::response(Response::first_order_ship(ship))
+    pub fn from_first_order(ship: FirstOrder) -> Self {
+        Self::from_response(Response::first_order_ship(ship))
     }
 
     /// Vessel of any other system of equations.
-    pub fn hull(dynamics: Arc<dyn Dynamics>) -> Self {
+    pub fn from_dynamics(dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }
 
     /// Vessel of a ship of the registry, with its particulars.
-    pub fn ship(ship: &Ship) -> Self {
+    pub fn from_ship(ship: &Ship) -> Self {
         let vessel = match &ship.model {
-            Model::Response(response) => Self::response(response.clone()),
-            Model::Hull(hull) => Self::hull(Arc::clone(hull)),
+            Model::Response(response) => Self::from_response(response.clone()),
+            Model::Hull(hull) => Self::from_dynamics(Arc::clone(hull)),
         };
         Self { particulars: ship.particulars, ..vessel }
     }

@@ -25,7 +25,7 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
 
 /// Reads the effects of a file. Fails with the line of the first wrong formula.
 pub fn formulas(path: &str) -> Result<Formulas, String> {
-    const FILE: Kind = Kind { name: "a file of effects", largest: 1 << 20 };
+    const FILE: Kind = Kind { name: "a file of effects", max_bytes: 1 << 20 };
     let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;
     let file: EffectFile = toml::from_str(&text).map_err(|error| error.to_string().trim_end().to_owned())?;
     let read = |line_text: &Spanned<String>| {

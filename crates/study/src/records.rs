@@ -2,19 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
-use document::{Code, Source, TrialParticularsEntry, Warning, Warnings};
+use document::{Source, TrialParticularsEntry, Warning, WarningCode, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;
 use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
-use trial::file::{STDIN, called};
+use trial::file::{STDIN, display_path};
 use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::answers::TRIALS;
 use campaign::failure::{Failure, FailureParts, OnPath};
-use campaign::known::RecordFacts;
+use campaign::identified_ship::RecordFacts;
 use campaign::scenario::name;
 
 /// File endings of records in a folder.
@@ -70,16 +70,16 @@ pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &m
         )));
     }
     // Folders and figures are named after the record.
-    name::of_file(called(path))?;
+    name::of_file(display_path(path))?;
     let sidecar = Sidecar::describing(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
-    warnings.extend(source(called(path)).of(std::mem::take(&mut log.warnings)));
+    warnings.extend(source(display_path(path)).of(std::mem::take(&mut log.warnings)));
     Ok(log)
 }
 
 /// A record as the source of warnings; `path` is its name in messages.
-pub fn source(path: &Path) -> Source {
-    Source::Record(path.display().to_string())
+pub fn source(path: &Path) -> WarningSource {
+    WarningSource::Record(path.display().to_string())
 }
 
 /// Failure of a file that is not a record, with file and line as parts.
@@ -125,7 +125,12 @@ pub fn read_for_replay(
 }
 
 fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
-    of_log(open(path, options.columns.as_deref(), &options.with_columns, warnings)?, called(path), options, warnings)
+    of_log(
+        open(path, options.columns.as_deref(), &options.with_columns, warnings)?,
+        display_path(path),
+        options,
+        warnings,
+    )
 }
 
 /// The record in a log: the selected part, or its zig-zag. `path` is its name in messages.
@@ -212,13 +217,13 @@ fn ship(
         return Err(Failure::about(path, format!("the record has no speed; {advice}")));
     };
     let text = format!("the approach speed is taken from the record, {} kn in its first tenth", fixed(speed / KNOT, 2));
-    warnings.push(Code::Scale, source(path), text);
+    warnings.push(WarningCode::Scale, source(path), text);
     Ok(Some(Particulars { length, speed }))
 }
 
 /// Warning where records with a speed or positions give no track, with the reason.
 pub fn no_track(shown: &RecordFacts) -> Option<Warning> {
-    shown.no_track.as_ref().map(|why| Code::NoTrack.warning(why))
+    shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
 /// Message on a negative dead time, s: the rudder was logged late; and the remedy.
@@ -240,7 +245,7 @@ pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
     let idle = "used for identification and for validation; the error on it validates nothing";
     let all = twice.map(|trial| (trial, narrow)).chain(in_both.map(|trial| (trial, idle)));
-    all.map(|(trial, text)| Warning::new(Code::Repetition, source_of(trial), text)).collect()
+    all.map(|(trial, text)| Warning::new(WarningCode::Repetition, source_of(trial), text)).collect()
 }
 
 /// Unique names: the given ones, with a number where several are the same.
@@ -265,8 +270,8 @@ pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
 }
 
 /// A record as the source of warnings.
-pub fn source_of(trial: &Trial) -> Source {
-    Source::Record(file_of(trial).0.to_owned())
+pub fn source_of(trial: &Trial) -> WarningSource {
+    WarningSource::Record(file_of(trial).0.to_owned())
 }
 
 /// File and hash of a measured record.

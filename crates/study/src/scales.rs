@@ -22,7 +22,7 @@ pub struct RescaledRecords {
 pub fn together(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
     let scales = Scales::among(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
-        Some(scales) => scales.bring_together(records.to_vec()),
+        Some(scales) => scales.to_first_scale(records.to_vec()),
         None => records.to_vec(),
     };
     Ok(RescaledRecords { trials: at_one(trials), held_out: at_one(held_out), scales })
@@ -39,7 +39,7 @@ impl RescaledRecords {
         let scales = self.scales.as_ref()?;
         let first = scales.particulars[0];
         let scale_part = |(scale, ship): (usize, &Particulars)| {
-            let count = scales.of.iter().filter(|record| **record == scale).count();
+            let count = scales.indices.iter().filter(|record| **record == scale).count();
             let records = if count == 1 { "record" } else { "records" };
             let factor = significant(ship.factor_to(first, [1, 0]), 4);
             let times = if scale == 0 { String::new() } else { format!(", time × {factor}") };

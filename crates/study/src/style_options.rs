@@ -105,7 +105,7 @@ impl FigureOptions {
     }
 }
 
-const STYLE: Kind = Kind { name: "a style", largest: 1 << 20 };
+const STYLE: Kind = Kind { name: "a style", max_bytes: 1 << 20 };
 
 /// A style from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {

@@ -1,6 +1,6 @@
 //! Analysis of the records of one ship: a pipeline of stages, each a function of the results before it.
 //!
-//! prepare → base → full fit → noise → structures → names held against shapes → comparison → document
+//! prepare → base → full fit → noise law → structures → named effects or shapes → comparison → document
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use trial::{Channel, Trial};
 use crate::average::{Average, AveragedModel};
 use crate::base::Base;
 use crate::candidates;
-use crate::comparison::{RecordComparison, ReplayResult, before, starts};
+use crate::comparison::{RecordComparison, ReplayResult, base_result, starts};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, FullModel};
@@ -96,7 +96,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
     let is_there = |id: &&EffectId| candidates.iter().any(|term| term.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = selection.effects().into_iter().filter(|form| form.id() == effect.as_str()).collect();
-    let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
+    let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::missing_message));
     let reason = match forms.iter().any(|form| form.is_random()) {
         true => "it is a noise law, which every trace tries anyway",
         false => lacking.unwrap_or("the records cannot show it"),
@@ -133,11 +133,11 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
-    watched(trials, validation, settings, &NoWatcher)
+    trace_with_watcher(trials, validation, settings, &NoWatcher)
 }
 
 /// [`trace`] with an observer of its leave-one-out folds, who can stop them.
-pub fn watched(
+pub fn trace_with_watcher(
     trials: &[Trial],
     validation: &[Trial],
     settings: &Settings,
@@ -263,7 +263,7 @@ fn compare_fitted(
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
-        let before = before(trial, &record, response, depth)?;
+        let before = base_result(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
         let mut after = averaged.on(trial, &record, &starts(trial, response), depth)?;
@@ -296,7 +296,7 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
 
 /// Member of the structure average, for predictions: without the terms of single records.
 #[derive(Debug, Clone)]
-pub struct Plausible {
+pub struct PlausibleStructure {
     /// Probability among the members.
     pub weight: f64,
     /// Response of the ship.
@@ -320,7 +320,7 @@ impl Analysis {
     }
 
     /// Members of the structure average for predictions, the most probable first.
-    pub fn plausible(&self) -> Vec<Plausible> {
+    pub fn plausible_structures(&self) -> Vec<PlausibleStructure> {
         let member = |(weight, fit): (f64, &StructureFit)| {
             let (structure, theta) = fit.structure.alone(None, &fit.theta);
             let fitted = structure.fitted();
@@ -329,7 +329,7 @@ impl Analysis {
                 let all = structure.physical_covariance(&structure.spread(&kept));
                 DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
             });
-            Plausible { weight, response: structure.response(None, &theta), fitted, covariance }
+            PlausibleStructure { weight, response: structure.response(None, &theta), fitted, covariance }
         };
         self.structures.members().into_iter().map(member).collect()
     }
@@ -355,7 +355,7 @@ impl Analysis {
 
     /// Replay of the average on a noise-free trial, from the best initial state near `start` (rad, rad/s). Its band
     /// covers the errors of parameters and structures only. `None` when no replay is finite.
-    pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
+    pub fn replay_in_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };

@@ -1,4 +1,4 @@
-//! The pipeline on records of known truth, where `tests/tracing.rs` has no word on it.
+//! The pipeline on records of known truth, in cases that `tests/tracing.rs` does not cover.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,7 +10,7 @@ use trial::{Conditions, DeclaredWeather, Trial};
 
 use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
-use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, watched};
+use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, trace_with_watcher};
 
 /// A record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
@@ -35,7 +35,7 @@ fn a_random_moment_is_no_effect_of_the_ship() {
     }
 }
 
-/// A step carries what its effect is worth: behind the damping the noise is left, of every record.
+/// A step shows the contribution of its effect: after the damping only noise remains.
 #[test]
 fn a_staircase_leads_from_the_base_to_the_noise() {
     let plan = TrialPlan { noise_deg: 0.1, ..TrialPlan::default() };
@@ -87,7 +87,7 @@ fn less_two_solutions(residual: &[f64], rows: usize, time_constant: f64) -> f64 
     (windows.into_iter().map(square).sum::<f64>() / residual.len() as f64).sqrt()
 }
 
-/// What has not been fitted is replayed ever farther ahead, up to the whole of it; what has been fitted is not.
+/// Held-out records have errors for growing horizons up to the whole record; fitted records do not.
 #[test]
 fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     let held_out = damped(TrialPlan { seed: 5, rudder_deg: 12.0, ..TrialPlan::default() });
@@ -119,8 +119,8 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     assert_eq!(lengths, [25.0], "no window of 20 s is less than the whole of 25 s");
 }
 
-/// The weights of the structures are their evidence times the prior odds of their terms: from these anew, with other
-/// odds, come the probabilities that the document has.
+/// The weights of the structures are their evidence times the prior odds of their terms; the probabilities of the
+/// document follow from them for other odds.
 #[test]
 fn probabilities_move_with_the_prior_odds() {
     let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
@@ -147,14 +147,14 @@ fn probabilities_move_with_the_prior_odds() {
         moved += usize::from(by_odds[4] > by_odds[0] + 0.1);
     }
     assert!(moved > 0 && document.prior.odds_factors[2] == 1.0, "{:?}", document.candidates);
-    // What is asked for is there whatever its odds.
+    // A required effect is present whatever its odds.
     let asked = Selection::only(vec![EffectId::find("nonlinear_damping").expect("on the list")]);
     let asked = trace(&[trial], &[], &Settings { selection: asked, ..Settings::default() }).expect("a base").document;
     let asked = &asked.effects[0];
     assert!(asked.probability_by_prior_odds.iter().all(|p| (p - asked.probability).abs() < 1e-12), "{asked:?}");
 }
 
-/// The search is over when the folds begin: whoever does not wait for them has the same result without them.
+/// The search ends before the folds begin: stopping them leaves the result unchanged.
 #[test]
 fn nobody_has_to_wait_for_the_folds() {
     #[derive(Default)]
@@ -170,7 +170,7 @@ fn nobody_has_to_wait_for_the_folds() {
     }
     let trials = [10.0, 15.0].map(|rudder_deg| damped(TrialPlan { rudder_deg, ..TrialPlan::default() }));
     let hurried = Hurried::default();
-    let stopped = watched(&trials, &[], &Settings::default(), &hurried).expect("a base");
+    let stopped = trace_with_watcher(&trials, &[], &Settings::default(), &hurried).expect("a base");
     let whole = traced(&trials);
     assert_eq!((hurried.0.into_inner(), stopped.left_out.len(), whole.left_out.len()), (2, 0, 2));
     assert_eq!((named(&stopped), stopped.base.response), (named(&whole), whole.base.response));
@@ -220,7 +220,7 @@ fn both_rules_name_what_is_clear() {
     }
 }
 
-/// The band of a record holds most of it, and is no wider than the noise asks for.
+/// The band of a record covers most of it and is no wider than the noise requires.
 #[test]
 fn bands_hold_the_record() {
     let trial = damped(TrialPlan::default());
@@ -239,7 +239,7 @@ fn a_document_is_read_as_it_was_written() {
     let text = serde_json::to_string(&analysis.document).expect("plain data");
     let again: crate::Document = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
-    // One that was written before the prior odds were moved has none.
+    // A document of an earlier version has no probabilities by prior odds.
     let mut earlier = serde_json::to_value(&again).expect("plain data");
     let remove = |from: &mut serde_json::Value, key: &str| from.as_object_mut().and_then(|all| all.remove(key));
     for list in ["effects", "candidates"] {
@@ -262,7 +262,7 @@ fn nothing_is_named_for_noise_of_the_rudder() {
     assert!(document.noise[0].rudder_sd_deg.is_some_and(|sd| (sd - 0.3).abs() < 0.05), "{:?}", document.noise);
 }
 
-/// A tug on one side is no wind: the name falls, and is said to be as near.
+/// A tug on one side is not named wind: the shape replaces the name.
 #[test]
 fn a_name_falls_where_a_shape_does_better() {
     let tug: Arc<dyn Effect> = Formula::read("tug = c * max(psi, 0)").expect("a formula");

@@ -77,8 +77,8 @@ impl AveragedModel<'_> {
 }
 
 impl Average {
-    /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of a
-    /// depth. `None` when none is finite.
+    /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of the
+    /// depth; `None` when no replay is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
         let replays: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members

@@ -7,7 +7,7 @@
 //! are not among the candidates are not covered.
 
 use estimation::column::dot;
-use estimation::kalman::{MOST, System};
+use estimation::kalman::{MAX_STATES, System};
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -77,7 +77,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 
 /// Sampler of the residual of one structure on one record.
 struct ResidualSampler {
-    system: System<MOST>,
+    system: System<MAX_STATES>,
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
     white: Vec<f64>,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Backlash, Effect, Manoeuvres, Proposal, SecondOrder, SteeringLag, WaveYaw};
+use ship::effects::{Backlash, Effect, Proposal, RecordScales, SecondOrder, SteeringLag, WaveYaw};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -29,7 +29,7 @@ pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
 }
 
 /// Scales of the manoeuvres in some records; `span` is that of `record`.
-pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> Manoeuvres {
+pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
     let mean_speed = mean_square(records, |record| record.speed.as_ref());
     // The speed is needed where speed or sway is recorded.
@@ -41,7 +41,7 @@ pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, recor
         (highest - lowest > MIN_PROPELLER_CHANGE * mean).then_some(mean)
     };
     let angles = records.iter().flat_map(|record| record.rudder.values());
-    Manoeuvres {
+    RecordScales {
         time,
         rudder: angles.fold(1e-3_f64, |largest, delta| largest.max(delta.abs())),
         duration: records.iter().map(PreparedRecord::duration).fold(0.0, f64::max),
@@ -58,7 +58,7 @@ pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, recor
 /// declares a calm, or all records do where it would act in all of them.
 pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
-    effect.is_of_weather() && !selection.asks_for(effect.id()) && is_calm()
+    effect.is_environmental() && !selection.asks_for(effect.id()) && is_calm()
 }
 
 /// Whether waves are candidates for the noise law.
@@ -71,7 +71,7 @@ pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
 pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
     for effect in selection.effects().iter().filter(|effect| selection.allows(effect.id())) {
-        let places: Vec<Option<usize>> = match effect.is_of_time() && records.len() > 1 {
+        let places: Vec<Option<usize>> = match effect.is_time_dependent() && records.len() > 1 {
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],
         };
@@ -85,7 +85,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
         candidates.iter().filter(|term| term.effect.id() == id && term.only == only).count() as f64
     };
     let weighted = |term: &Term| {
-        let prior = match (term.effect.is_of_time(), term.effect.needs()) {
+        let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
             (true, _) => PROBABILITY_OF_TIME,
             (false, Some(Regressor::Speed | Regressor::Sway)) => PROBABILITY_OF_MOTION,
             (false, _) => PROBABILITY,
@@ -145,7 +145,8 @@ mod tests {
         let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::whole).collect();
         let all = all(&records, trials, 13.0, selection);
         assert!(all.iter().any(|term| term.effect.id() == "nonlinear_damping"));
-        let mut named: Vec<_> = all.iter().filter(|term| term.effect.is_of_weather()).map(|term| term.name()).collect();
+        let mut named: Vec<_> =
+            all.iter().filter(|term| term.effect.is_environmental()).map(|term| term.name()).collect();
         named.dedup_by_key(|(id, _, only)| (*id, *only));
         named.into_iter().map(|(id, _, only)| (id, only)).collect()
     }

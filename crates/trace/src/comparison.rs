@@ -142,7 +142,7 @@ pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
 }
 
 /// Replay of the base on a record, in closed form, which holds for either sign of T; fails where it is not finite.
-pub fn before(
+pub fn base_result(
     trial: &Trial,
     record: &PreparedRecord,
     base: &FirstOrder,
@@ -164,7 +164,7 @@ impl AveragedModel<'_> {
     pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
-        let mut before = before(trial, &record, base, depth)?;
+        let mut before = base_result(trial, &record, base, depth)?;
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
         let mut after = self.on(trial, &record, &starts, depth)?;

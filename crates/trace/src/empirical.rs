@@ -1,7 +1,7 @@
 //! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates beside
 //! the named effects.
 
-use ship::effects::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use ship::effects::{Action, Description, Effect, OperatingPoint, Parameter, Proposal, RecordScales, Targets};
 use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
 
@@ -138,16 +138,16 @@ impl Effect for Monomial {
         self.size.into_iter().zip([[-1, 0], [0, 0], [0, 0], [-1, 1]]).collect()
     }
 
-    fn sees_heading(&self) -> bool {
+    fn is_heading_dependent(&self) -> bool {
         self.powers.exponents[2] > 0
     }
 
-    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
-        Some(Proposal::of_one(*self, PRIOR_SD))
+    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
+        Some(Proposal::with_normal_prior(*self, PRIOR_SD))
     }
 
-    fn places(&self) -> Places {
-        Places::MOMENT
+    fn targets(&self) -> Targets {
+        Targets::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {
@@ -155,8 +155,8 @@ impl Effect for Monomial {
     }
 }
 
-impl<R: EffectReal> Acts<R> for Monomial {
-    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+impl<R: EffectReal> Action<R> for Monomial {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
         let power = |k: usize| {

@@ -5,7 +5,7 @@
 //! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the whitening filter W of the
 //! record. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate of every record.
 
-use estimation::levenberg_marquardt::{Minimum, Normal, Objective, Rules, minimise};
+use estimation::levenberg_marquardt::{Minimum, Normal, Objective, SearchSettings, minimise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use ship::effects::Prior;
@@ -32,18 +32,18 @@ impl Effort {
     /// To convergence.
     pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
 
-    fn rules(self) -> Rules {
-        Rules {
+    fn rules(self) -> SearchSettings {
+        SearchSettings {
             steps: self.steps,
             damping: 1e-3,
             shrink: 0.1,
-            trusted: 0.5,
+            trust_ratio: 0.5,
             grow: 8.0,
-            least: [0.0, 1e-6],
-            tries: 8,
-            promise: self.negligible,
-            enough: [self.negligible, 0.0],
-            in_a_row: 1,
+            min_damping: [0.0, 1e-6],
+            max_rejections: 8,
+            min_decrease: self.negligible,
+            tolerance: [self.negligible, 0.0],
+            max_small_steps: 1,
         }
     }
 }
@@ -124,11 +124,11 @@ impl FittedRecords {
             let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts(&entries[**place], number));
             let mut variables: Vec<(usize, usize)> = acting.map(|(unknown, &place)| (unknown, place)).collect();
             variables.push((state + 1, theta.len() + 1));
-            if structure.sees_heading() {
+            if structure.is_heading_dependent() {
                 variables.push((state, theta.len()));
             }
             let mut block = tangents(structure, record, number, theta, initial[number], &variables);
-            if !structure.sees_heading() {
+            if !structure.is_heading_dependent() {
                 // The heading then shifts by its initial value.
                 block.columns.push((state, vec![1.0; block.residual.len()]));
             }

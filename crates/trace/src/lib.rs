@@ -41,7 +41,7 @@ mod watcher;
 pub mod waves;
 pub mod weights;
 
-pub use analysis::{Analysis, trace, watched, without_spikes};
+pub use analysis::{Analysis, trace, trace_with_watcher, without_spikes};
 pub use document::trace::{Document, Verdict};
 pub use remainder::{IMPROBABLE, Innovations};
 pub use selection::{EffectId, Selection};

@@ -73,7 +73,7 @@ pub struct ModelParameter {
 const BOUND_TOLERANCE: f64 = 1e-9;
 
 impl ModelParameter {
-    /// Whether a value was fitted and lies at an end of the range.
+    /// Whether a value is fitted and lies at a bound of its prior.
     pub fn is_at_bound(&self, value: f64) -> bool {
         let near = |end: f64| (value - end).abs() <= BOUND_TOLERANCE * end.abs().max(1e-6);
         self.prior.is_fitted() && (near(self.prior.lowest) || near(self.prior.highest))
@@ -178,8 +178,8 @@ impl Structure {
     }
 
     /// Whether the response depends on the heading itself, and so on its initial value.
-    pub fn sees_heading(&self) -> bool {
-        self.terms.iter().any(|term| term.effect.sees_heading())
+    pub fn is_heading_dependent(&self) -> bool {
+        self.terms.iter().any(|term| term.effect.is_heading_dependent())
     }
 
     /// Whether an entry of θ acts in a record.
@@ -236,7 +236,7 @@ impl Structure {
     fn applies(term: &Term, record: Option<usize>) -> bool {
         match record {
             Some(record) => term.only.is_none_or(|only| only == record),
-            None => !term.effect.is_of_time(),
+            None => !term.effect.is_time_dependent(),
         }
     }
 
@@ -258,7 +258,7 @@ pub fn step<R: Real, S: Replayable<R> + ?Sized>(
     spacing: f64,
     steps: f64,
 ) -> impl Fn(f64, f64) -> f64 + use<R, S> {
-    let pace = ship.pace();
+    let pace = ship.time_constants();
     move |from, to| (pace.shortest(from, to) / steps).max(spacing / MAX_STEPS_PER_ROW)
 }
 
@@ -297,13 +297,13 @@ mod tests {
     #[test]
     fn terms_of_one_record_are_not_replayed_on_another() {
         let damping = listed("nonlinear_damping", "r³");
-        let of_time: Vec<_> = all().into_iter().filter(|effect| effect.is_of_time()).collect();
+        let of_time: Vec<_> = all().into_iter().filter(|effect| effect.is_time_dependent()).collect();
         let has = |id: &&str| of_time.iter().any(|effect| effect.id() == *id);
         assert!(["moment_drift", "transient_disturbance"].iter().all(has));
         for (records, only) in [(1, None), (2, Some(0)), (2, Some(1))] {
             let term = |effect: &Arc<dyn Effect>| {
                 let priors = effect.parameters().iter().map(|parameter| Prior::normal(parameter, 0.0, 1.0)).collect();
-                let only = only.filter(|_| effect.is_of_time());
+                let only = only.filter(|_| effect.is_time_dependent());
                 Arc::new(Term { effect: Arc::clone(effect), only, priors, log_odds: 0.0 })
             };
             let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();

@@ -13,7 +13,7 @@
 use std::sync::OnceLock;
 
 use document::RandomMoment;
-use estimation::kalman::{MOST, Step, System, Whitener};
+use estimation::kalman::{MAX_STATES, Step, System, Whitener};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
@@ -173,7 +173,7 @@ struct NoiseTransition {
     /// Initial variances of the states.
     initial: [f64; 4],
     /// Every distinct step.
-    steps: Vec<Step<MOST>>,
+    steps: Vec<Step<MAX_STATES>>,
     /// The step before every observed row.
     of_row: Vec<usize>,
 }
@@ -197,7 +197,7 @@ impl NoiseTransition {
             })
         });
         let of_row = of_row.collect();
-        let steps = distinct.iter().map(|&h| Step::over(&generator, intensity, h)).collect();
+        let steps = distinct.iter().map(|&h| Step::from_generator(&generator, intensity, h)).collect();
         Self { states: generator.nrows(), initial, steps, of_row }
     }
 }
@@ -239,14 +239,14 @@ impl RecordNoise {
     }
 
     /// Linear system of correlated noise and waves of this colour, and its number of states.
-    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<MOST>, usize) {
+    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<MAX_STATES>, usize) {
         let correlated = colour.correlated.map(|(kind, level)| {
             let place = Self::kinds().position(|other| other == kind).expect("a kind of the list");
             let new = || NoiseTransition::new(kind, self.damping, &self.durations, self.longest);
             (self.transitions[place].get_or_init(new), level)
         });
         let first_wave = correlated.map_or(0, |(transition, _)| transition.states);
-        let mut initial = [[0.0; MOST]; MOST];
+        let mut initial = [[0.0; MAX_STATES]; MAX_STATES];
         if let Some((transition, level)) = correlated {
             (0..first_wave).for_each(|k| initial[k][k] = level * transition.initial[k]);
         }
@@ -264,7 +264,7 @@ impl RecordNoise {
             })
         });
         let of_row: Vec<usize> = of_row.collect();
-        let still = Step { transition: [[0.0; MOST]; MOST], added: [[0.0; MOST]; MOST] };
+        let still = Step { transition: [[0.0; MAX_STATES]; MAX_STATES], added: [[0.0; MAX_STATES]; MAX_STATES] };
         let step = |&(h, key): &(f64, usize)| {
             let mut step = correlated.map_or(still, |(transition, level)| transition.steps[key].scaled(level));
             if let Some(waves) = &colour.waves {
@@ -275,12 +275,12 @@ impl RecordNoise {
         let steps = distinct.iter().map(step).collect();
         let second_output = colour.waves.filter(|_| first_wave > 0).map(|_| first_wave);
         let states = first_wave + if colour.waves.is_some() { 2 } else { 0 };
-        (System::of_rows(steps, initial, &of_row, &self.variances, second_output), states)
+        (System::from_rows(steps, initial, &of_row, &self.variances, second_output), states)
     }
 }
 
 /// Adds waves to a step over h, as the two states from `first` on.
-fn add_waves(step: &mut Step<MOST>, first: usize, waves: &NarrowBand, h: f64) {
+fn add_waves(step: &mut Step<MAX_STATES>, first: usize, waves: &NarrowBand, h: f64) {
     let sea = waves.step(h);
     let (a, b) = (sea.advance([1.0, 0.0], [0.0; 2]), sea.advance([0.0, 1.0], [0.0; 2]));
     let (c, d) = (sea.advance([0.0; 2], [1.0, 0.0]), sea.advance([0.0; 2], [0.0, 1.0]));

@@ -7,7 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use ship::replay::Recorded;
+use ship::replay::RecordedSignals;
 use ship::{Polyline, Real, Regressor, Replayable};
 use trial::{Channel, Trial};
 
@@ -138,9 +138,9 @@ impl PreparedRecord {
     }
 
     /// Signals that drive the replay of a ship, reduced to those it needs.
-    pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> Recorded<'_> {
+    pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> RecordedSignals<'_> {
         let needed = |channel| ship.needs(channel);
-        Recorded {
+        RecordedSignals {
             rudder: &self.rudder,
             speed: self.speed.as_ref().filter(|_| needed(Regressor::Speed)),
             sway: self.sway.as_ref().filter(|_| needed(Regressor::Sway)),

@@ -1,6 +1,6 @@
 //! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on what is left.
 
-use estimation::residuals::{GappedSeries, evenness, whiteness};
+use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness};
 use trial::Trial;
 
 use crate::comparison::{RecordComparison, ReplayResult};
@@ -132,7 +132,7 @@ pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLa
 
 /// Whether innovations agree with their law: white (Ljung and Box 1978), of constant variance, and without outliers.
 fn are_noise(all: &[Innovations]) -> bool {
-    let even = all.iter().map(|record| evenness(&record.values)).fold(1.0, f64::min);
+    let even = all.iter().map(|record| constant_variance_p_value(&record.values)).fold(1.0, f64::min);
     let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();
     whiteness(&series).p_value.min(even * series.len() as f64) > IMPROBABLE
 }

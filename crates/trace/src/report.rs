@@ -288,7 +288,7 @@ impl TraceParts<'_> {
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
             (true, false) if !is_sea => {
                 let needs = effects.iter().find_map(|form| form.needs());
-                Some(needs.map_or("the records cannot show it", Regressor::lacking))
+                Some(needs.map_or("the records cannot show it", Regressor::missing_message))
             }
             _ => None,
         };
@@ -310,7 +310,7 @@ impl TraceParts<'_> {
             delta_bic: best.and_then(|best| best.delta_bic),
             p_value: best.and_then(|best| best.p_value),
             reason: reason.map(String::from),
-            sides: self.settings.selection.formula(id).map(|formula| formula.sides().as_str().into()),
+            sides: self.settings.selection.formula(id).map(|formula| formula.mirror_symmetry().as_str().into()),
             forms,
         }
     }

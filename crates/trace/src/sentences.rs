@@ -25,7 +25,7 @@ pub fn file_of(trial: &Trial) -> String {
     }
 }
 
-/// A number with three significant digits.
+/// Number with three significant digits.
 fn short(value: f64) -> String {
     let digits = match value.abs() {
         size if size >= 100.0 => 0,
@@ -99,8 +99,8 @@ impl Headline<'_> {
                  first-order response is {base}°."
             ),
             (Verdict::Disturbed, _) => format!(
-                "No effect is named, but the ship was disturbed: {} of the heading error of {base}°. Weather does this; \
-                 so does an effect of a shape that was not searched for.",
+                "No effect is named, but the ship was disturbed: {} of the heading error of {base}°. Weather does \
+                 this; so does an effect of a shape that was not searched for.",
                 self.moment()
             ),
             (Verdict::Located, true) => format!("The missing yaw moment depends on {}. {errors}", self.shapes()),

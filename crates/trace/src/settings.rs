@@ -81,10 +81,10 @@ impl Settings {
 /// Error of a trace.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TraceError {
-    /// A setting is out of its range.
+    /// Setting out of its range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The base cannot be fitted.
+    /// Base that cannot be fitted.
     #[error(transparent)]
     Base(#[from] IdentifyError),
     /// A requested effect is no candidate for these records.
@@ -95,7 +95,7 @@ pub enum TraceError {
         /// Reason.
         reason: &'static str,
     },
-    /// A record cannot be replayed.
+    /// Record whose replay is not finite.
     #[error("{trial}: the replay of the model diverges; check units and signs of its rudder and heading")]
     Replay {
         /// Name of the trial.

@@ -42,7 +42,7 @@ pub fn signature(
     let all = rms(&rows);
     let total = all * all * rows.len() as f64;
     let length = (rows.len() / PARTS).max(1);
-    // Σ e² up to every row, so that no window is added up anew.
+    // Cumulative Σ e², so that a window is a difference of two sums.
     let mut sums = vec![0.0];
     sums.extend(rows.iter().scan(0.0, |sum, &row| {
         *sum += residual[row].powi(2);
@@ -74,7 +74,7 @@ pub fn signature(
 mod tests {
     use super::*;
 
-    /// Also in a record so long that no window could be added up anew for every row.
+    /// Also in a record too long to sum every window separately.
     #[test]
     fn the_fullest_part_of_a_long_record_is_found() {
         let rows = 400_000;

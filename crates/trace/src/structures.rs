@@ -7,7 +7,7 @@ mod result;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use estimation::subsets::{Removable, conditional};
+use estimation::subsets::{RemovableTerm, conditional_mean};
 use rayon::prelude::*;
 
 use crate::candidates::{is_delay, is_variant};
@@ -225,7 +225,7 @@ impl StructureSearch<'_> {
 
     /// Visibility of every term: expected squared coefficient over its posterior variance beside all other terms.
     fn visibility(&self, quadratic: &QuadraticPosterior) -> BTreeMap<TermName, f64> {
-        let visibility = |(term, removable): (&Arc<Term>, &Removable)| {
+        let visibility = |(term, removable): (&Arc<Term>, &RemovableTerm)| {
             let expected: Vec<f64> = term
                 .priors
                 .iter()
@@ -249,9 +249,9 @@ impl StructureSearch<'_> {
         initial: &[[f64; 2]],
     ) -> (Structure, Vec<f64>, Vec<[f64; 2]>) {
         let structure = &self.full.fit.structure;
-        let out: Vec<&Removable> =
+        let out: Vec<&RemovableTerm> =
             quadratic.removable.iter().zip(chosen).filter_map(|(term, kept)| (!kept).then_some(term)).collect();
-        let moved = conditional(&quadratic.covariance, &quadratic.mean, &out);
+        let moved = conditional_mean(&quadratic.covariance, &quadratic.mean, &out);
         let mut moved = moved.iter();
         let mut next = || *moved.next().expect("an unknown for every fitted entry and state");
         let value = |(entry, fixed): (ModelParameter, &f64)| match entry.prior.is_fitted() {

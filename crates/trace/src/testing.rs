@@ -8,7 +8,7 @@ use rand_distr::{Distribution, Normal, StandardNormal};
 use ship::angle::from_deg;
 use ship::dynamics::Dynamics;
 use ship::effects::Effect;
-use ship::replay::{Recorded, replay};
+use ship::replay::{RecordedSignals, replay};
 use ship::{Polyline, Response, ResponseModel};
 use trial::{Channel, Columns, Origin, Trial};
 
@@ -71,7 +71,7 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
     let noise = Normal::new(0.0, from_deg(plan.noise_deg)).expect("a standard deviation");
     let mut generator = ChaCha8Rng::seed_from_u64(plan.seed);
     let mut heading = vec![f64::NAN; plan.rows];
-    replay(ship, &Recorded::rudder(&signal), &time, 0.05, &mut state, |row, motion| {
+    replay(ship, &RecordedSignals::rudder(&signal), &time, 0.05, &mut state, |row, motion| {
         if row % plan.every == 0 {
             heading[row] = motion.heading + noise.sample(&mut generator);
         }

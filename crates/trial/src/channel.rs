@@ -104,7 +104,7 @@ impl Unit {
     }
 
     /// Name of the unit in messages.
-    pub fn spoken(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         UNITS[self as usize].2
     }
 
@@ -169,7 +169,7 @@ impl Channel {
     }
 
     /// Name of the quantity in messages.
-    pub fn spoken(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Channel::YawRate => "yaw rate",
             Channel::Rudder => "rudder angle",

@@ -6,7 +6,7 @@ mod north;
 pub(crate) mod readings;
 mod written;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
@@ -97,7 +97,7 @@ fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     let mut keep = vec![true; columns.time.len()];
     wild.iter().for_each(|&row| keep[row] = false);
     columns.retain(&keep);
-    Some(Code::RejectedReadings.warning(format!(
+    Some(WarningCode::RejectedReadings.warning(format!(
         "{} with an impossible rudder angle ({:.0}°) left out, {}; the rudder is interpolated between its neighbours",
         counted(wild.len(), "row"),
         largest.to_degrees(),
@@ -202,7 +202,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     for pair in new.windows(2) {
         draw_line(time, rudder, pair[0], pair[1]);
     }
-    Some(Code::MissingValues.warning(format!(
+    Some(WarningCode::MissingValues.warning(format!(
         "the rudder has a new value in every {} row only; it is interpolated between the new values",
         ordinal(rhythm.every)
     )))
@@ -213,7 +213,7 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
     let rhythm = Rhythm::of(values)?;
     let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
-    if left < crate::record::Trial::FEWEST_ROWS {
+    if left < crate::record::Trial::MIN_ROWS {
         return None;
     }
     for (row, value) in values.iter_mut().enumerate() {
@@ -221,9 +221,9 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
             *value = f64::NAN;
         }
     }
-    let (name, every) = (channel.spoken(), ordinal(rhythm.every));
+    let (name, every) = (channel.label(), ordinal(rhythm.every));
     let text = format!("the {name} has a new value in every {every} row only; repeated values are taken as missing");
-    Some(Code::MissingValues.warning(text))
+    Some(WarningCode::MissingValues.warning(text))
 }
 
 /// `true` where a channel keeps its value over the minimum length of a freeze.
@@ -284,7 +284,7 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     reject(Channel::Heading, time, heading, &rows, rejected);
     rows.into_iter().for_each(|row| heading[row] = f64::NAN);
     let text = || format!("the heading is frozen {}; it is taken as missing there", spans.join(", "));
-    (!spans.is_empty()).then(|| Code::MissingValues.warning(text()))
+    (!spans.is_empty()).then(|| WarningCode::MissingValues.warning(text()))
 }
 
 #[cfg(test)]

@@ -9,15 +9,15 @@ use thiserror::Error;
 use crate::trial_particulars::TrialParticulars;
 
 /// Minimum water depth of a trial, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
-pub const FEWEST_DRAUGHTS: f64 = 4.0;
+pub const MIN_DEPTH_DRAUGHTS: f64 = 4.0;
 /// Maximum wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
-pub const MOST_BEAUFORT: u8 = 5;
+pub const MAX_BEAUFORT: u8 = 5;
 /// Maximum sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
-pub const MOST_SEA_STATE: u8 = 4;
+pub const MAX_SEA_STATE: u8 = 4;
 /// Tolerance of the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
 pub const DRAUGHT_TOLERANCE: f64 = 0.05;
 /// Maximum interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
-pub const LONGEST_INTERVAL: f64 = 20.0;
+pub const MAX_INTERVAL_S: f64 = 20.0;
 
 /// Loading condition at the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -112,16 +112,16 @@ pub enum Shortcoming {
     #[error("{what} is not declared; required: {asked}")]
     Unknown { what: &'static str, asked: &'static str },
     /// The water is too shallow.
-    #[error("the water is {draughts:.1} mean draughts deep; required: more than {FEWEST_DRAUGHTS}")]
+    #[error("the water is {draughts:.1} mean draughts deep; required: more than {MIN_DEPTH_DRAUGHTS}")]
     Depth { draughts: f64 },
     /// The wind is too strong.
-    #[error("the wind is Beaufort {beaufort}; required: at most {MOST_BEAUFORT}")]
+    #[error("the wind is Beaufort {beaufort}; required: at most {MAX_BEAUFORT}")]
     Wind { beaufort: u8 },
     /// The sea is too rough.
-    #[error("the sea state is {state}; required: at most {MOST_SEA_STATE}")]
+    #[error("the sea state is {state}; required: at most {MAX_SEA_STATE}")]
     Sea { state: u8 },
     /// Readings are too far apart: the median time between rows.
-    #[error("readings are {seconds:.0} s apart; required: at most {LONGEST_INTERVAL} s")]
+    #[error("readings are {seconds:.0} s apart; required: at most {MAX_INTERVAL_S} s")]
     Interval { seconds: f64 },
     /// The ship was not at full load; her draught as a share of the draught at full load, where both are declared.
     #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]
@@ -234,16 +234,16 @@ impl Conditions {
         let unknown = |what, asked| Some(Shortcoming::Unknown { what, asked });
         let depth = match self.depth_in_draughts() {
             None => unknown("the water depth in draughts", "more than 4 mean draughts"),
-            Some(draughts) => (draughts <= FEWEST_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
+            Some(draughts) => (draughts <= MIN_DEPTH_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
         };
         let calm = self.weather.map(|_| 0);
         let wind = match self.wind_beaufort.or(calm) {
             None => unknown("the wind", "at most Beaufort 5"),
-            Some(beaufort) => (beaufort > MOST_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
+            Some(beaufort) => (beaufort > MAX_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
         };
         let sea = match self.sea_state.or(calm) {
             None => unknown("the sea state", "at most sea state 4"),
-            Some(state) => (state > MOST_SEA_STATE).then_some(Shortcoming::Sea { state }),
+            Some(state) => (state > MAX_SEA_STATE).then_some(Shortcoming::Sea { state }),
         };
         let draught = self.draught_share();
         let load = match (self.loading(), draught) {

@@ -13,7 +13,7 @@ pub struct Kind {
     /// Name in messages, with its article.
     pub name: &'static str,
     /// Maximum size, bytes.
-    pub largest: u64,
+    pub max_bytes: u64,
 }
 
 /// Error of opening or reading a file, without the name of the file.
@@ -32,7 +32,7 @@ pub enum FileError {
     /// The file is larger than its kind allows.
     #[error(
         "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
-        size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.largest
+        size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.max_bytes
     )]
     TooLarge { kind: Kind, size: Option<u64> },
     /// Bytes that are not text.
@@ -65,7 +65,7 @@ pub struct Limited<'a> {
 
 impl<'a> Limited<'a> {
     pub(crate) fn new(file: Box<dyn Read + 'a>, kind: Kind, size: Option<u64>) -> Self {
-        Self { file, kind, size, left: kind.largest }
+        Self { file, kind, size, left: kind.max_bytes }
     }
 }
 
@@ -85,7 +85,7 @@ impl Read for Limited<'_> {
 pub const STDIN: &str = "-";
 
 /// Path of a file for names and messages; `stdin` for standard input.
-pub fn called(path: &Path) -> &Path {
+pub fn display_path(path: &Path) -> &Path {
     if path == Path::new(STDIN) { Path::new("stdin") } else { path }
 }
 
@@ -104,7 +104,7 @@ pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
         kind if is_pipe(kind) => None,
         _ => return Err(FileError::NoFile),
     };
-    if size.is_some_and(|size| size > kind.largest) {
+    if size.is_some_and(|size| size > kind.max_bytes) {
         return Err(FileError::TooLarge { kind, size });
     }
     Ok(Limited::new(Box::new(File::open(path)?), kind, size))
@@ -135,7 +135,7 @@ pub fn read_text(path: &Path, kind: Kind) -> Result<String, FileError> {
 mod tests {
     use super::*;
 
-    const SMALL: Kind = Kind { name: "a note", largest: 8 };
+    const SMALL: Kind = Kind { name: "a note", max_bytes: 8 };
 
     #[test]
     fn a_file_is_read_up_to_its_limit() {

@@ -13,15 +13,15 @@ use ship::angle::to_deg;
 use crate::zigzag::{Pair, ZigZag};
 
 /// Minimum length of a ship under the criteria, m.
-pub const SHORTEST_M: f64 = 100.0;
+pub const MIN_LENGTH_M: f64 = 100.0;
 /// Maximum advance of a turning circle, ship lengths.
-pub const ADVANCE_LENGTHS: f64 = 4.5;
+pub const MAX_ADVANCE_LENGTHS: f64 = 4.5;
 /// Maximum tactical diameter of a turning circle, ship lengths.
-pub const TACTICAL_DIAMETER_LENGTHS: f64 = 5.0;
+pub const MAX_TACTICAL_DIAMETER_LENGTHS: f64 = 5.0;
 /// Maximum distance for a change of heading by 10 degrees with 10 degrees of rudder, ship lengths.
-pub const INITIAL_TURNING_LENGTHS: f64 = 2.5;
+pub const MAX_INITIAL_TURNING_LENGTHS: f64 = 2.5;
 /// Maximum first overshoot of the 20/20 zig-zag, degrees.
-pub const FIRST_OVERSHOOT_20_20_DEG: f64 = 25.0;
+pub const MAX_FIRST_OVERSHOOT_20_20_DEG: f64 = 25.0;
 
 /// Maximum first overshoot of the 10/10 zig-zag, degrees.
 ///
@@ -48,7 +48,7 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
 
 /// Caution for a ship shorter than the criteria cover; `None` for a longer ship.
 pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
-    (length < SHORTEST_M).then(|| {
+    (length < MIN_LENGTH_M).then(|| {
         format!(
             "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length); the limits \
              of the 10/10 zig-zag depend on L/V and are those of a ship of {length:.2} m at {speed:.2} m/s; for the \
@@ -123,8 +123,8 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     vec![
         criterion("10/10 first overshoot", overshoot(10.0, 1), first, Unit::Degrees),
         criterion("10/10 second overshoot", overshoot(10.0, 2), second, Unit::Degrees),
-        criterion("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
-        criterion("initial turning", initial_turning, INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
+        criterion("20/20 first overshoot", overshoot(20.0, 1), MAX_FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
+        criterion("initial turning", initial_turning, MAX_INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
     ]
 }
 

@@ -243,7 +243,7 @@ impl Manoeuvre {
     }
 
     /// Maximum number of executes.
-    pub fn most_executes(&self) -> usize {
+    pub fn max_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
             _ => self.steps().filter(|step| step.order.is_some()).count(),
@@ -334,20 +334,20 @@ pub fn whole_deg(angle: f64) -> f64 {
     "`{0}` is not a manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
      pull-out:RUDDER, spiral:RUDDER or williamson, angles in degrees, negative for port"
 )]
-pub struct NoManoeuvre(pub String);
+pub struct ManoeuvreParseError(pub String);
 
 /// Reads the notation of the command line. The manoeuvre has no end, and its times are 0.
 impl FromStr for Manoeuvre {
-    type Err = NoManoeuvre;
+    type Err = ManoeuvreParseError;
 
-    fn from_str(text: &str) -> Result<Self, NoManoeuvre> {
-        let refused = || NoManoeuvre(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, ManoeuvreParseError> {
+        let refused = || ManoeuvreParseError(text.to_owned());
         let (name, angles) = text.trim().split_once([':', ' ']).unwrap_or((text.trim(), ""));
         let (rudder, heading) = match angles.split_once('/') {
             Some((rudder, heading)) if name == "zig-zag" => (rudder, Some(heading)),
             _ => (angles, None),
         };
-        let angle = |text: &str| -> Result<(f64, Side), NoManoeuvre> {
+        let angle = |text: &str| -> Result<(f64, Side), ManoeuvreParseError> {
             let value: f64 = text.trim().parse().map_err(|_| refused())?;
             if !(value != 0.0 && value.abs() <= 60.0) {
                 return Err(refused());
@@ -374,12 +374,12 @@ impl FromStr for Manoeuvre {
 }
 
 /// Writes a manoeuvre as its [`Display`](fmt::Display) text: for `serialize_with`.
-pub fn to_words<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
+pub fn serialize_text<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(manoeuvre)
 }
 
 /// Reads a manoeuvre from its [`Display`](fmt::Display) text: for `deserialize_with`.
-pub fn from_words<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
+pub fn deserialize_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
     String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
 }
 

@@ -1,6 +1,6 @@
 //! Noise parameters of a record: compass, gyro, rudder and random yaw moment.
 
-pub use document::Moment;
+pub use document::MomentKind;
 
 /// Noise parameters of a record, in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +12,7 @@ pub struct NoiseModel {
     /// Standard deviation of the white gyro error, rad/s; used where a record has a yaw rate.
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
-    pub moment: Moment,
+    pub moment: MomentKind,
     /// Size q of the moment as yaw acceleration: (rad/s²)√s for white noise, the stationary standard deviation in rad/s²
     /// for an Ornstein–Uhlenbeck process, (rad/s²)/√s for a random walk.
     pub moment_level: f64,
@@ -29,7 +29,7 @@ impl NoiseModel {
             heading_sd,
             heading_correlation: None,
             yaw_rate_sd: None,
-            moment: Moment::None,
+            moment: MomentKind::None,
             moment_level: 0.0,
             moment_correlation: f64::INFINITY,
             rudder_sd: 0.0,

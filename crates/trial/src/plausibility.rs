@@ -12,7 +12,7 @@ pub(crate) mod readings;
 pub(crate) mod regression;
 mod rudder;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 use thiserror::Error;
@@ -194,7 +194,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     }
     if rudder_deg < MIN_RANGE_DEG {
         let text = format!("the rudder stays at {largest_deg:.2}°; this record alone does not show the response to it");
-        return Ok(Some(Code::RudderAtRest.warning(text)));
+        return Ok(Some(WarningCode::RudderAtRest.warning(text)));
     }
     let ratio = heading_deg / rudder_deg;
     // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to
@@ -203,7 +203,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
         if heading_deg > 1.0 && ratio > 20.0 {
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
         }
-        return Ok(Some(Code::AngleUnit.warning(format!(
+        return Ok(Some(WarningCode::AngleUnit.warning(format!(
             "the rudder never exceeds {largest_deg:.3}°; if the angles are in radians, name the columns rudder_rad and \
              heading_rad"
         ))));
@@ -223,7 +223,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
         if reversals <= MAX_REVERSALS {
             return Err(in_radians);
         }
-        return Ok(Some(Code::AngleUnit.warning(in_radians.to_string())));
+        return Ok(Some(WarningCode::AngleUnit.warning(in_radians.to_string())));
     }
     Ok(None)
 }
@@ -232,7 +232,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
 fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
     for (channel, values) in [(Channel::Heading, trial.heading()), (Channel::Rudder, trial.rudder())] {
         if let Some(apart) = alternation(trial.time(), values) {
-            return Err(Implausible::TwoInputs { channel: channel.spoken(), apart_deg: to_deg(apart) });
+            return Err(Implausible::TwoInputs { channel: channel.label(), apart_deg: to_deg(apart) });
         }
     }
     Ok(())
@@ -247,7 +247,7 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warn
     if slope.share < 0.9 {
         let percent = 100.0 * slope.share;
         let text = format!("the yaw rate explains only {percent:.0} % of the change of heading; check its column");
-        return Ok((slope.share < 0.5).then(|| Code::YawRate.warning(text)));
+        return Ok((slope.share < 0.5).then(|| WarningCode::YawRate.warning(text)));
     }
     if (40.0..=75.0).contains(&ratio.abs()) || (40.0..=75.0).contains(&ratio.abs().recip()) {
         return Err(Implausible::YawRateUnit { ratio });
@@ -258,7 +258,7 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warn
         return Err(Implausible::YawRateSign { ratio, culprit });
     }
     Ok((!(0.8..=1.25).contains(&ratio)).then(|| {
-        Code::YawRate.warning(format!(
+        WarningCode::YawRate.warning(format!(
             "the heading changes {ratio:.2} times as much as the integral of the yaw rate; check the calibration of both"
         ))
     }))
@@ -269,7 +269,7 @@ fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<W
     let moved = range_deg(trial.rudder()) >= MIN_RUDDER_RANGE_DEG && range_deg(trial.heading()) >= MIN_RESPONSE_DEG;
     let Some(slope) = response.filter(|slope| moved && slope.value < 0.0) else { return Ok(None) };
     let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
-    let warning = |flipped: Implausible| Some(Code::RudderSign.warning(flipped.to_string()));
+    let warning = |flipped: Implausible| Some(WarningCode::RudderSign.warning(flipped.to_string()));
     if heading_deg > MAX_SWING_DEG {
         // A circle is a single movement of the rudder: enough for a warning, not for an error.
         return Ok(warning(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
@@ -289,7 +289,7 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
     }
     let rate_deg_s = to_deg(mean_rate(trial.time(), trial.heading()));
     (!(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s)).then(|| {
-        Code::TimeUnit.warning(format!(
+        WarningCode::TimeUnit.warning(format!(
             "the ship turns at {rate_deg_s:.2e}°/s on average, expected {} to {}°/s for a ship or model in a manoeuvre: \
              check the unit of the time (t_s, t_ms, t_min)",
             MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
@@ -317,7 +317,7 @@ fn missing_headings(trial: &Trial) -> Option<Warning> {
     }
     let (begin, gap) = longest;
     let text = || format!("{} missing; the longest gap, {gap:.1} s, begins at {begin:.1} s", counted(count, "heading"));
-    (count > 0).then(|| Code::MissingValues.warning(text()))
+    (count > 0).then(|| WarningCode::MissingValues.warning(text()))
 }
 
 /// Warning of gaps in time that are long against the sampling period.
@@ -339,7 +339,7 @@ fn gaps(trial: &Trial) -> Option<Warning> {
             0 => String::new(),
             _ => format!("; the rudder moved in {moved} of them at an unknown time, which makes K and T wrong"),
         };
-        Code::Gap.warning(format!(
+        WarningCode::Gap.warning(format!(
             "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s{under_way}",
             if count == 1 { "gap" } else { "gaps" }
         ))

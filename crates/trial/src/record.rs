@@ -12,7 +12,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{Conditions, DeclaredWeather, LONGEST_INTERVAL, Shortcoming};
+use crate::conditions::{Conditions, DeclaredWeather, MAX_INTERVAL_S, Shortcoming};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
@@ -146,19 +146,19 @@ fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
         }
         SignalError::Point { index: row, before, time, .. } => TrialError::Time { row, before, time },
         SignalError::Empty | SignalError::Lengths { .. } => {
-            TrialError::TooShort { needed: Trial::FEWEST_ROWS, found: rows }
+            TrialError::TooShort { needed: Trial::MIN_ROWS, found: rows }
         }
     })
 }
 
 impl Trial {
     /// Minimum number of rows with a heading.
-    pub const FEWEST_ROWS: usize = 8;
+    pub const MIN_ROWS: usize = 8;
 
     /// Checks the columns and makes the record.
     ///
     /// Fails when the rudder, or both heading and yaw rate, are absent; when columns differ in length; when time does
-    /// not increase; or when fewer than [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows hold a heading.
+    /// not increase; or when fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows hold a heading.
     pub fn new(name: impl Into<String>, origin: Origin, columns: Columns) -> Result<Self, TrialError> {
         let Columns { time, mut channels, unknown } = columns;
         for (&channel, values) in &channels {
@@ -174,8 +174,8 @@ impl Trial {
             channels.insert(Channel::Heading, integrate(rudder.rows.times(), rate));
         }
         let headings = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
-        if headings < Self::FEWEST_ROWS {
-            return Err(TrialError::TooShort { needed: Self::FEWEST_ROWS, found: headings });
+        if headings < Self::MIN_ROWS {
+            return Err(TrialError::TooShort { needed: Self::MIN_ROWS, found: headings });
         }
         Ok(Self {
             name: name.into(),
@@ -231,7 +231,7 @@ impl Trial {
         self.time().len()
     }
 
-    /// Always `false`: a record has at least [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows.
+    /// Always `false`: a record has at least [`MIN_ROWS`](Self::MIN_ROWS) rows.
     pub fn is_empty(&self) -> bool {
         self.time().is_empty()
     }
@@ -336,7 +336,7 @@ impl Trial {
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
         let mut shortcomings = self.conditions.shortcomings();
         let seconds = self.sampling_period();
-        shortcomings.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
+        shortcomings.extend((seconds > MAX_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
         shortcomings
     }
 

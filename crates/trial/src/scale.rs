@@ -34,7 +34,7 @@ pub struct Scales {
     /// Length and speed of the first record of every length.
     pub particulars: Vec<Particulars>,
     /// Index of the scale of every record.
-    pub of: Vec<usize>,
+    pub indices: Vec<usize>,
 }
 
 impl Scales {
@@ -43,9 +43,9 @@ impl Scales {
     /// Fails where records differ in scale and a record declares none.
     pub fn among<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
         let mut particulars: Vec<Particulars> = Vec::new();
-        let mut of = Vec::new();
+        let mut indices = Vec::new();
         for declared in trials.clone().map(Trial::particulars) {
-            of.push(declared.map(|ship| {
+            indices.push(declared.map(|ship| {
                 let is_scale =
                     |first: &Particulars| (ship.length - first.length).abs() <= LENGTH_TOLERANCE * first.length.abs();
                 particulars.iter().position(is_scale).unwrap_or_else(|| {
@@ -58,7 +58,7 @@ impl Scales {
         if scales < 2 {
             return Ok(None);
         }
-        for (trial, scale) in trials.clone().zip(&of) {
+        for (trial, scale) in trials.clone().zip(&indices) {
             let record = || trial.name().to_owned();
             match trial.particulars() {
                 Some(Particulars { length, speed }) if !(length > 0.0 && speed > 0.0) => {
@@ -68,18 +68,19 @@ impl Scales {
                 _ => {}
             }
         }
-        Ok(Some(Self { particulars, of: of.into_iter().flatten().collect() }))
+        Ok(Some(Self { particulars, indices: indices.into_iter().flatten().collect() }))
     }
 
     /// Records converted to the scale of the first, each from its declared length and speed.
-    pub fn bring_together(&self, trials: Vec<Trial>) -> Vec<Trial> {
+    pub fn to_first_scale(&self, trials: Vec<Trial>) -> Vec<Trial> {
         let scaled = |trial: Trial| trial.scaled_to(self.particulars[0]).unwrap_or(trial);
         trials.into_iter().map(scaled).collect()
     }
 
     /// Indices of the first `count` records, grouped by scale.
     pub fn groups(&self, count: usize) -> Vec<(Particulars, Vec<usize>)> {
-        let records = |scale: usize| (0..count.min(self.of.len())).filter(|&record| self.of[record] == scale).collect();
+        let records =
+            |scale: usize| (0..count.min(self.indices.len())).filter(|&record| self.indices[record] == scale).collect();
         let all = self.particulars.iter().enumerate().map(|(scale, particulars)| (*particulars, records(scale)));
         all.filter(|(_, records): &(_, Vec<usize>)| !records.is_empty()).collect()
     }
@@ -149,11 +150,11 @@ mod tests {
         assert_eq!(Scales::among([&a, &c].into_iter()), Ok(None));
         assert_eq!(Scales::among([&a, &unknown].into_iter()), Ok(None));
         let scales = Scales::among([&a, &b, &c].into_iter()).expect("declared").expect("two");
-        assert_eq!((scales.of.as_slice(), scales.particulars.len()), ([0, 1, 0].as_slice(), 2));
+        assert_eq!((scales.indices.as_slice(), scales.particulars.len()), ([0, 1, 0].as_slice(), 2));
         let groups: Vec<Vec<usize>> = scales.groups(3).into_iter().map(|(_, records)| records).collect();
         assert_eq!(groups, [vec![0, 2], vec![1]]);
         assert_eq!(scales.groups(1).len(), 1);
-        let together = scales.bring_together(vec![a.clone(), b.clone(), c]);
+        let together = scales.to_first_scale(vec![a.clone(), b.clone(), c]);
         assert!((together[1].duration() / b.duration() - 7.0 / 1.18 / (320.0 / 7.97)).abs() < 1e-12);
         assert!((together[2].duration() / a.duration() - 7.0 / 1.18 / (7.05 / 0.9)).abs() < 1e-12);
         let error = Scales::among([&a, &b, &unknown].into_iter()).expect_err("no scale").to_string();

@@ -24,7 +24,7 @@ pub use crate::sidecar_keys::{Key, keys, schema};
 use crate::wording::shortened;
 
 /// Kind of file of a sidecar; the longest in use has a hundred lines.
-pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
+pub const SIDECAR: Kind = Kind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,7 @@ impl Sidecar {
     }
 
     /// Path of the sidecar of a table, if the file exists.
-    pub fn found_beside(table: &Path) -> Option<PathBuf> {
+    pub fn existing_beside(table: &Path) -> Option<PathBuf> {
         Some(Self::beside(table)).filter(|beside| beside.is_file())
     }
 
@@ -79,10 +79,10 @@ impl Sidecar {
     /// the file beside the table.
     pub fn describing(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
         let given = given.and_then(|given| match given.is_dir() {
-            true => Self::found_beside(&given.join(table.file_name()?)),
+            true => Self::existing_beside(&given.join(table.file_name()?)),
             false => Some(given.to_path_buf()),
         });
-        given.or_else(|| Self::found_beside(table))
+        given.or_else(|| Self::existing_beside(table))
     }
 
     /// Reads and checks a sidecar.

@@ -12,7 +12,7 @@ use campaign::rows::{BlockLabel, Damage, RowLayout, decode};
 use campaign::scenario::Scenario;
 use campaign::summary::Tally;
 use identify::{Identifier, registry};
-use ship::effects::{self, Effect, Formula, Now};
+use ship::effects::{self, Effect, Formula, OperatingPoint};
 use ship::{EffectReal, Measured, Tangent};
 use study::screen;
 use study::views::tables;
@@ -247,13 +247,13 @@ fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
     for warning in warnings {
         is_one_message(&warning.text);
     }
-    assert!(trial.len() >= Trial::FEWEST_ROWS);
+    assert!(trial.len() >= Trial::MIN_ROWS);
     assert!(trial.time().iter().all(|time| time.is_finite()), "a time that is not finite");
     assert!(trial.time().is_sorted_by(|a, b| a < b), "time does not increase");
     assert!(trial.rudder().iter().all(|rudder| rudder.is_finite()), "a rudder that is not finite");
     let mut present = trial.channels().flat_map(|(_, values)| values);
     assert!(present.all(|value| !value.is_infinite()), "a value that is infinite");
-    assert!(trial.heading().iter().filter(|heading| heading.is_finite()).count() >= Trial::FEWEST_ROWS);
+    assert!(trial.heading().iter().filter(|heading| heading.is_finite()).count() >= Trial::MIN_ROWS);
 }
 
 /// An effect as a line of text; one that is read is worked out at all sorts of instants.
@@ -287,9 +287,9 @@ fn worked_out(formula: &Formula) {
 
 fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, measured: &Measured) -> R {
     let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
-    let now = Now { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
+    let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
     let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();
-    R::acts(formula).yaw_acceleration(&values, &[], &now)
+    R::action(formula).yaw_acceleration(&values, &[], &now)
 }
 
 /// Every method gives numbers or a reason.

@@ -7,7 +7,7 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::State;
 use simulate::{Simulation, StreamKey};
-use trial::noise_model::{Moment, NoiseModel};
+use trial::noise_model::{MomentKind, NoiseModel};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
@@ -74,12 +74,12 @@ pub fn section() -> Section {
     let compass = NoiseModel::compass(from_deg(0.1));
     let of =
         |moment, moment_level, moment_correlation| NoiseModel { moment, moment_level, moment_correlation, ..compass };
-    let gusts = of(Moment::OrnsteinUhlenbeck, 3.490658504e-4, 12.0);
+    let gusts = of(MomentKind::OrnsteinUhlenbeck, 3.490658504e-4, 12.0);
     for (noise, published, decimals) in [
         (compass, -84_499.009_4, 4),
-        (of(Moment::White, 3.490658504e-4, 0.0), -1290.435376891, 6),
+        (of(MomentKind::White, 3.490658504e-4, 0.0), -1290.435376891, 6),
         (gusts, -45.967541814, 7),
-        (of(Moment::Walk, 8.726646260e-5, f64::INFINITY), -365.883210199, 6),
+        (of(MomentKind::Walk, 8.726646260e-5, f64::INFINITY), -365.883210199, 6),
     ] {
         let kind = noise.moment;
         checks.push(Check::new(
@@ -98,7 +98,7 @@ pub fn section() -> Section {
         simulation.disturbances.random_walk = from_deg(walk_deg);
         simulation.sensors.rudder_noise = from_deg(rudder_deg);
         let moment_level = truth.K_over_T * from_deg(walk_deg);
-        let moment = if walk_deg > 0.0 { Moment::Walk } else { Moment::None };
+        let moment = if walk_deg > 0.0 { MomentKind::Walk } else { MomentKind::None };
         let noise = NoiseModel { moment, moment_level, rudder_sd: from_deg(rudder_deg), ..compass };
         let sample = sample(&simulation, &truth, &noise);
         for (i, symbol) in ["K", "T"].into_iter().enumerate() {

@@ -44,10 +44,10 @@ pub fn limits() -> Section {
         push(format!("limit of the first overshoot of a 10/10 at L/V = {seconds} s"), first, first_ours, "deg");
         push(format!("limit of the second overshoot of a 10/10 at L/V = {seconds} s"), second, second_ours, "deg");
     }
-    push("limit of the first overshoot of a 20/20".into(), 25.0, imo::FIRST_OVERSHOOT_20_20_DEG, "deg");
-    push("limit of the initial turning".into(), 2.5, imo::INITIAL_TURNING_LENGTHS, "L");
-    push("limit of the advance".into(), 4.5, imo::ADVANCE_LENGTHS, "L");
-    push("limit of the tactical diameter".into(), 5.0, imo::TACTICAL_DIAMETER_LENGTHS, "L");
+    push("limit of the first overshoot of a 20/20".into(), 25.0, imo::MAX_FIRST_OVERSHOOT_20_20_DEG, "deg");
+    push("limit of the initial turning".into(), 2.5, imo::MAX_INITIAL_TURNING_LENGTHS, "L");
+    push("limit of the advance".into(), 4.5, imo::MAX_ADVANCE_LENGTHS, "L");
+    push("limit of the tactical diameter".into(), 5.0, imo::MAX_TACTICAL_DIAMETER_LENGTHS, "L");
     Section {
         title: "Limits of the IMO criteria",
         method: "Limits as `study fit` and `study predict` use them, at the ends and in the middle of the range of L/V.",

@@ -126,7 +126,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let mut parameters = vec![1.0 / line.time, 0.1 / line.time, 0.0];
     parameters.extend(&line.truth);
     let ship: Response = ResponseModel::new(vec![Arc::clone(&line.effect)]).with(parameters);
-    let mut simulation = zig_zag(Vessel::response(ship), 10.0, 10.0, from_deg(2.5), 270.0);
+    let mut simulation = zig_zag(Vessel::from_response(ship), 10.0, 10.0, from_deg(2.5), 270.0);
     simulation.sensors.heading_noise = from_deg(NOISE);
     let trial = simulation.run(&StreamKey { seed: 52, cell: 0, replicate: 0 }).expect("a plain zig-zag").trial;
     let method = output_error::Settings::default().build().expect("default settings are valid");

@@ -106,9 +106,9 @@ impl Anchor {
         let ship = registered(self.ship);
         let vessel = if way == Way::Stepped && self.ship == "kvlcc2-l7" {
             let parameters = ship::vessel::mmg::Parameters { d: OTHER_DRAUGHT, ..kvlcc2::MODEL_L7 };
-            Vessel::hull(Arc::new(Mmg::at_speed(parameters, 1.179).expect("the set balances")))
+            Vessel::from_dynamics(Arc::new(Mmg::at_speed(parameters, 1.179).expect("the set balances")))
         } else {
-            Vessel::ship(&ship)
+            Vessel::from_ship(&ship)
         };
         let mut simulation = zig_zag(vessel, self.rudder_deg, self.heading_deg, from_deg(self.rate_deg_s), duration);
         simulation.manoeuvre = simulation.manoeuvre.to(self.first);

@@ -170,7 +170,7 @@ impl Naming {
     pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
 
     /// Label in tables.
-    pub fn words(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Self::Right => "right",
             Self::Alias => "among aliases",

@@ -65,8 +65,8 @@ impl BenchDocument {
     pub fn of(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
         let facts = |(scenario, _): &(Scenario, Vec<StudyRow>)| StudyFacts {
             name: scenario.name.clone(),
-            question: scenario.words.question.clone(),
-            analysis: scenario.words.analysis.clone(),
+            question: scenario.prose.question.clone(),
+            analysis: scenario.prose.analysis.clone(),
             design_sha256: scenario.design_sha256.clone(),
             seed: scenario.seed,
         };

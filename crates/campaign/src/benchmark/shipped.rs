@@ -36,7 +36,7 @@ const SIDECARS: &[(&str, &str)] = files![
 pub fn unpack(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let folder = ResultFolder::make(folder)?;
     for (name, files) in FOLDERS.iter().zip([SCENARIOS, SIDECARS]) {
-        let folder = folder.inside(name)?;
+        let folder = folder.subfolder(name)?;
         files.iter().try_for_each(|(name, text)| folder.write(name, text))?;
     }
     Ok(SCENARIOS.iter().map(|(name, _)| folder.path().join(FOLDERS[0]).join(name)).collect())

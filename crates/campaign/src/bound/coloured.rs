@@ -80,7 +80,7 @@ mod tests {
     fn zig_zag(truth: FirstOrder) -> Trial {
         let angle = from_deg(10.0);
         let manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(200.0);
-        let mut simulation = Simulation::new(Vessel::first_order(truth), manoeuvre);
+        let mut simulation = Simulation::new(Vessel::from_first_order(truth), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.5));
         simulation.sensors.drop_out.probability = 0.2;
         simulation.run(&StreamKey::default()).expect("a zig-zag").trial

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use identify::{Answer, Estimate, IdentifyError};
+use identify::{Estimate, IdentifyError, OutsideFit};
 
 /// Cell and replicate of a trial.
 pub type TrialNumber = (u64, u64);
@@ -13,13 +13,13 @@ pub const ID: &str = "external";
 /// Answers by trial. A trial without an answer counts as failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
-    answers: HashMap<TrialNumber, Result<Answer, String>>,
+    answers: HashMap<TrialNumber, Result<OutsideFit, String>>,
     sha256: String,
 }
 
 impl Answers {
     /// Answers, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
-    pub fn new(answers: HashMap<TrialNumber, Result<Answer, String>>, sha256: String) -> Self {
+    pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }
 

@@ -156,7 +156,7 @@ impl DesignCell {
     /// Specification of the trial of `key`.
     ///
     /// Fails for measured records, and for drawn values that specify no trial, which needs an unbounded distribution.
-    pub fn specimen(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
+    pub fn trial_spec(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
         let TrialSource::Simulated { specification, drawn } = &self.source else {
             return Err(Refusal("the trials are measured records, and nothing is simulated".to_owned()));
         };

@@ -18,11 +18,11 @@ use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::prose::{Presentation, Prose, Published};
 use crate::scenario::records::{self, RecordStudyWire};
 use crate::scenario::stop::StopRule;
 use crate::scenario::sweep::{self, SweepAxis};
 use crate::scenario::wire::ScenarioWire;
-use crate::scenario::words::{Presentation, Published, Words};
 use crate::scenario::{checks, locate, name, reader, resolve, resolved};
 
 /// Key of a study of measured records, in place of ship, manoeuvre and instruments.
@@ -43,7 +43,7 @@ pub struct Scenario {
     /// Values of other authors.
     pub published: Published,
     /// Its prose and presentation.
-    pub words: Words,
+    pub prose: Prose,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
     /// Stopping rule of the cells.
@@ -130,13 +130,13 @@ impl Scenario {
             return Self::of_records(document, name, folder);
         }
         let wire: ScenarioWire = reader::document(document)?;
-        let words = Words {
+        let prose = Prose {
             question: wire.question.clone(),
             analysis: wire.analysis.clone(),
             finding: wire.finding.clone(),
             output: wire.output.clone(),
         };
-        words.check()?;
+        prose.check()?;
         // The document must be valid without sweeps and draws, which change it but do not complete it.
         resolve::specification(&wire, name, folder)?;
         let methods = methods(&wire.identifier)?;
@@ -151,7 +151,7 @@ impl Scenario {
         let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         wire.published.check()?;
-        let design = Self::of_design(name, words, axes, cells, &methods)?;
+        let design = Self::of_design(name, prose, axes, cells, &methods)?;
         Ok(Self {
             seed: wire.seed,
             replicates: wire.replicates,
@@ -167,8 +167,8 @@ impl Scenario {
     fn of_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         let wire: RecordStudyWire = reader::document(document)?;
         let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
-        let words = Words { question, analysis, finding, output };
-        words.check()?;
+        let prose = Prose { question, analysis, finding, output };
+        prose.check()?;
         let methods = methods(&identifier)?;
         let predictions = predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         let axes = sweep::axes(&sweep)?;
@@ -180,7 +180,7 @@ impl Scenario {
         let replicates = counts.max().unwrap_or(0);
         // Without any record there is no trial, which is reported when the study runs.
         checks::size(replicates.max(1), cells.len(), methods.len())?;
-        let design = Self::of_design(name, words, axes, cells, &methods)?;
+        let design = Self::of_design(name, prose, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
 
@@ -189,14 +189,14 @@ impl Scenario {
     /// Fails where the presentation names cells, axes or methods that do not exist.
     fn of_design(
         name: &str,
-        words: Words,
+        prose: Prose,
         axes: Vec<SweepAxis>,
         cells: Vec<DesignCell>,
         methods: &[Method],
     ) -> Result<Self, KeyFault> {
-        checks::detail(&words.output.detail, &cells)?;
-        checks::marks(&words.output.marks, &axes)?;
-        checks::highlight(&words.output.highlight, methods, &axes, &cells)?;
+        checks::detail(&prose.output.detail, &cells)?;
+        checks::marks(&prose.output.marks, &axes)?;
+        checks::highlight(&prose.output.highlight, methods, &axes, &cells)?;
         Ok(Self {
             name: name.to_owned(),
             seed: 0,
@@ -204,7 +204,7 @@ impl Scenario {
             axes,
             cells,
             published: Published::default(),
-            words,
+            prose,
             draws: Vec::new(),
             stop: None,
             predictions: None,
@@ -276,7 +276,7 @@ impl Scenario {
     }
 
     /// Assumptions that can influence the result, most harmful first, each as a sentence without full stop.
-    pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
+    pub fn influential_defaults(&self) -> Vec<(Assumption, String)> {
         let described = |assumption: Assumption| {
             let cells = self.cells.iter().filter(|cell| cell.assumes(assumption)).count();
             let sentence = assumption.sentence();
@@ -324,7 +324,7 @@ fn folder_of(path: &Path) -> PathBuf {
 }
 
 /// Limits of a scenario, alone or in a manifest; the longest published one has a hundredth of this.
-const SCENARIO: Kind = Kind { name: "a scenario", largest: 1 << 20 };
+const SCENARIO: Kind = Kind { name: "a scenario", max_bytes: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {
     file::read_text(path, SCENARIO).map_err(|error| {

@@ -8,8 +8,8 @@ use crate::scenario::limits;
 use crate::scenario::method::Method;
 use crate::scenario::name::{self, MAX_NAME_BYTES};
 use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
+use crate::scenario::prose::{Highlight, MarkedValue};
 use crate::scenario::sweep::SweepAxis;
-use crate::scenario::words::{Highlight, MarkedValue};
 
 /// Largest number of trials of a study; more is a typing error.
 const MAX_TRIALS: u64 = 1_000_000_000;

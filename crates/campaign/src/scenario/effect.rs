@@ -152,7 +152,7 @@ pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
 
 /// Refuses a formula of a channel that the trials lack, since its moment would be zero.
 fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Result<(), KeyFault> {
-    let Some(channel) = lacking.iter().find(|channel| formula.is_idle_without(**channel)) else { return Ok(()) };
+    let Some(channel) = lacking.iter().find(|channel| formula.is_inactive_without(**channel)) else { return Ok(()) };
     let (signal, advice) = match channel {
         Regressor::Sway => ("sway velocity", "add `[speed-and-sway]`"),
         Regressor::Speed => ("speed", "add `[speed-and-sway]`"),

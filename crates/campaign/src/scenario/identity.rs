@@ -34,7 +34,7 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
                 Value::Table(inner) => tables.push(inner),
                 Value::String(name) if key == "file" => {
                     let record = folder.join(name);
-                    let sidecar = Sidecar::found_beside(&record);
+                    let sidecar = Sidecar::existing_beside(&record);
                     for path in iter::once(record).chain(sidecar) {
                         match file::open(&path, RECORD) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),

@@ -4,7 +4,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | the file as written, and its reader | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`words`] |
+//! | the file as written, and its reader | `wire`, `ship`, `effect`, `number_table`, `reader`, [`part`], [`prose`] |
 //! | the physics that a ship lacks | `physics` |
 //! | faults and their position | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
@@ -33,6 +33,7 @@ pub mod part;
 mod physics;
 pub mod predictions;
 pub mod problem;
+pub mod prose;
 mod reader;
 pub mod records;
 mod resolve;
@@ -43,7 +44,6 @@ mod specification;
 pub mod stop;
 pub mod sweep;
 mod wire;
-pub mod words;
 
 pub use answers::Answers;
 pub use cell::{DesignCell, Refusal, TrialSpecification};
@@ -53,6 +53,6 @@ pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};
 pub use physics::MissingPhysics;
 pub use predictions::Predictions;
 
+pub use prose::{Highlight, MarkedValue, Presentation, Prose, Published};
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
-pub use words::{Highlight, MarkedValue, Presentation, Published, Words};

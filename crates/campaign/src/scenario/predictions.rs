@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use trial::Manoeuvre;
-use trial::manoeuvre::NoManoeuvre;
+use trial::manoeuvre::ManoeuvreParseError;
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 
@@ -71,7 +71,7 @@ impl PredictWire {
                 let problem = format!("`predict.manoeuvres` holds {text:?}");
                 KeyFault::value(key.child("manoeuvres"), problem, expected, "correct or remove this entry")
             };
-            let kind: Manoeuvre = text.parse().map_err(|error: NoManoeuvre| refused(&error.to_string()))?;
+            let kind: Manoeuvre = text.parse().map_err(|error: ManoeuvreParseError| refused(&error.to_string()))?;
             if matches!(kind, Manoeuvre::Spiral { .. }) {
                 return Err(refused("expected a manoeuvre that is steered; a spiral is a curve"));
             }

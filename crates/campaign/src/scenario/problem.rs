@@ -116,8 +116,8 @@ impl KeyFault {
 
 impl From<SpecificationError> for KeyFault {
     fn from(error: SpecificationError) -> Self {
-        let [problem, expected, advice] = error.words();
-        let mark = if error.is_of_name() { AtFault::Name } else { AtFault::Value };
+        let [problem, expected, advice] = error.message_parts();
+        let mark = if error.is_about_key() { AtFault::Name } else { AtFault::Value };
         let key = match error.key {
             "vessel.dead_time" => "effect",
             // No scenario sets these; they matter for some manoeuvres only.

@@ -21,8 +21,8 @@ use crate::scenario::identity;
 use crate::scenario::method::IdentifierWire;
 use crate::scenario::predictions::RecordPredictWire;
 use crate::scenario::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::prose::Presentation;
 use crate::scenario::sweep::AxisWire;
-use crate::scenario::words::Presentation;
 
 /// Environment variable for the folder of records that are not beside the scenario.
 pub const DATA: &str = "KEMPF_DATA";

@@ -19,7 +19,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         scenario: name.to_owned(),
-        gear: wire.steering_gear.of(&ship),
+        gear: wire.steering_gear.with_defaults_of(&ship),
         helmsman: wire.helmsman,
         approach: wire.approach,
         recording: wire.recording,
@@ -67,7 +67,7 @@ fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
 ///
 /// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
 fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
-    let vessel = Vessel::ship(ship);
+    let vessel = Vessel::from_ship(ship);
     let Some(coefficients) = wire.speed_and_sway else { return Ok(vessel) };
     let key = KeyPath::dotted("speed-and-sway");
     let (Model::Response(response), Some(Particulars { length, speed })) = (&ship.model, ship.particulars) else {
@@ -75,7 +75,7 @@ fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
         let advice = "leave the table out, or use yukun, or first-order with `length-m` and `speed-kn`";
         return Err(KeyFault::name(key, format!("speed and sway are added to `{}`", ship.id), expected, advice));
     };
-    if let Some((symbol, value, [low, high])) = coefficients.beyond() {
+    if let Some((symbol, value, [low, high])) = coefficients.first_out_of_bounds() {
         let expected = format!("expected a number from {} to {}", ShortNumber(low), ShortNumber(high));
         return Err(KeyFault::of(key.child(symbol), ShortNumber(value), expected, "change the number"));
     }

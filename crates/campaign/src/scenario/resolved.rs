@@ -17,7 +17,7 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     effect::complete(&mut wire.effect);
     ship::complete(&mut wire.ship);
     let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &[])?;
-    wire.steering_gear = wire.steering_gear.of(&ship);
+    wire.steering_gear = wire.steering_gear.with_defaults_of(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
@@ -165,7 +165,8 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
         let again = scenario(&text);
         for (left, right) in bare.cells.iter().zip(&again.cells) {
             let key = simulate::StreamKey { seed: 3, cell: 0, replicate: 0 };
-            let [left, right] = [left, right].map(|cell| cell.specimen(&key).expect("nothing is drawn").specification);
+            let [left, right] =
+                [left, right].map(|cell| cell.trial_spec(&key).expect("nothing is drawn").specification);
             // A rate that is left out and one that is infinite move the rudder alike; only the first is warned of.
             let same = |simulation: &Simulation| {
                 let mut simulation = simulation.clone();
@@ -180,7 +181,7 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
 
     #[test]
     fn defaults_that_matter_are_told_for_the_cells_that_have_them() {
-        let defaults = |text: &str| scenario(text).defaults_that_matter();
+        let defaults = |text: &str| scenario(text).influential_defaults();
         let bare = defaults(BARE);
         assert_eq!(bare.iter().map(|(assumption, _)| *assumption).collect::<Vec<_>>(), Assumption::ALL);
         assert!(bare[0].1.starts_with("in 1 of 2 cells the rudder moves instantly, because"), "{}", bare[0].1);

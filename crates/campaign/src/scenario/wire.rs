@@ -10,10 +10,10 @@ use crate::scenario::effect::{self, EffectWire};
 use crate::scenario::method::IdentifierWire;
 use crate::scenario::number_table::NamedNumbers;
 use crate::scenario::predictions::PredictWire;
+use crate::scenario::prose::{Presentation, Published};
 use crate::scenario::ship;
 use crate::scenario::stop::StopRule;
 use crate::scenario::sweep::AxisWire;
-use crate::scenario::words::{Presentation, Published};
 
 /// A whole scenario file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

@@ -4,7 +4,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-use super::statistic::{FEWEST, Statistic};
+use super::statistic::{MIN_INTERVAL_VALUES, Statistic};
 use super::sums::BatchSums;
 
 /// Number of resamples: enough for the 2.5 and 97.5 % points to two digits.
@@ -50,7 +50,7 @@ impl Resamples {
     ) -> [Option<Statistic>; N] {
         let whole = batches.iter().copied().sum::<BatchSums>();
         let values = statistics(&whole);
-        if whole.count < FEWEST as f64 || batches.len() > self.batches {
+        if whole.count < MIN_INTERVAL_VALUES as f64 || batches.len() > self.batches {
             return values.map(|value| value.map(|value| Statistic { value, ci95: None }));
         }
         let mut resampled: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));

@@ -4,7 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 use super::bootstrap::{RESAMPLES, SEED};
-use super::statistic::FEWEST;
+use super::statistic::MIN_INTERVAL_VALUES;
 
 /// Values of `compute` on the cases of each resample of clusters.
 pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
@@ -23,7 +23,7 @@ pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) 
 pub fn interval(clusters: usize, mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let end = |p: f64| values[((values.len() - 1) as f64 * p).round() as usize];
-    (clusters as u64 >= FEWEST && !values.is_empty()).then(|| [end(0.025), end(0.975)])
+    (clusters as u64 >= MIN_INTERVAL_VALUES && !values.is_empty()).then(|| [end(0.025), end(0.975)])
 }
 
 fn draw_clusters(clusters: &[Vec<usize>], rng: &mut ChaCha8Rng, cases: &mut Vec<usize>) {

@@ -17,5 +17,5 @@ pub use groups::{distinct, grouped};
 pub use logistic::{SizeTrials, size_of_share};
 pub use moments::Moments;
 pub use sample::{ErrorSample, OrderedSample};
-pub use statistic::{FEWEST, MIN_SUMMARISED, Statistic, Z95, share};
+pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED, Statistic, Z95, share};
 pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::statistic::{FEWEST, Statistic, Z95};
+use super::statistic::{MIN_INTERVAL_VALUES, Statistic, Z95};
 
 /// Largest number of exact values.
 const MAX_EXACT_VALUES: usize = 8192;
@@ -129,8 +129,8 @@ impl OrderedSample {
         let n = self.len() as f64;
         let reach = Z95 * (n * p * (1.0 - p)).sqrt();
         let (low, high) = ((n * p - reach).floor(), (n * p + reach).ceil() - 1.0);
-        let ci95 =
-            (self.len() >= FEWEST && low >= 0.0 && high < n).then(|| [self.at(low as u64), self.at(high as u64)]);
+        let ci95 = (self.len() >= MIN_INTERVAL_VALUES && low >= 0.0 && high < n)
+            .then(|| [self.at(low as u64), self.at(high as u64)]);
         Some(Statistic { value, ci95 })
     }
 

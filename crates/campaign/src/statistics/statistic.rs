@@ -29,7 +29,7 @@ impl Statistic {
 pub const Z95: f64 = 1.959_963_984_540_054;
 
 /// Smallest number of values with an interval: below it no pair of order statistics covers the median with 95 %.
-pub const FEWEST: u64 = 6;
+pub const MIN_INTERVAL_VALUES: u64 = 6;
 
 /// Smallest number of values that are summarised by a median and a range; fewer are shown individually.
 pub const MIN_SUMMARISED: usize = 5;

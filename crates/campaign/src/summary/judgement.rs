@@ -9,10 +9,10 @@ use crate::rows::{LocatedMoment, NamedEffect, TraceAnswer};
 use crate::scenario::MissingPhysics;
 
 /// Tolerance of the time of an effect or of a located moment, s.
-pub const NEAR_S: f64 = 20.0;
+pub const MAX_TIME_ERROR_S: f64 = 20.0;
 
 /// Relative tolerance of a located period.
-pub const NEAR_PERIOD: f64 = 0.15;
+pub const MAX_PERIOD_ERROR: f64 = 0.15;
 
 /// Time-dependent effects, which are no property of the ship.
 const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
@@ -129,7 +129,7 @@ fn is_time_effect(id: &str) -> bool {
 /// `true` if a time, s, is within the tolerance of a change.
 fn is_near(time: f64, physics: &MissingPhysics) -> bool {
     let MissingPhysics::Unlisted { changes_s, .. } = physics else { return false };
-    changes_s.iter().any(|change| (change - time).abs() <= NEAR_S)
+    changes_s.iter().any(|change| (change - time).abs() <= MAX_TIME_ERROR_S)
 }
 
 /// `true` if a located moment has the dependence and the times of the missing physics.
@@ -137,7 +137,8 @@ fn agrees_with(moment: &LocatedMoment, physics: &MissingPhysics) -> bool {
     let MissingPhysics::Unlisted { depends_on, changes_s, period_s } = physics else { return false };
     let is_timed = match period_s {
         Some([from, to]) => {
-            let is_of_ship = |period: f64| (from * (1.0 - NEAR_PERIOD)..=to * (1.0 + NEAR_PERIOD)).contains(&period);
+            let is_of_ship =
+                |period: f64| (from * (1.0 - MAX_PERIOD_ERROR)..=to * (1.0 + MAX_PERIOD_ERROR)).contains(&period);
             let harmonics = if moment.form.contains("harmonics") { 3 } else { 1 };
             let mut periods = moment.form.split(' ').filter_map(|word| word.parse::<f64>().ok());
             let is_near = |period: f64| (1..=harmonics).any(|harmonic| is_of_ship(period / f64::from(harmonic)));

@@ -15,12 +15,12 @@ mod tracing;
 
 pub use blind_spots::{BlindSpot, axis_of_sizes, blind_spots};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
-pub use judgement::{Judgement, NEAR_PERIOD, NEAR_S};
+pub use judgement::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S};
 pub use predictions::{CriterionTally, PredictionSummary};
 pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 pub use records::{RecordSummary, record_summaries};
 pub use tally::{Tally, summarise};
-pub use tracing::{CALIBRATION, CLEAR, CalibrationBin, TraceSummary, effect_ids};
+pub use tracing::{CALIBRATION, CalibrationBin, MIN_CLEAR_MARGIN, TraceSummary, effect_ids};
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@ use super::*;
 use crate::design::CellFacts;
 use crate::design::Design;
 use crate::rows::StudyRow;
-use crate::scenario::{MethodName, Presentation, Words};
+use crate::scenario::{MethodName, Presentation, Prose};
 use crate::statistics::Statistic;
 
 fn design(methods: &[&str], cells: usize) -> Design {
@@ -11,9 +11,9 @@ fn design(methods: &[&str], cells: usize) -> Design {
         axes: vec!["case".into()],
         methods: methods.iter().map(|&label| MethodName { label: label.into(), id: label.into() }).collect(),
         cells: (0..cells).map(cell).collect(),
-        words: Words {
+        prose: Prose {
             output: Presentation { detail: vec!["0".into()], ..Presentation::default() },
-            ..Words::default()
+            ..Prose::default()
         },
         ..Design::default()
     }

@@ -15,7 +15,7 @@ use crate::statistics::{Statistic, share};
 
 /// Margin in log evidence above which the missing effect has to be named; below it a rival explains the trial nearly as
 /// well.
-pub const CLEAR: f64 = 10.0;
+pub const MIN_CLEAR_MARGIN: f64 = 10.0;
 
 /// Counts over the traces of one method in one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -82,7 +82,7 @@ static EFFECT_IDS: LazyLock<BTreeSet<&'static str>> =
     LazyLock::new(|| ship::effects::all().iter().map(|effect| effect.id()).collect());
 
 static WEATHER_IDS: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| {
-    ship::effects::all().iter().filter(|effect| effect.is_of_weather()).map(|effect| effect.id()).collect()
+    ship::effects::all().iter().filter(|effect| effect.is_environmental()).map(|effect| effect.id()).collect()
 });
 
 /// Identifiers of all effects, each once, sorted.
@@ -184,7 +184,7 @@ impl TraceTally {
         summary.wrong += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
         summary.complete += u64::from(complete && !missing.is_empty());
         summary.exact += u64::from(complete && wrong.is_empty());
-        if answer.margin.is_some_and(|margin| margin > CLEAR) {
+        if answer.margin.is_some_and(|margin| margin > MIN_CLEAR_MARGIN) {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }

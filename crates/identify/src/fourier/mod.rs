@@ -28,7 +28,7 @@ pub use curve::FourierFit;
 pub use fundamental::Fundamental;
 pub use profile::MAX_HARMONICS;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
@@ -91,13 +91,13 @@ pub(crate) fn warnings(fits: &[Fitted]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for Fitted { curve, stop, .. } in fits {
         if *stop == StopReason::RangeLimit {
-            warnings.push(Code::AtBound.warning(format!(
+            warnings.push(WarningCode::AtBound.warning(format!(
                 "the best fundamental, {:.5} rad/s, lies at the edge of the search range",
                 curve.fundamental
             )));
         }
         if curve.condition > TRUSTED_CONDITION {
-            warnings.push(Code::IllConditioned.warning(format!(
+            warnings.push(WarningCode::IllConditioned.warning(format!(
                 "the Fourier basis is ill-conditioned (condition number {:.1e}, period of the series {:.0} s): its \
                  coefficients cancel each other and its derivatives are poor near the ends",
                 curve.condition,

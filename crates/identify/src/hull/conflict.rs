@@ -9,10 +9,10 @@
 //! It is exact for a linear model with a given noise law. A hull has neither: read a p of 0.01 as a reason to look.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
-use ship::vessel::prime::is_of_trial;
+use ship::vessel::prime::is_trial_specific;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::expected::ExpectedHull;
+use super::expected::FormPrior;
 
 /// Largest ratio of posterior to prior variance of an informed direction.
 const MAX_RATIO: f64 = 0.9;
@@ -22,7 +22,7 @@ const CONFLICT_P_VALUE: f64 = 0.01;
 
 /// Result of the check of a prior against records.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExpectationCheck {
+pub struct PriorCheck {
     /// χ².
     pub chi_square: f64,
     /// Directions of the check.
@@ -33,7 +33,7 @@ pub struct ExpectationCheck {
     pub moved: Vec<(&'static str, f64)>,
 }
 
-impl ExpectationCheck {
+impl PriorCheck {
     /// `true` if the records contradict the prior.
     pub fn is_conflict(&self) -> bool {
         self.p_value < CONFLICT_P_VALUE
@@ -41,9 +41,9 @@ impl ExpectationCheck {
 
     /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` where
     /// the records add no information.
-    pub(super) fn of(expected: &ExpectedHull, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn of(expected: &FormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
-            (0..values.len()).filter(|&place| !is_of_trial(expected.coefficients[place].key)).collect();
+            (0..values.len()).filter(|&place| !is_trial_specific(expected.coefficients[place].key)).collect();
         let of_ship =
             |matrix: &DMatrix<f64>| DMatrix::from_fn(places.len(), places.len(), |i, j| matrix[(places[i], places[j])]);
         let before = of_ship(&Cholesky::new(expected.precision.clone())?.inverse());

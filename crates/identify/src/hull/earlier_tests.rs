@@ -11,7 +11,7 @@ use trial::{Channel, Columns, Trial};
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
 use super::track::HullTrack;
-use super::{EarlierHull, ExpectedHull, HullEstimate, after_earlier, fit};
+use super::{EarlierHull, FormPrior, HullEstimate, combined, fit};
 
 const SHIP: HullParticulars = HullParticulars {
     length: LENGTH,
@@ -30,7 +30,7 @@ const SHIP: HullParticulars = HullParticulars {
 /// A hull whose every coefficient is a deviation above what was expected, known to a tenth of the deviation in every
 /// direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
-    let form = HullForm::of_ship(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
+    let form = HullForm::candidates(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
     let priors = form.coefficients();
     let values = DVector::from_iterator(priors.len(), priors.iter().map(|prior| prior.mean + prior.sd));
     let covariance = form.covariance() * 0.01;
@@ -40,7 +40,7 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
 /// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
 /// deviations of the latter.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
-    let expected = ExpectedHull::of_ship(Some(ship), all);
+    let expected = FormPrior::of_ship(Some(ship), all);
     let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
     let place = expected.coefficients.iter().position(|own| own.key == key).expect("known");
     let (own, generic) = (expected.coefficients[place], expected.form.coefficients()[place]);
@@ -69,7 +69,7 @@ fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
 #[test]
 fn a_hull_is_weighed_together_with_earlier_trials() {
     let own = earlier(SHIP, "quadratic");
-    let (after, check) = after_earlier(&own, std::slice::from_ref(&own)).expect("of its form");
+    let (after, check) = combined(&own, std::slice::from_ref(&own)).expect("of its form");
     let nv = own.form.coefficients().iter().position(|one| one.key == "Nv").expect("known");
     let before = own.form.coefficients()[nv];
     let found = [(after.values[nv] - before.mean) / before.sd, after.covariance[(nv, nv)].sqrt() / before.sd];
@@ -80,9 +80,9 @@ fn a_hull_is_weighed_together_with_earlier_trials() {
         values: own.form.coefficients().iter().map(|one| one.mean - one.sd).collect::<Vec<_>>().into(),
         ..own.clone()
     };
-    let (_, check) = after_earlier(&own, &[apart]).expect("of its form");
+    let (_, check) = combined(&own, &[apart]).expect("of its form");
     assert!(check.expect("both tell something").is_conflict(), "ten deviations to either side");
-    assert!(after_earlier(&own, &[earlier(SHIP, "cubic")]).is_none());
+    assert!(combined(&own, &[earlier(SHIP, "cubic")]).is_none());
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
     assert_eq!(Likeness::of(&SHIP, &ballast), Likeness::OtherHull);
     let of = |ship: &HullParticulars, all: &[EarlierHull]| {
-        let expected = ExpectedHull::of_ship(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
+        let expected = FormPrior::of_ship(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
         *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
     };
     let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
@@ -120,7 +120,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
 #[test]
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
-    let expected = ExpectedHull::of_ship(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
+    let expected = FormPrior::of_ship(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
     let [covariance, gain] = expected.law().expect("trials are in it");
     let own = expected.form.coefficients();
     let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
@@ -129,7 +129,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     near(of("epsilon"), [11.0 / 12.0, 1.0 / 12.0]);
     near(of("R0"), [0.0, 1.0]);
     near(of("delta_r"), [0.0, 1.0]);
-    assert!(ExpectedHull::of_ship(Some(&ballast), &[])[0].law().is_none());
+    assert!(FormPrior::of_ship(Some(&ballast), &[])[0].law().is_none());
 }
 
 /// Particulars that only one of the ships declares are taken for the other.
@@ -137,7 +137,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
     let of = |ship: &HullParticulars| {
-        let all = ExpectedHull::of_ship(Some(ship), &[earlier(SHIP, "mmg")]);
+        let all = FormPrior::of_ship(Some(ship), &[earlier(SHIP, "mmg")]);
         all.into_iter().find(|own| own.form.as_str() == "mmg").expect("known").mean()
     };
     assert!((of(&bare) - of(&SHIP)).amax() < 1e-12);
@@ -152,8 +152,8 @@ fn left_by(estimate: &HullEstimate) -> EarlierHull {
     }
 }
 
-fn quadratic(all: &[EarlierHull]) -> ExpectedHull {
-    ExpectedHull::of_ship(Some(&SHIP), all).remove(0)
+fn quadratic(all: &[EarlierHull]) -> FormPrior {
+    FormPrior::of_ship(Some(&SHIP), all).remove(0)
 }
 
 /// Mean square heading error of the replays of other records, rad².
@@ -184,10 +184,10 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     let third = sailed([15.0, 15.0]);
     let others = [[20.0, 10.0], [-15.0, 10.0], [25.0, 20.0]].map(sailed);
     let mut squares = [0.0; 2];
-    for (place, expected) in ExpectedHull::of_ship(Some(&SHIP), &[]).iter().enumerate() {
+    for (place, expected) in FormPrior::of_ship(Some(&SHIP), &[]).iter().enumerate() {
         let earlier = left_by(&fit(&two, expected).expect("a fit"));
         let whole = fit(std::slice::from_ref(&third), expected).expect("a fit");
-        let after_trials = ExpectedHull::of_ship(Some(&SHIP), &[earlier]).swap_remove(place);
+        let after_trials = FormPrior::of_ship(Some(&SHIP), &[earlier]).swap_remove(place);
         let half = fit(&[half_of(&third)], &after_trials).expect("a fit");
         let [half_square, whole_square] = [&half, &whole].map(|own| error_on(own, &others));
         squares = [squares[0] + half_square, squares[1] + whole_square];

@@ -14,7 +14,7 @@
 
 use document::earlier_trials::Likeness;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
+use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 use ship::vessel::prior::HullParticulars;
 
 /// Relative tolerance of equal Froude numbers.
@@ -25,7 +25,7 @@ const MIN_INFORMATION: f64 = 1e-6;
 
 /// Prior of the coefficients of a form: a normal law.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ExpectedHull {
+pub struct FormPrior {
     /// The form.
     pub form: HullForm,
     /// Particulars of the ship, where they are declared.
@@ -53,11 +53,11 @@ pub struct EarlierHull {
 
 /// `true` if the Froude numbers of two ships differ by more than a tenth, so that waves and squat differ and the
 /// coefficients carry over less well.
-pub fn is_other_froude_number(earlier: &HullParticulars, ship: &HullParticulars) -> bool {
+pub fn differs_in_froude_number(earlier: &HullParticulars, ship: &HullParticulars) -> bool {
     (earlier.froude_number() / ship.froude_number() - 1.0).abs() > FROUDE_TOLERANCE
 }
 
-impl ExpectedHull {
+impl FormPrior {
     /// Prior from the form alone.
     pub fn of_form(form: HullForm) -> Self {
         let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
@@ -68,7 +68,7 @@ impl ExpectedHull {
     /// from the earlier ships.
     pub fn of_ship(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
         let particulars = particulars
-            .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.filled_from(&trial.particulars)));
+            .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.with_missing_from(&trial.particulars)));
         let after_trials = |form: HullForm| {
             let mut expected = Self { particulars, ..Self::of_form(form) };
             let same_form = earlier.iter().filter(|hull| hull.form.as_str() == expected.form.as_str());
@@ -78,7 +78,7 @@ impl ExpectedHull {
             }
             expected
         };
-        HullForm::of_ship(particulars.as_ref()).into_iter().map(after_trials).collect()
+        HullForm::candidates(particulars.as_ref()).into_iter().map(after_trials).collect()
     }
 
     /// Mean values.
@@ -125,10 +125,10 @@ impl EarlierHull {
     ///
     /// Coefficients of a single trial are left out; so are those of friction at another scale, except through their
     /// correlations.
-    fn information(&self, expected: &ExpectedHull, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    fn information(&self, expected: &FormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();
-        let of_ship = |key: &str| !is_of_trial(key) && (likeness == Likeness::SameShip || !is_of_friction(key));
+        let of_ship = |key: &str| !is_trial_specific(key) && (likeness == Likeness::SameShip || !is_frictional(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();
         let count = kept.len();
         // In standard deviations of the prior, so that every direction is measured alike: L with L Lᵀ its covariance.
@@ -168,10 +168,10 @@ impl EarlierHull {
     }
 
     /// Prior means before the earlier trials, moved by the change of the formulas with the particulars.
-    fn carried(&self, expected: &ExpectedHull, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
+    fn carried(&self, expected: &FormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
         // A particular that only one of the ships declares makes no difference.
-        let filled = self.particulars.filled_from(ship);
-        let forms = HullForm::of_ship(Some(&filled));
+        let filled = self.particulars.with_missing_from(ship);
+        let forms = HullForm::candidates(Some(&filled));
         let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullForm::coefficients);
         let generic = expected.form.coefficients();
         let moved = |(place, coefficient): (usize, &HullCoefficient)| {

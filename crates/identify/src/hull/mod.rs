@@ -35,7 +35,7 @@ mod weighed;
 
 use std::f64::consts::PI;
 
-use estimation::levenberg_marquardt::{End, Rules, minimise};
+use estimation::levenberg_marquardt::{SearchEnd, SearchSettings, minimise};
 use estimation::number::Real;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
@@ -43,28 +43,28 @@ use ship::Polyline;
 use ship::vessel::scaled::ScaledHull;
 use trial::Trial;
 
-pub use conflict::ExpectationCheck;
+pub use conflict::PriorCheck;
 pub use error::HullFitError;
-pub use expected::{EarlierHull, ExpectedHull, is_other_froude_number};
+pub use expected::{EarlierHull, FormPrior, differs_in_froude_number};
 pub use moment::FormMoment;
 pub use objective::HullDeviations;
 use objective::{HullObjective, variances};
 pub use track::HullReference;
 use track::HullTrack;
-pub use weighed::after_earlier;
+pub use weighed::combined;
 
 /// Rules of the Levenberg-Marquardt search.
-const RULES: Rules = Rules {
+const RULES: SearchSettings = SearchSettings {
     steps: 40,
     damping: 1e-2,
     shrink: 0.2,
-    trusted: 0.25,
+    trust_ratio: 0.25,
     grow: 4.0,
-    least: [1e-9, 1e-4],
-    tries: 14,
-    promise: 1e-3,
-    enough: [1e-3, 1e-5],
-    in_a_row: 2,
+    min_damping: [1e-9, 1e-4],
+    max_rejections: 14,
+    min_decrease: 1e-3,
+    tolerance: [1e-3, 1e-5],
+    max_small_steps: 2,
 };
 
 /// Rounds in which the deviations follow the residuals.
@@ -80,14 +80,14 @@ pub struct HullResidual {
     /// Root mean square heading error in windows of 3.5 L/U₀, rad.
     pub window: f64,
     /// Yaw rate with which the whole replay begins, rad/s.
-    pub begins_with: f64,
+    pub initial_yaw_rate: f64,
 }
 
 /// Estimate of the coefficients of a hull, with their covariance.
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
     /// The form, and the prior of its coefficients.
-    pub expected: ExpectedHull,
+    pub expected: FormPrior,
     /// Length, speed and propeller rate that make its quantities dimensionless.
     pub reference: HullReference,
     /// The coefficients.
@@ -104,7 +104,7 @@ pub struct HullEstimate {
 ///
 /// Fails where length or speed of the ship are missing, where a record has fewer than twenty headings, rows too far
 /// apart, an impossible duration or a start near rest, and where no values near the prior can be replayed.
-pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, HullFitError> {
+pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;
     let mut problem = HullObjective::new(expected, &tracks);
@@ -116,7 +116,7 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
         start = search.at;
         search = minimise(&mut problem, start, &RULES);
     }
-    if search.end == End::NotFinite {
+    if search.end == SearchEnd::NotFinite {
         return Err(HullFitError::NoReplay);
     }
     let covariance = Cholesky::new(search.normal.matrix.clone()).map(|factor| factor.inverse());
@@ -126,7 +126,7 @@ pub fn fit(trials: &[Trial], expected: &ExpectedHull) -> Result<HullEstimate, Hu
         name: trial.name().to_owned(),
         whole: misfit.whole.sqrt(),
         window: misfit.window.sqrt(),
-        begins_with: misfit.initial_yaw_rate / reference.time(),
+        initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
     };
     let moment = FormMoment::of(&form.with(search.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &misfits);
     let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
@@ -152,7 +152,7 @@ const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
-    let expected = ExpectedHull::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    let expected = FormPrior::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 
@@ -188,8 +188,8 @@ impl HullEstimate {
     }
 
     /// Check of the prior against the records; `None` where the records add no information.
-    pub fn check(&self) -> Option<ExpectationCheck> {
-        ExpectationCheck::of(&self.expected, &self.values, &self.covariance)
+    pub fn check(&self) -> Option<PriorCheck> {
+        PriorCheck::of(&self.expected, &self.values, &self.covariance)
     }
 
     /// Mean square residual of whole records, rad².

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
-use super::expected::ExpectedHull;
+use super::expected::FormPrior;
 use super::replayed::{Replayed, replayed};
 use super::track::HullTrack;
 use super::turn::HardTurn;
@@ -58,7 +58,7 @@ struct Starts {
 
 /// Records, a form and its priors.
 pub(super) struct HullObjective<'a> {
-    expected: &'a ExpectedHull,
+    expected: &'a FormPrior,
     tracks: &'a [HullTrack],
     deviations: Vec<HullDeviations>,
     starts: Vec<Starts>,
@@ -155,7 +155,7 @@ pub(super) fn window_mean(hull: &PrimeHull<Dual<1>>, track: &HullTrack, rates: &
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(expected: &'a ExpectedHull, tracks: &'a [HullTrack]) -> Self {
+    pub fn new(expected: &'a FormPrior, tracks: &'a [HullTrack]) -> Self {
         assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
@@ -313,7 +313,7 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 /// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` where
 /// the values make no ship.
 pub(super) fn variances(
-    expected: &ExpectedHull,
+    expected: &FormPrior,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,

@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{ExpectedHull, FormMoment, HullEstimate, HullFitError, HullReference, fit, fit_all, members};
+use super::{FormMoment, FormPrior, HullEstimate, HullFitError, HullReference, fit, fit_all, members};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -26,7 +26,7 @@ pub(super) const TRUTH: [f64; 19] =
 
 /// The quadratic form of any ship.
 fn form() -> HullForm {
-    HullForm::of_ship(None).swap_remove(0)
+    HullForm::candidates(None).swap_remove(0)
 }
 
 pub(super) fn hull(truth: &[f64; 19]) -> ScaledHull {
@@ -72,7 +72,7 @@ fn records(moment: impl Fn(usize) -> f64 + Copy) -> Vec<Trial> {
 }
 
 fn quadratic(trials: &[Trial]) -> HullEstimate {
-    fit(trials, &ExpectedHull::of_form(form())).expect("a fit")
+    fit(trials, &FormPrior::of_form(form())).expect("a fit")
 }
 
 /// All come back to within 2.5 standard deviations, and the moment of the rudder to within 15 %.
@@ -152,8 +152,8 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
     let [fitted, other] = [20.0, 10.0].map(|angle| record(&ship, [angle, angle], |_| 0.0));
     let dimensions = HullParticulars { length: LENGTH, speed: SPEED, beam: Some(1.27), ..HullParticulars::default() };
-    for form in HullForm::of_ship(Some(&dimensions)) {
-        let expected = ExpectedHull::of_form(form);
+    for form in HullForm::candidates(Some(&dimensions)) {
+        let expected = FormPrior::of_form(form);
         let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
         let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
         let mut problem = HullObjective::new(&expected, &tracks);
@@ -256,7 +256,7 @@ fn a_trial_at_slow_ahead_is_one() {
 
 #[test]
 fn records_that_tell_no_hull_are_refused() {
-    let expected = ExpectedHull::of_form(form());
+    let expected = FormPrior::of_form(form());
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
         let channels = [Channel::Heading, Channel::Speed].map(|key| (key, trial.channel(key).expect("one").to_vec()));

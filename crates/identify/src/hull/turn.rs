@@ -63,7 +63,7 @@ mod tests {
         for (name, figures) in turns {
             assert!(!departs(figures[0], CURVATURE) && !departs(figures[1], PIVOT), "{name}: {figures:?}");
         }
-        for form in HullForm::of_ship(None) {
+        for form in HullForm::candidates(None) {
             let values: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
             let departures = HardTurn::new().departures(&form.with(&values).expect("a ship"));
             assert!(departures.iter().all(|departure| departure.abs() < 2.5), "{}: {departures:?}", form.as_str());

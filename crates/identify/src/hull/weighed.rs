@@ -3,15 +3,15 @@
 use nalgebra::Cholesky;
 use ship::vessel::prime::HullForm;
 
-use super::conflict::ExpectationCheck;
-use super::expected::{EarlierHull, ExpectedHull};
+use super::conflict::PriorCheck;
+use super::expected::{EarlierHull, FormPrior};
 
 /// The estimate of some trials combined with that of earlier trials, which it does not include yet, and the check of
 /// the two against each other; `None` where the earlier trials have no information on its form.
 ///
-/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`ExpectedHull`]. Both are treated as
+/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`FormPrior`]. Both are treated as
 /// normal laws: where they are far apart, a fit with the earlier trials as prior is better.
-pub fn after_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<ExpectationCheck>)> {
+pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();
     let mut coefficients = fitted.form.coefficients().to_vec();
     for (place, coefficient) in coefficients.iter_mut().enumerate() {
@@ -19,12 +19,12 @@ pub fn after_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(E
     }
     let precision = Cholesky::new(fitted.covariance.clone())?.inverse();
     let (form, particulars) = (fitted.form.clone(), Some(fitted.particulars));
-    let mut both = ExpectedHull { form, particulars, coefficients, precision, has_trials: false };
+    let mut both = FormPrior { form, particulars, coefficients, precision, has_trials: false };
     let of_form: Vec<&EarlierHull> = earlier.iter().filter(|hull| is_same_form(&hull.form)).collect();
     both.add(&fitted.particulars, &of_form);
     let [covariance, _] = both.law()?;
     let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
-    let before = ExpectedHull::of_ship(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
-    let check = before.and_then(|before| ExpectationCheck::of(&before, &after.values, &after.covariance));
+    let before = FormPrior::of_ship(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
+    let check = before.and_then(|before| PriorCheck::of(&before, &after.values, &after.covariance));
     Some((after, check))
 }

@@ -2,7 +2,7 @@
 
 use estimation::kalman::{Filter, Sensor, System, Whitener};
 use estimation::with_states;
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseParameters;
 use super::schedule::Schedule;
@@ -20,7 +20,7 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     for (place, variance) in initial.into_iter().enumerate() {
         covariance[place][place] = variance;
     }
-    if parameters.moment == Moment::OrnsteinUhlenbeck {
+    if parameters.moment == MomentKind::OrnsteinUhlenbeck {
         covariance[2][2] = parameters.level * parameters.level;
     }
     for place in [parameters.rudder_state(), compass].into_iter().flatten() {

@@ -3,7 +3,7 @@
 
 use ship::FirstOrder;
 
-use trial::noise_model::{Moment, NoiseModel};
+use trial::noise_model::{MomentKind, NoiseModel};
 
 /// Entries of a [`NoiseVector`].
 pub const ENTRIES: usize = 5;
@@ -13,7 +13,7 @@ pub const ENTRIES: usize = 5;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseVector {
     /// Which yaw moment.
-    pub moment: Moment,
+    pub moment: MomentKind,
     /// Whether the rudder has an error.
     pub rudder: bool,
     /// Whether the compass error has a correlation time.
@@ -39,7 +39,7 @@ impl NoiseVector {
         let unit = noise.heading_sd;
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
         Self {
-            moment: if noise.moment_level > 0.0 { noise.moment } else { Moment::None },
+            moment: if noise.moment_level > 0.0 { noise.moment } else { MomentKind::None },
             rudder: noise.rudder_sd > 0.0,
             coloured: noise.heading_correlation.is_some(),
             log: [
@@ -55,7 +55,7 @@ impl NoiseVector {
     /// The noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
     pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
-        let has_moment = self.moment != Moment::None;
+        let has_moment = self.moment != MomentKind::None;
         NoiseModel {
             heading_sd,
             heading_correlation: self.coloured.then(|| self.log[COMPASS].exp()),
@@ -63,9 +63,9 @@ impl NoiseVector {
             moment: self.moment,
             moment_level: if has_moment { size(LEVEL) } else { 0.0 },
             moment_correlation: match self.moment {
-                Moment::OrnsteinUhlenbeck => self.log[CORRELATION].exp(),
-                Moment::White => 0.0,
-                Moment::None | Moment::Walk => f64::INFINITY,
+                MomentKind::OrnsteinUhlenbeck => self.log[CORRELATION].exp(),
+                MomentKind::White => 0.0,
+                MomentKind::None | MomentKind::Walk => f64::INFINITY,
             },
             rudder_sd: if self.rudder { size(RUDDER) / gain.abs() } else { 0.0 },
         }
@@ -73,8 +73,13 @@ impl NoiseVector {
 
     /// The active entries.
     pub fn entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
-        let active =
-            [self.moment != Moment::None, self.moment == Moment::OrnsteinUhlenbeck, self.rudder, self.coloured, gyro];
+        let active = [
+            self.moment != MomentKind::None,
+            self.moment == MomentKind::OrnsteinUhlenbeck,
+            self.rudder,
+            self.coloured,
+            gyro,
+        ];
         (0..ENTRIES).filter(move |&entry| active[entry])
     }
 
@@ -85,7 +90,7 @@ impl NoiseVector {
             inverse_time,
             moment: self.moment,
             level: size(LEVEL),
-            rate: if self.moment == Moment::OrnsteinUhlenbeck { (-self.log[CORRELATION]).exp() } else { 0.0 },
+            rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION]).exp() } else { 0.0 },
             rudder: self.rudder.then(|| size(RUDDER)),
             compass_rate: self.coloured.then(|| (-self.log[COMPASS]).exp()),
             gyro: size(GYRO),
@@ -99,7 +104,7 @@ pub struct NoiseParameters {
     /// a = 1/T, 1/s.
     pub inverse_time: f64,
     /// Which yaw moment.
-    pub moment: Moment,
+    pub moment: MomentKind,
     /// q/σ.
     pub level: f64,
     /// 1/τ, 1/s.
@@ -115,7 +120,7 @@ pub struct NoiseParameters {
 impl NoiseParameters {
     /// Whether the moment is a state.
     pub fn has_moment_state(&self) -> bool {
-        matches!(self.moment, Moment::OrnsteinUhlenbeck | Moment::Walk)
+        matches!(self.moment, MomentKind::OrnsteinUhlenbeck | MomentKind::Walk)
     }
 
     /// Number of states: heading, yaw rate, moment, rudder error, compass error.

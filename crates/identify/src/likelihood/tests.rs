@@ -4,7 +4,7 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
 use trial::Trial;
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseVector;
 use super::*;
@@ -33,7 +33,7 @@ fn published() -> Trial {
 
 const SIGMA_DEG: f64 = 0.1;
 
-fn noise(moment: Moment, level: f64, correlation: f64) -> NoiseModel {
+fn noise(moment: MomentKind, level: f64, correlation: f64) -> NoiseModel {
     NoiseModel {
         moment,
         moment_level: level,
@@ -105,21 +105,21 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
                 let s = t - at;
                 let zero = State::default();
                 match noise.moment {
-                    Moment::None => zero,
+                    MomentKind::None => zero,
                     _ if s < 0.0 => zero,
-                    Moment::White => Transition::new(a, s).advance(State { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0),
-                    Moment::Walk => Transition::new(a, s).advance(zero, 1.0, 0.0),
-                    Moment::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation, s),
+                    MomentKind::White => Transition::new(a, s).advance(State { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0),
+                    MomentKind::Walk => Transition::new(a, s).advance(zero, 1.0, 0.0),
+                    MomentKind::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation, s),
                 }
             };
             let density = match noise.moment {
-                Moment::OrnsteinUhlenbeck => 2.0 / noise.moment_correlation,
+                MomentKind::OrnsteinUhlenbeck => 2.0 / noise.moment_correlation,
                 _ => 1.0,
             };
             source(&time.iter().map(|&t| motion(t)).collect::<Vec<_>>(), noise.moment_level * (density * step).sqrt());
         }
     }
-    if noise.moment == Moment::OrnsteinUhlenbeck {
+    if noise.moment == MomentKind::OrnsteinUhlenbeck {
         let states: Vec<State> = time.iter().map(|t| decaying(a, noise.moment_correlation, t - time[0])).collect();
         source(&states, noise.moment_level);
     }
@@ -165,9 +165,9 @@ fn the_filter_is_the_dense_gaussian() {
     let coloured = |noise: NoiseModel| NoiseModel { heading_correlation: Some(3.0), ..noise };
     let steered = |noise: NoiseModel| NoiseModel { rudder_sd: from_deg(0.7), ..noise };
     let rated = |noise: NoiseModel| NoiseModel { yaw_rate_sd: Some(2e-3), ..noise };
-    let white = noise(Moment::White, 3e-4, 1.0);
-    let gusts = noise(Moment::OrnsteinUhlenbeck, 4e-4, 12.0);
-    let walk = noise(Moment::Walk, 9e-5, 1.0);
+    let white = noise(MomentKind::White, 3e-4, 1.0);
+    let gusts = noise(MomentKind::OrnsteinUhlenbeck, 4e-4, 12.0);
+    let walk = noise(MomentKind::Walk, 9e-5, 1.0);
     let none = NoiseModel::compass(from_deg(SIGMA_DEG));
     for (trial, noise) in [
         (&plain, white),
@@ -196,7 +196,8 @@ fn even_rows_settle() {
     let trial = record("even", time, heading, rudder);
     let track = Track::new(&trial);
     let schedule = Schedule::new(&track, false);
-    let place = NoiseVector { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
+    let place =
+        NoiseVector { moment: MomentKind::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
     let parameters = place.parameters(0.06);
     let filter = whitener(&schedule, &parameters, [0.0; 2]);
     assert_eq!(schedule.spans.len(), 1);

@@ -3,7 +3,7 @@
 
 use estimation::kalman::{Step, identity, product, sandwich, sum};
 use ship::first_order::Transition;
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseParameters;
 use super::schedule::Span;
@@ -109,10 +109,10 @@ fn short(parameters: &NoiseParameters, h: f64) -> (Small, Small) {
     let transition = [[1.0, r[0] * h, m[0] * (h * h)], [0.0, r[1], m[1] * h], [0.0, 0.0, m[2]]];
 
     let (impulse, density) = match parameters.moment {
-        Moment::None => return (transition, [[0.0; 3]; 3]),
-        Moment::White => (&of_rate, parameters.level * parameters.level * h.powi(3)),
-        Moment::Walk => (&of_moment, parameters.level * parameters.level * h.powi(5)),
-        Moment::OrnsteinUhlenbeck => {
+        MomentKind::None => return (transition, [[0.0; 3]; 3]),
+        MomentKind::White => (&of_rate, parameters.level * parameters.level * h.powi(3)),
+        MomentKind::Walk => (&of_moment, parameters.level * parameters.level * h.powi(5)),
+        MomentKind::OrnsteinUhlenbeck => {
             (&of_moment, parameters.level * parameters.level * parameters.rate * (2.0 * h.powi(5)))
         }
     };

@@ -1,7 +1,7 @@
 //! Estimate at the largest likelihood: covariance from the information, diagnostics and warnings. Sources of the
 //! degrees of freedom: Satterthwaite (1946); Kenward and Roger (1997).
 
-use document::{Code, HeadingNoise, RandomMoment, Warning};
+use document::{HeadingNoise, RandomMoment, Warning, WarningCode};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
 use ship::first_order::State;
@@ -20,7 +20,7 @@ use crate::likelihood::track::{Coefficients, Track, is_backward};
 use crate::output_error::{CONDITION_LIMIT, COURSE_UNSTABLE, MIN_GAIN_DEVIATIONS, to_response};
 use crate::profile::invert;
 use crate::robust;
-use trial::noise_model::{Moment, NoiseModel};
+use trial::noise_model::{MomentKind, NoiseModel};
 
 /// Step of a logarithm for the numerical derivative of a variance.
 const DIFFERENCE: f64 = 0.05;
@@ -147,9 +147,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::select(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
-    warnings.extend(response.is_course_unstable().then(|| Code::CourseUnstable.warning(COURSE_UNSTABLE)));
+    warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
-    warnings.extend(at_bound.then(|| Code::AtBound.warning(beyond())));
+    warnings.extend(at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))
         .map(|(record, (vector, part))| vector.noise(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
@@ -190,17 +190,17 @@ fn outlier_warnings(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
         if !suspects.spikes.is_empty() {
             let (count, times) = (suspects.spikes.len(), times(&suspects.spikes));
             let text = format!("{name}: headings far from their neighbours are left out ({count}), at t = {times} s");
-            warnings.push(Code::RejectedReadings.warning(text));
+            warnings.push(WarningCode::RejectedReadings.warning(text));
         }
         if !suspects.jumps.is_empty() {
             let times = times(&suspects.jumps);
             let text = format!("{name}: the heading jumps and stays off at t = {times} s; jump sizes are estimated");
-            warnings.push(Code::HeadingJump.warning(text));
+            warnings.push(WarningCode::HeadingJump.warning(text));
         }
     }
     if chosen.too_many {
         let text = "more than a tenth of the headings are far from their neighbours: none left out; check the compass";
-        warnings.push(Code::OddHeadings.warning(text));
+        warnings.push(WarningCode::OddHeadings.warning(text));
     }
     warnings
 }
@@ -230,10 +230,10 @@ fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'s
     diagnostics.extend((noise.rudder_sd > 0.0).then(|| ("rudder_sd_deg", to_deg(noise.rudder_sd))));
     let lowest = chosen.tried.iter().map(|(_, bic)| *bic).fold(f64::INFINITY, f64::min);
     for (kind, name) in [
-        (Moment::None, "bic_none"),
-        (Moment::White, "bic_white"),
-        (Moment::Walk, "bic_walk"),
-        (Moment::OrnsteinUhlenbeck, "bic_ornstein_uhlenbeck"),
+        (MomentKind::None, "bic_none"),
+        (MomentKind::White, "bic_white"),
+        (MomentKind::Walk, "bic_walk"),
+        (MomentKind::OrnsteinUhlenbeck, "bic_ornstein_uhlenbeck"),
     ] {
         let fitted = chosen.tried.iter().filter(|(moment, _)| *moment == kind).map(|(_, bic)| *bic);
         diagnostics.extend(fitted.min_by(f64::total_cmp).map(|bic| (name, bic - lowest)));
@@ -245,10 +245,10 @@ fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'s
 fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
     let rudder = noise.moment_level / gain;
     match noise.moment {
-        Moment::None => RandomMoment::None,
-        Moment::White => RandomMoment::White { rudder_rad_root_s: rudder },
-        Moment::Walk => RandomMoment::Walk { rudder_rad_per_root_s: rudder },
-        Moment::OrnsteinUhlenbeck => {
+        MomentKind::None => RandomMoment::None,
+        MomentKind::White => RandomMoment::White { rudder_rad_root_s: rudder },
+        MomentKind::Walk => RandomMoment::Walk { rudder_rad_per_root_s: rudder },
+        MomentKind::OrnsteinUhlenbeck => {
             RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: rudder, correlation_s: noise.moment_correlation }
         }
     }
@@ -278,7 +278,7 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning
         parts.push(format!("a compass error of {sd:.3} deg that lasts about {time:.1} s"));
     }
     let text = || format!("{}: besides compass noise the record shows {}", trial.title(), parts.join(" and "));
-    (!parts.is_empty()).then(|| Code::Noise.warning(text()))
+    (!parts.is_empty()).then(|| WarningCode::Noise.warning(text()))
 }
 
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial with given true parameters and noise: the smallest covariance of

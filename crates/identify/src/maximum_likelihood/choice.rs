@@ -17,7 +17,7 @@ use crate::output_error::{self, CONDITION_LIMIT, MIN_ROWS};
 use crate::replay::best_start;
 use crate::robust;
 use crate::samples::track;
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 /// Largest number of rounds of outlier search and refit.
 const MAX_OUTLIER_ROUNDS: usize = 12;
@@ -56,7 +56,7 @@ pub(super) struct Chosen {
     /// Whether there were too many spikes to leave them out.
     pub too_many: bool,
     /// BIC of every kind of moment that was fitted.
-    pub tried: Vec<(Moment, f64)>,
+    pub tried: Vec<(MomentKind, f64)>,
     pub evaluations: usize,
     /// Whether 1/T is at the edge of the range of `output-error`.
     pub at_bound: bool,
@@ -225,7 +225,7 @@ fn fit_laws(
     a: f64,
     none: &[NoiseVector],
     evaluations: &mut usize,
-) -> (Ranked, Vec<(Moment, f64)>) {
+) -> (Ranked, Vec<(MomentKind, f64)>) {
     let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0, unseen: Vec::new() };
     let mut all = fit_moments(&mut search, settings.moment.kinds(), a, none);
     let coloured_starts = coloured_compass_starts(&all, settings.compass);
@@ -239,7 +239,7 @@ fn fit_laws(
     }
     // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already the
     // best.
-    let is_coloured = |vector: &NoiseVector| vector.moment != Moment::None || vector.coloured || vector.rudder;
+    let is_coloured = |vector: &NoiseVector| vector.moment != MomentKind::None || vector.coloured || vector.rudder;
     if let Some((_, best)) = lowest(&all).filter(|(_, best)| best.point.vectors.iter().any(is_coloured)) {
         let elsewhere = best_inverse_time(&mut search, best.point.inverse_time, &best.point.vectors);
         if elsewhere.as_ref().is_some_and(|point| point.deviance < best.point.deviance) {
@@ -261,32 +261,33 @@ impl Search<'_> {
 }
 
 /// Fits with every kind of moment.
-fn fit_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVector]) -> Ranked {
+fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseVector]) -> Ranked {
     let mut none = none.to_vec();
     let mut all: Ranked = Vec::new();
     // The starts of gusts are the fits of a white moment and of a walk.
     let (mut white, mut walk) = (None, None);
-    for kind in [Moment::None, Moment::White, Moment::Walk, Moment::OrnsteinUhlenbeck] {
-        let gusts = kinds.contains(&Moment::OrnsteinUhlenbeck) && matches!(kind, Moment::White | Moment::Walk);
-        let plain = all.iter().find(|(_, maximum)| maximum.point.vectors[0].moment == Moment::None);
+    for kind in [MomentKind::None, MomentKind::White, MomentKind::Walk, MomentKind::OrnsteinUhlenbeck] {
+        let gusts =
+            kinds.contains(&MomentKind::OrnsteinUhlenbeck) && matches!(kind, MomentKind::White | MomentKind::Walk);
+        let plain = all.iter().find(|(_, maximum)| maximum.point.vectors[0].moment == MomentKind::None);
         let random =
             [&white, &walk].into_iter().flatten().map(|point: &Point| point.restricted).fold(f64::INFINITY, f64::min);
         // Gusts lie between a white moment and a walk: without either of them gusts are not fitted.
-        let hopeless = kind == Moment::OrnsteinUhlenbeck
+        let hopeless = kind == MomentKind::OrnsteinUhlenbeck
             && plain.is_some_and(|(_, plain)| plain.point.restricted - random < MIN_GUST_GAIN);
         if (!kinds.contains(&kind) && !gusts) || hopeless {
             continue;
         }
         let starts = match kind {
-            Moment::None if none[0].rudder => search.spread(a, &none, RUDDER),
-            Moment::None => vec![(a, none.clone())],
-            Moment::White | Moment::Walk => search.levels(a, &none, kind),
-            Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
+            MomentKind::None if none[0].rudder => search.spread(a, &none, RUDDER),
+            MomentKind::None => vec![(a, none.clone())],
+            MomentKind::White | MomentKind::Walk => search.levels(a, &none, kind),
+            MomentKind::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
         let start = search.best(starts, |point| point.restricted);
         // A moment without gain at any size is absent; its BIC still counts its entries.
         let is_unseen = |start: &Point| {
-            matches!(kind, Moment::White | Moment::Walk)
+            matches!(kind, MomentKind::White | MomentKind::Walk)
                 && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - MIN_MOMENT_GAIN)
         };
         if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_unseen)) {
@@ -297,11 +298,11 @@ fn fit_moments(search: &mut Search, kinds: &[Moment], a: f64, none: &[NoiseVecto
         let fitted = start.and_then(|start| search.highest(start));
         let point = fitted.as_ref().map(|(_, maximum)| &maximum.point);
         match kind {
-            Moment::White => white = point.cloned(),
-            Moment::Walk => walk = point.cloned(),
+            MomentKind::White => white = point.cloned(),
+            MomentKind::Walk => walk = point.cloned(),
             // Later kinds start from the fitted instrument errors.
-            Moment::None => none = point.map_or(none, |point| point.vectors.clone()),
-            Moment::OrnsteinUhlenbeck => {}
+            MomentKind::None => none = point.map_or(none, |point| point.vectors.clone()),
+            MomentKind::OrnsteinUhlenbeck => {}
         }
         all.extend(fitted.filter(|_| kinds.contains(&kind)));
     }
@@ -320,7 +321,7 @@ fn coloured_compass_starts(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
             CompassChoice::Coloured => true,
         }
     };
-    let is_plain = |maximum: &Maximum| maximum.point.vectors[0].moment == Moment::None;
+    let is_plain = |maximum: &Maximum| maximum.point.vectors[0].moment == MomentKind::None;
     let best = lowest(all).map(|(_, maximum)| maximum);
     let alone = all.iter().map(|(_, maximum)| maximum).find(|maximum| is_plain(maximum));
     let alone = alone.filter(|_| best.is_some_and(|best| !is_plain(best)));

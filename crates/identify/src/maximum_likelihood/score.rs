@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::likelihood::{NoiseVector, parameters::RUDDER};
 use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 use super::point::{Point, Record, RecordAtPoint, SHARED, readings};
 
@@ -83,7 +83,7 @@ impl Linearised {
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
         let is_tied = record.tied(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
-        let by_ship = if vector.moment != Moment::None || vector.rudder {
+        let by_ship = if vector.moment != MomentKind::None || vector.rudder {
             let by = DIFFERENCE * (a.abs() + record.track.duration().recip());
             let there = RecordAtPoint::new(record, a, steering, vector, a + by, all)?;
             Slope::new(part, &there, by, &motion)

@@ -7,7 +7,7 @@ use super::point::{Point, Record, SHARED, evaluate};
 use super::score::{Linearised, linearise};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 /// Predicted decrease of −log L at convergence: a hundredth of a standard deviation of the noise. A search over 1/T
 /// alone must be as exact as `output-error`.
@@ -38,11 +38,11 @@ pub(super) struct Ranges {
 
 impl Ranges {
     /// The level of a moment that moves the heading of a ship without damping by `by` (in units of σ) over `time`.
-    fn level(moment: Moment, by: f64, time: f64) -> f64 {
+    fn level(moment: MomentKind, by: f64, time: f64) -> f64 {
         match moment {
-            Moment::Walk => by * (20.0 / time.powi(5)).sqrt(),
-            Moment::White => by * (3.0 / time.powi(3)).sqrt(),
-            Moment::None | Moment::OrnsteinUhlenbeck => 2.0 * by / (time * time),
+            MomentKind::Walk => by * (20.0 / time.powi(5)).sqrt(),
+            MomentKind::White => by * (3.0 / time.powi(3)).sqrt(),
+            MomentKind::None | MomentKind::OrnsteinUhlenbeck => 2.0 * by / (time * time),
         }
     }
 
@@ -78,7 +78,7 @@ pub(super) struct Search<'a> {
     pub iterations: usize,
     pub evaluations: usize,
     /// Moments without gain at any start, with their BIC.
-    pub unseen: Vec<(Moment, f64)>,
+    pub unseen: Vec<(MomentKind, f64)>,
 }
 
 /// The end of a search.
@@ -118,7 +118,7 @@ impl Search<'_> {
     }
 
     /// Starts of several sizes for the moment of a kind.
-    pub fn levels(&self, inverse_time: f64, vectors: &[NoiseVector], moment: Moment) -> Vec<Start> {
+    pub fn levels(&self, inverse_time: f64, vectors: &[NoiseVector], moment: MomentKind) -> Vec<Start> {
         let level = |by: f64| {
             self.start(inverse_time, vectors, |vector, ranges| {
                 // The effect of a moment shows within a quarter of a record.
@@ -137,8 +137,8 @@ impl Search<'_> {
             starts.extend(shares.map(|share| {
                 self.start(point.inverse_time, &point.vectors, |vector, ranges| {
                     let time = share * ranges.duration;
-                    let factor = if vector.moment == Moment::White { 0.5 / time } else { 0.5 * time };
-                    let gusts = NoiseVector { moment: Moment::OrnsteinUhlenbeck, ..*vector };
+                    let factor = if vector.moment == MomentKind::White { 0.5 / time } else { 0.5 * time };
+                    let gusts = NoiseVector { moment: MomentKind::OrnsteinUhlenbeck, ..*vector };
                     let gusts = ranges.with(&gusts, CORRELATION, time.ln());
                     ranges.with(&gusts, LEVEL, vector.log[LEVEL] + 0.5 * factor.ln())
                 })

@@ -1,7 +1,7 @@
 //! Settings of the method.
 
 use serde::{Deserialize, Serialize};
-use trial::noise_model::Moment;
+use trial::noise_model::MomentKind;
 
 /// Which yaw moment is fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -22,13 +22,13 @@ pub enum MomentChoice {
 
 impl MomentChoice {
     /// The kinds of moment that are fitted.
-    pub(super) fn kinds(self) -> &'static [Moment] {
+    pub(super) fn kinds(self) -> &'static [MomentKind] {
         match self {
-            Self::Chosen => &Moment::ALL,
-            Self::None => &[Moment::None],
-            Self::White => &[Moment::White],
-            Self::OrnsteinUhlenbeck => &[Moment::OrnsteinUhlenbeck],
-            Self::Walk => &[Moment::Walk],
+            Self::Chosen => &MomentKind::ALL,
+            Self::None => &[MomentKind::None],
+            Self::White => &[MomentKind::White],
+            Self::OrnsteinUhlenbeck => &[MomentKind::OrnsteinUhlenbeck],
+            Self::Walk => &[MomentKind::Walk],
         }
     }
 }

@@ -7,7 +7,7 @@ use trial::Noise;
 use super::choice::PreparedRecords;
 use super::point::{Record, evaluate};
 use super::score::linearise;
-use trial::noise_model::{Moment, NoiseModel};
+use trial::noise_model::{MomentKind, NoiseModel};
 
 use super::*;
 use crate::likelihood::NoiseVector;
@@ -107,7 +107,7 @@ fn the_score_is_the_derivative() {
     let trials = [disturbed(&noisy(), &ExtraNoise::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
     let records: Vec<Record> =
         trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
-    for moment in Moment::ALL {
+    for moment in MomentKind::ALL {
         let vectors = [
             NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
             NoiseVector { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
@@ -230,8 +230,11 @@ fn the_bound_knows_the_noise() {
     let initial = ship::first_order::State { heading: case.truth().heading[0], yaw_rate: case.truth().yaw_rate[0] };
     let noise = NoiseModel::compass(from_deg(0.1));
     let calm = cramer_rao(&trial, &truth, initial, &noise).expect("known").matrix;
-    let walking =
-        |degrees: f64| NoiseModel { moment: Moment::Walk, moment_level: truth.K_over_T * from_deg(degrees), ..noise };
+    let walking = |degrees: f64| NoiseModel {
+        moment: MomentKind::Walk,
+        moment_level: truth.K_over_T * from_deg(degrees),
+        ..noise
+    };
     let wide = cramer_rao(&trial, &truth, initial, &walking(0.1)).expect("known");
     // 2.1 % of T from 400 simulated trials.
     let percent = 100.0 * wide.indices(&truth).1.sd.expect("known") / 16.3;

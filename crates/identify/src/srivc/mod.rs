@@ -26,7 +26,7 @@ mod record;
 #[cfg(test)]
 mod tests;
 
-use document::Code;
+use document::WarningCode;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -137,7 +137,7 @@ impl Identifier for Srivc {
         let (uncertainty, warning) = crate::robust::select(white, &robust_covariance, residuals.lag1, residuals.count);
         let mut warnings = Vec::from_iter(warning);
         if inverse_time < 0.0 {
-            warnings.push(Code::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
+            warnings.push(WarningCode::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
         }
         Ok(Estimate {
             response: FirstOrder { inverse_T: inverse_time, K_over_T: b, rudder_bias: bias / b },

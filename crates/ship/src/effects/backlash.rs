@@ -2,7 +2,7 @@
 //!
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
 use crate::angle::DEGREE;
 use estimation::number::Real;
 
@@ -16,7 +16,7 @@ impl Backlash {
     pub(super) const HALF_WIDTH: Parameter = Parameter::even(["g", "g", "rad"], [0.0, 0.012], [0.0, 0.15]);
 
     /// Prior mean, standard deviation and largest value of g, rad.
-    pub(super) fn prior(records: &Manoeuvres) -> [f64; 3] {
+    pub(super) fn prior(records: &RecordScales) -> [f64; 3] {
         [0.0, 0.12 * records.rudder, 0.5 * records.rudder]
     }
 }
@@ -31,13 +31,13 @@ impl Effect for Backlash {
         }
     }
 
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
         let ([mean, sd, largest], g) = (Self::prior(records), Self::HALF_WIDTH);
         Some(Proposal::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
-    fn places(&self) -> Places {
-        Places::RUDDER
+    fn targets(&self) -> Targets {
+        Targets::RUDDER
     }
 
     fn states(&self) -> usize {
@@ -45,8 +45,8 @@ impl Effect for Backlash {
     }
 }
 
-impl<R: Real> Acts<R> for Backlash {
-    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+impl<R: Real> Action<R> for Backlash {
+    fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }
 
@@ -56,7 +56,7 @@ impl<R: Real> Acts<R> for Backlash {
         z[0].between(rudder - g, rudder + g)
     }
 
-    fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, rate: &mut [R]) {
+    fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, rate: &mut [R]) {
         rate.fill(R::from(0.0));
     }
 

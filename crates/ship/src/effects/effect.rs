@@ -87,7 +87,7 @@ impl Parameter {
 
 /// Operating point at which an effect is evaluated.
 #[derive(Debug, Clone, Copy)]
-pub struct Now<'a, R = f64> {
+pub struct OperatingPoint<'a, R = f64> {
     /// Time, s, on the clock of the record.
     pub t: f64,
     /// Heading ψ, rad.
@@ -131,7 +131,7 @@ pub struct SwayCoupling<R = f64> {
 
 /// Quantities on which an effect acts beside its own states; the others are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Places {
+pub struct Targets {
     /// It transforms the acting rudder.
     pub rudder: bool,
     /// It scales damping and gain.
@@ -140,7 +140,7 @@ pub struct Places {
     pub moment: bool,
 }
 
-impl Places {
+impl Targets {
     /// None of these.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
@@ -164,10 +164,10 @@ pub struct Description {
     pub parameters: &'static [Parameter],
 }
 
-/// Effect that a first-order response lacks. Its equations are in [`Acts`].
+/// Effect that a first-order response lacks. Its equations are in [`Action`].
 ///
 /// `p` has the values of its parameters.
-pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
+pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
 
@@ -208,10 +208,10 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
 
     /// Candidate effect with its priors in records of these manoeuvres; `None` where it is not identifiable from them,
     /// as without its channel.
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal>;
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal>;
 
     /// Quantities on which it acts.
-    fn places(&self) -> Places;
+    fn targets(&self) -> Targets;
 
     /// Number of its states.
     fn states(&self) -> usize {
@@ -230,12 +230,12 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// `true` for a moment that depends on time alone; it then belongs to one record and does not apply to others.
-    fn is_of_time(&self) -> bool {
+    fn is_time_dependent(&self) -> bool {
         false
     }
 
     /// `true` for an effect of wind, waves or another external moment, which is absent in a calm.
-    fn is_of_weather(&self) -> bool {
+    fn is_environmental(&self) -> bool {
         false
     }
 
@@ -245,7 +245,7 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// `true` if it depends on the absolute heading, so that a rotated record gives another response.
-    fn sees_heading(&self) -> bool {
+    fn is_heading_dependent(&self) -> bool {
         false
     }
 
@@ -274,9 +274,9 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
 /// Equations of an effect, for every number type.
 ///
 /// `p` has the values of its parameters, `z` its states.
-pub trait Acts<R: Real> {
+pub trait Action<R: Real> {
     /// States on a straight approach.
-    fn approach(&self, _p: &[R], _now: &Now<R>, z: &mut [R]) {
+    fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(0.0));
     }
 
@@ -291,18 +291,18 @@ pub trait Acts<R: Real> {
     }
 
     /// Rates of its states; `before` is the rudder before this effect, rad.
-    fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, _rate: &mut [R]) {}
+    fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, _rate: &mut [R]) {}
 
     /// Update of memory that follows no differential equation, once a step.
     fn settle(&self, _p: &[R], _z: &mut [R], _before: R) {}
 
     /// Factors on damping and gain.
-    fn scale(&self, _p: &[R], _z: &[R], _now: &Now<R>) -> Scale<R> {
+    fn scale(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>) -> Scale<R> {
         Scale::none()
     }
 
     /// Addition to the yaw acceleration, rad/s².
-    fn yaw_acceleration(&self, _p: &[R], _z: &[R], _now: &Now<R>) -> R {
+    fn yaw_acceleration(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>) -> R {
         R::from(0.0)
     }
 
@@ -315,26 +315,26 @@ pub trait Acts<R: Real> {
 /// Number type in which the equations of effects can be evaluated.
 pub trait EffectReal: Real {
     /// Equations of an effect in this number type.
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self>;
+    fn action(effect: &dyn Effect) -> &dyn Action<Self>;
 }
 
 impl EffectReal for f64 {
     #[inline]
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
+    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
         effect
     }
 }
 
 impl EffectReal for Tangent {
     #[inline]
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
+    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
         effect
     }
 }
 
 /// Scales of the manoeuvres in given records, from which priors follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Manoeuvres {
+pub struct RecordScales {
     /// Ship-length time L/U, s; where length or speed is unknown, (K/T)^(−1/2) of the base, which is of that order.
     pub time: f64,
     /// Largest rudder angle, rad.
@@ -426,7 +426,7 @@ impl Proposal {
     }
 
     /// Effect of one parameter, with a normal prior about its neutral value.
-    pub fn of_one(effect: impl Effect + 'static, sd: f64) -> Self {
+    pub fn with_normal_prior(effect: impl Effect + 'static, sd: f64) -> Self {
         let parameter = &effect.parameters()[0];
         let prior = Prior::normal(parameter, parameter.neutral, sd);
         Self::new(effect, [prior])

@@ -24,10 +24,11 @@ mod wave_yaw;
 
 pub use backlash::Backlash;
 pub use effect::{
-    Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
+    Action, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Scale,
+    SwayCoupling, Targets,
 };
 pub use file_number::{FileNumber, FileRole};
-pub use formula::{ColumnFormula, Formula, FormulaError, Sides};
+pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
 pub use list::{all, listed, meaning};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;

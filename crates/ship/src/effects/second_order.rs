@@ -2,7 +2,7 @@
 //!
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
+use super::effect::{Action, Description, Effect, Parameter, Prior, Proposal, RecordScales, SwayCoupling, Targets};
 use estimation::number::Real;
 
 /// Second-order response T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -29,7 +29,7 @@ impl Effect for SecondOrder {
     }
 
     /// Priors of T₂ and of T₃ − T₂, which is the amplitude: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
         let time = records.time;
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
         let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
@@ -37,8 +37,8 @@ impl Effect for SecondOrder {
         Some(Proposal::new(*self, [second, Prior { beside: Some(0), ..lead }]))
     }
 
-    fn places(&self) -> Places {
-        Places::NONE
+    fn targets(&self) -> Targets {
+        Targets::NONE
     }
 
     /// One state, s of [`crate::response`], which the response integrates.
@@ -51,7 +51,7 @@ impl Effect for SecondOrder {
     }
 }
 
-impl<R: Real> Acts<R> for SecondOrder {
+impl<R: Real> Action<R> for SecondOrder {
     fn sway_coupling(&self, p: &[R]) -> Option<SwayCoupling<R>> {
         Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
     }

@@ -4,7 +4,9 @@
 
 use std::sync::Arc;
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
+use super::effect::{
+    Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Scale, Targets,
+};
 use super::file_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
 use crate::particulars::Dimension;
@@ -108,7 +110,7 @@ impl Effect for SpeedLoss {
 
     /// Priors from hulls: loss c_u U/L of 0 ± 1, recovery time T_u U/L of 7 ± 4; with a measured speed, free-stream
     /// share e of 0.5 ± 0.25.
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
         let time = records.time;
         let propeller = |mean| match records.propeller {
             Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
@@ -138,8 +140,8 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn places(&self) -> Places {
-        Places::SCALE
+    fn targets(&self) -> Targets {
+        Targets::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {
@@ -170,18 +172,18 @@ impl Effect for SpeedLoss {
     }
 }
 
-impl<R: Real> Acts<R> for SpeedLoss {
-    fn approach(&self, _p: &[R], _now: &Now<R>, z: &mut [R]) {
+impl<R: Real> Action<R> for SpeedLoss {
+    fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(1.0));
     }
 
-    fn rates(&self, p: &[R], z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
+    fn rates(&self, p: &[R], z: &[R], now: &OperatingPoint<R>, _before: R, rate: &mut [R]) {
         if let Self::Modelled = self {
             rate[0] = (R::from(1.0) - z[0]) / p[1] - p[0] * now.yaw_rate * now.yaw_rate;
         }
     }
 
-    fn scale(&self, p: &[R], z: &[R], now: &Now<R>) -> Scale<R> {
+    fn scale(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> Scale<R> {
         match self {
             Self::Modelled => {
                 let q = z[0].at_least(MIN_SPEED_RATIO);

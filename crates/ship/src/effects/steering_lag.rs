@@ -1,6 +1,6 @@
 //! Steering lag: a rudder that acts later than the recorded one, by dead time, first-order lag or a clock offset.
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
 use estimation::number::Real;
 
 /// Lag of the acting rudder behind the recorded one.
@@ -32,8 +32,8 @@ impl Effect for SteeringLag {
         Description { id: "steering_lag", form, equation, parameters }
     }
 
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { time, spacing, .. } = *records;
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+        let RecordScales { time, spacing, .. } = *records;
         let sd = 0.1 * time + 0.2 * spacing;
         Some(match self {
             Self::DeadTime => {
@@ -51,10 +51,10 @@ impl Effect for SteeringLag {
         })
     }
 
-    fn places(&self) -> Places {
+    fn targets(&self) -> Targets {
         match self {
-            Self::DeadTime => Places::NONE,
-            Self::FirstOrder => Places::RUDDER,
+            Self::DeadTime => Targets::NONE,
+            Self::FirstOrder => Targets::RUDDER,
         }
     }
 
@@ -73,8 +73,8 @@ impl Effect for SteeringLag {
     }
 }
 
-impl<R: Real> Acts<R> for SteeringLag {
-    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+impl<R: Real> Action<R> for SteeringLag {
+    fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }
 
@@ -92,7 +92,7 @@ impl<R: Real> Acts<R> for SteeringLag {
         }
     }
 
-    fn rates(&self, p: &[R], z: &[R], _now: &Now<R>, before: R, rate: &mut [R]) {
+    fn rates(&self, p: &[R], z: &[R], _now: &OperatingPoint<R>, before: R, rate: &mut [R]) {
         if let Self::FirstOrder = self {
             rate[0] = (before - z[0]) / p[0].at_least(MIN_LAG_S);
         }
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_record_with_long_steps_shows_no_first_order_lag() {
-        let records = |spacing: f64| Manoeuvres {
+        let records = |spacing: f64| RecordScales {
             time: 20.0,
             rudder: 0.35,
             duration: 1e5,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
 use crate::angle::DEGREE;
 use crate::particulars::Dimension;
@@ -63,11 +63,11 @@ impl Effect for TransientDisturbance {
         Some(Arc::new(Self::Lasting { edge }))
     }
 
-    fn is_of_time(&self) -> bool {
+    fn is_time_dependent(&self) -> bool {
         true
     }
 
-    fn is_of_weather(&self) -> bool {
+    fn is_environmental(&self) -> bool {
         true
     }
 
@@ -75,8 +75,8 @@ impl Effect for TransientDisturbance {
         true
     }
 
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { spacing, span: [start, end], .. } = *records;
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+        let RecordScales { spacing, span: [start, end], .. } = *records;
         let length = end - start;
         let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
@@ -90,8 +90,8 @@ impl Effect for TransientDisturbance {
         Some(Proposal::new(*self, [moment, place[0], place[1]]))
     }
 
-    fn places(&self) -> Places {
-        Places::MOMENT
+    fn targets(&self) -> Targets {
+        Targets::MOMENT
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
@@ -110,8 +110,8 @@ impl Effect for TransientDisturbance {
     }
 }
 
-impl<R: Real> Acts<R> for TransientDisturbance {
-    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+impl<R: Real> Action<R> for TransientDisturbance {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let since = R::from(now.t) - p[1];
         let shape = match self {
             Self::Passing => {

@@ -2,7 +2,7 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Action, Description, Effect, Parameter, Proposal, RecordScales, Targets};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
@@ -32,15 +32,15 @@ impl Effect for WaveYaw {
     }
 
     /// None: wave yaw is no part of the response and is identified as part of the noise law.
-    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
         None
     }
 
-    fn places(&self) -> Places {
-        Places::NONE
+    fn targets(&self) -> Targets {
+        Targets::NONE
     }
 
-    fn is_of_weather(&self) -> bool {
+    fn is_environmental(&self) -> bool {
         true
     }
 
@@ -49,4 +49,4 @@ impl Effect for WaveYaw {
     }
 }
 
-impl<R: Real> Acts<R> for WaveYaw {}
+impl<R: Real> Action<R> for WaveYaw {}

@@ -3,7 +3,7 @@ use crate::Tangent;
 use crate::dynamics::Measured;
 use crate::effects;
 use crate::first_order::{State, Transition};
-use crate::replay::{Recorded, replay, replay_states};
+use crate::replay::{RecordedSignals, replay, replay_states};
 use crate::signal::Polyline;
 use approx::assert_relative_eq;
 
@@ -23,7 +23,7 @@ fn heading_at_end(response: &Response, rudder: &Polyline, side: f64) -> f64 {
     let speed = Polyline::new(vec![0.0, 100.0], vec![1.0, 0.7]).expect("increasing times");
     let (sway, wind, from) = (Polyline::constant(0.2 * side), Polyline::constant(3.0), Polyline::constant(0.8 * side));
     let propeller = Polyline::constant(1.2);
-    let recorded = Recorded {
+    let recorded = RecordedSignals {
         rudder,
         speed: Some(&speed),
         sway: Some(&sway),
@@ -108,7 +108,7 @@ fn an_effect_acts_where_it_says() {
         wind_from: Some(0.8),
         propeller: Some(1.2),
     };
-    let now = Now {
+    let now = OperatingPoint {
         t: 95.0,
         heading: 0.3,
         yaw_rate: 0.01,
@@ -120,13 +120,13 @@ fn an_effect_acts_where_it_says() {
     for effect in effects::all() {
         let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
         let z = vec![0.15; effect.states()];
-        let acts = f64::acts(effect.as_ref());
-        let acted_on = Places {
+        let acts = f64::action(effect.as_ref());
+        let acted_on = Targets {
             rudder: acts.rudder(&p, &z, 0.2) != 0.2,
             scale: acts.scale(&p, &z, &now) != Scale::none(),
             moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
         };
-        assert_eq!(acted_on, effect.places(), "{} ({})", effect.id(), effect.form());
+        assert_eq!(acted_on, effect.targets(), "{} ({})", effect.id(), effect.form());
     }
 }
 
@@ -137,7 +137,7 @@ fn a_replay_carries_its_derivatives() {
     let times: Vec<f64> = (0..=100).map(f64::from).collect();
     let end = |model: &ResponseModel, values: &[Tangent]| {
         let response = model.clone().with(values.to_vec());
-        let recorded = Recorded::rudder(&signal);
+        let recorded = RecordedSignals::rudder(&signal);
         let mut state = vec![Tangent::default(); response.dimension()];
         let zero = Tangent::default();
         response.enter(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
@@ -176,11 +176,11 @@ fn small_steps_are_taken_where_motion_is_fast() {
         let headings = |step: &dyn Fn(f64, f64) -> f64| {
             let mut state = vec![0.0; response.dimension()];
             let mut headings = Vec::new();
-            let recorded = Recorded::rudder(&signal);
+            let recorded = RecordedSignals::rudder(&signal);
             replay_states(response, &recorded, &times, step, &mut state, |_, state, _| headings.push(state[0]));
             headings
         };
-        let pace = response.pace();
+        let pace = response.time_constants();
         let coarse = headings(&|from, to| pace.shortest(from, to) / 4.0);
         coarse.iter().zip(headings(&|_, _| 1e-3)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
@@ -202,17 +202,17 @@ fn an_effect_is_what_it_says() {
             let times: Vec<f64> = (0..=100).map(|k| from + f64::from(k)).collect();
             let mut state = vec![0.0; response.dimension()];
             response.approach(heading, 0.0, &mut state);
-            replay(response, &Recorded::rudder(&signal), &times, 0.1, &mut state, |_, _| {});
+            replay(response, &RecordedSignals::rudder(&signal), &times, 0.1, &mut state, |_, _| {});
             state[0] - heading
         };
         assert_eq!(
             (turning(&response, 0.0, 0.0) - turning(&response, 1.0, 0.0)).abs() > 1e-9,
-            effect.sees_heading(),
+            effect.is_heading_dependent(),
             "{name}"
         );
         assert_eq!(
             (turning(&response, 0.0, 0.0) - turning(&response, 0.0, 500.0)).abs() > 1e-6,
-            effect.is_of_time(),
+            effect.is_time_dependent(),
             "{name}"
         );
         let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
@@ -232,7 +232,7 @@ fn second_order_has_the_declared_transfer_function() {
     response.approach(0.0, 0.0, &mut state);
     let signal = Polyline::constant(delta);
     let times = [0.0, 1.0, 5.0, 20.0, 60.0];
-    replay(&response, &Recorded::rudder(&signal), &times, 0.01, &mut state, |k, motion| {
+    replay(&response, &RecordedSignals::rudder(&signal), &times, 0.01, &mut state, |k, motion| {
         // Step response of K (1 + T₃ s)/((1 + T₁ s)(1 + T₂ s)) by partial fractions.
         let t = times[k];
         let exact =

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use super::{Model, Ship};
 use crate::dynamics::Input;
 use crate::particulars::Particulars;
-use crate::vessel::{Hull, SLOWEST};
+use crate::vessel::{Hull, MIN_SPEED_SHARE};
 
 /// Length and speed; the speed is that of the linear equations in the Marine Systems Simulator.
 const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
@@ -109,7 +109,7 @@ impl Hull for ContainerHull {
     /// speed.
     fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let Particulars { length: L, speed: U0 } = PARTICULARS;
-        let U = surge.hypot(sway).max(SLOWEST * U0);
+        let U = surge.hypot(sway).max(MIN_SPEED_SHARE * U0);
         let (u, v, r) = (surge / U, sway / U, yaw * L / U);
         let q = self.tip / U;
         let thrust = 2.0 * (DIAMETER / L).powi(2) * q * q * thrust_coefficient(inflow(u, v, r), q);

@@ -10,7 +10,7 @@ use approx::assert_relative_eq;
 use super::*;
 use crate::dynamics::{Input, Motion};
 use crate::linear::PrimeSwayYaw;
-use crate::replay::{Recorded, replay};
+use crate::replay::{RecordedSignals, replay};
 use crate::signal::Polyline;
 use crate::vessel::mmg::{BySign, Mmg};
 use crate::vessel::{Hull, state};
@@ -26,7 +26,9 @@ fn held_rudder(dynamics: &dyn Dynamics, delta_deg: f64, duration: f64, largest_s
     let mut state = vec![0.0; dynamics.dimension()];
     dynamics.approach(0.0, 0.0, &mut state);
     let mut end = Motion::default();
-    replay(dynamics, &Recorded::rudder(&rudder), &[0.0, duration], largest_step, &mut state, |_, motion| end = *motion);
+    replay(dynamics, &RecordedSignals::rudder(&rudder), &[0.0, duration], largest_step, &mut state, |_, motion| {
+        end = *motion
+    });
     (state, end)
 }
 
@@ -144,7 +146,7 @@ fn heading_after_reversals(dynamics: &dyn Dynamics, unit: f64, largest_step: f64
     dynamics.approach(0.0, 0.0, &mut state);
     let mut heading = 0.0;
     let times = [0.0, 24.0 * unit];
-    replay(dynamics, &Recorded::rudder(&rudder), &times, largest_step, &mut state, |_, motion| {
+    replay(dynamics, &RecordedSignals::rudder(&rudder), &times, largest_step, &mut state, |_, motion| {
         heading = motion.heading
     });
     heading

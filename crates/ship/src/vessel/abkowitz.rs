@@ -10,7 +10,7 @@
 //! Sources: Abkowitz (1964); Chislett and Strøm-Tejsen (1965).
 #![expect(non_snake_case, reason = "Xvv is a derivative of the force X; names are those of the source")]
 
-use super::{Hull, SLOWEST};
+use super::{Hull, MIN_SPEED_SHARE};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
 use crate::particulars::Particulars;
@@ -117,7 +117,7 @@ impl Hull for Abkowitz {
     fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let p = &self.derivatives;
         let Particulars { length: L, speed: U0 } = self.particulars;
-        let U = surge.hypot(sway).max(SLOWEST * U0);
+        let U = surge.hypot(sway).max(MIN_SPEED_SHARE * U0);
         let (u, v, r) = ((surge - U0) / U, sway / U, yaw * L / U);
         let d = -input.rudder;
 

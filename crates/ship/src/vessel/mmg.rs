@@ -21,7 +21,7 @@ use estimation::number::Real;
 use thiserror::Error;
 
 pub use self::parameters::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
-use super::{Hull, SLOWEST};
+use super::{Hull, MIN_SPEED_SHARE};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
 use crate::particulars::Particulars;
@@ -173,7 +173,7 @@ impl<R: Real> Mmg<R> {
         let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
         let revolutions = self.revolutions * turning;
         let rL = r * L;
-        let U = u.hypot(v).at_least(SLOWEST * self.approach_speed);
+        let U = u.hypot(v).at_least(MIN_SPEED_SHARE * self.approach_speed);
         let (v_, r_) = (v / U, rL / U);
         let beta = (-v).atan2(u);
         let U2 = U * U;

@@ -5,7 +5,7 @@
 //! Parameter sets with their sources are in [`crate::ships`].
 //!
 //! Water is deep and at rest, propeller revolutions are constant, heel is absent. The equations are valid for a ship
-//! that moves ahead; near standstill and astern they stay finite without physical meaning (see [`SLOWEST`]).
+//! that moves ahead; near standstill and astern they stay finite without physical meaning (see [`MIN_SPEED_SHARE`]).
 
 pub mod abkowitz;
 pub mod mmg;
@@ -38,7 +38,7 @@ pub mod state {
 ///
 /// Prime velocities v/U and r L/U are undefined at U → 0, and their powers would overflow. Ships in zig-zag trials and
 /// turning circles keep more than a quarter of their speed, so trials never reach this bound.
-pub const SLOWEST: f64 = 0.1;
+pub const MIN_SPEED_SHARE: f64 = 0.1;
 
 /// Hull with three degrees of freedom at constant propeller revolutions.
 ///

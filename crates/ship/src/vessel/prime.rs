@@ -22,7 +22,7 @@ use estimation::number::Real;
 use nalgebra::{DMatrix, DVector};
 
 use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
-pub use self::equations::{CalmHull, FASTEST, PrimeHull};
+pub use self::equations::{CalmHull, MAX_SPEED, PrimeHull};
 pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, priors};
@@ -106,17 +106,17 @@ fn is_of_side(key: &str) -> bool {
 }
 
 /// `true` if a coefficient belongs to the trial and not to the ship, so that each trial has its own.
-pub fn is_of_trial(key: &str) -> bool {
+pub fn is_trial_specific(key: &str) -> bool {
     key == BIAS.key
 }
 
 /// `true` for the coefficient of the wind.
-pub fn is_of_wind(key: &str) -> bool {
+pub fn is_windage(key: &str) -> bool {
     key == wind::WINDAGE.key
 }
 
 /// `true` if a coefficient depends on friction and so on the scale (Reynolds number): resistance and wake.
-pub fn is_of_friction(key: &str) -> bool {
+pub fn is_frictional(key: &str) -> bool {
     matches!(key, "x0" | "k" | "R0" | "wP0")
 }
 
@@ -142,7 +142,7 @@ pub struct HullForm {
 impl HullForm {
     /// Candidate forms for a ship, with priors from the particulars: the two polynomials, and the MMG model. Without
     /// particulars only the polynomials, with the priors of any ship.
-    pub fn of_ship(particulars: Option<&HullParticulars>) -> Vec<Self> {
+    pub fn candidates(particulars: Option<&HullParticulars>) -> Vec<Self> {
         let prior = particulars.and_then(|particulars| priors(particulars).ok());
         let polynomials = prior.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
             // Any ship at a usual Froude number, because the forms are nondimensional.
@@ -195,7 +195,7 @@ impl HullForm {
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances =
             DVector::from_iterator(coefficients.len(), coefficients.iter().map(|prior| prior.sd * prior.sd));
-        let equations = FormEquations::Mmg(Box::new(prior.parameters.of_length_one()));
+        let equations = FormEquations::Mmg(Box::new(prior.parameters.at_unit_length()));
         Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }.with_windage(prior)
     }
 
@@ -265,7 +265,7 @@ mod tests {
             }
         }
         for ship in ships {
-            for form in HullForm::of_ship(Some(&ship)) {
+            for form in HullForm::candidates(Some(&ship)) {
                 let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
                 let name = form.as_str();
                 assert!(form.covariance().clone().cholesky().is_some(), "{name} {ship:?}");

@@ -12,16 +12,16 @@ mod particulars;
 
 pub use self::particulars::{HullParticulars, PARTICULARS, Particular, ParticularsError, USUAL_FROUDE_NUMBER};
 
-pub use self::formulas::Formula;
+pub use self::formulas::CoefficientFormula;
 use self::formulas::{FORMULAS, Spread};
 use self::particulars::{HullDimensions, RATIOS};
 use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
 
 /// Prior of one coefficient.
 #[derive(Debug, Clone, Copy)]
-pub struct Coefficient {
+pub struct CoefficientPrior {
     /// Formula of the mean, with name and source.
-    pub formula: &'static Formula,
+    pub formula: &'static CoefficientFormula,
     /// Mean.
     pub mean: f64,
     /// Standard deviation.
@@ -29,11 +29,11 @@ pub struct Coefficient {
 }
 
 /// Source of the typical ratios.
-pub const SOURCE_OF_RATIOS: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
+pub const RATIO_SOURCE: &str = "typical: KVLCC2, KCS, ONRT, Esso Osaka, SEIUN MARU";
 
 /// Assumed value of a particular that was not given.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Assumed {
+pub struct AssumedParticular {
     /// Key of the particular.
     pub key: &'static str,
     /// Assumed value, in the unit of the key.
@@ -50,9 +50,9 @@ pub struct HullPrior {
     /// Mean hull, for [`super::mmg::Mmg::at_speed`].
     pub parameters: Parameters,
     /// Priors of the coefficients.
-    pub coefficients: Vec<Coefficient>,
+    pub coefficients: Vec<CoefficientPrior>,
     /// Assumed particulars.
-    pub assumed: Vec<Assumed>,
+    pub assumed: Vec<AssumedParticular>,
     /// Hulls one standard deviation above and below the mean, in every assumed ratio and in every coefficient by the
     /// error of its formula.
     pub deviations: Vec<[Parameters; 2]>,
@@ -81,27 +81,27 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     };
     let parameters = hull(&form);
     let mut deviations: Vec<[Parameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
-    let coefficient = |formula: &'static Formula| {
+    let coefficient = |formula: &'static CoefficientFormula| {
         let mean = (formula.of)(&form);
         let sd = match formula.spread {
             Spread::Share(share) => share * mean,
             Spread::Absolute(value) => value,
         };
         deviations.push([sd, -sd].map(|shift| with(parameters, formula, mean + shift)));
-        Coefficient { formula, mean, sd: (sd * sd + variance(&formula.of)).sqrt() }
+        CoefficientPrior { formula, mean, sd: (sd * sd + variance(&formula.of)).sqrt() }
     };
     let coefficients = FORMULAS.iter().map(coefficient).collect();
     let assumed = PARTICULARS.iter().filter_map(|particular| {
         let dimension = |form: &HullDimensions| particular.of_form.map_or(f64::NAN, |of_form| of_form(form));
         let formula = RATIOS.iter().find(|ratio| ratio.fills == particular.key)?.text();
         let (value, missing) = (dimension(&form), particular.get(given).is_none() && particular.of_form.is_some());
-        missing.then(|| Assumed { key: particular.key, value, sd: variance(&dimension).sqrt(), formula })
+        missing.then(|| AssumedParticular { key: particular.key, value, sd: variance(&dimension).sqrt(), formula })
     });
     Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
 }
 
 /// Parameters with another value of one coefficient.
-fn with(mut parameters: Parameters, formula: &Formula, value: f64) -> Parameters {
+fn with(mut parameters: Parameters, formula: &CoefficientFormula, value: f64) -> Parameters {
     *parameters.named(formula.key).expect("every coefficient has its place") = value;
     parameters
 }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::prime::{PrimeHull, wind_accelerations};
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::number::Tangent;
-use crate::replayable::{Pace, Replayable, ReplayedShip};
+use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
 
 /// Number of steps in the ship-length time L/U₀.
 const STEPS: f64 = 25.0;
@@ -80,8 +80,8 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
         true
     }
 
-    fn pace(&self) -> Pace {
-        Pace::always(self.length / self.speed / STEPS)
+    fn time_constants(&self) -> TimeConstants {
+        TimeConstants::always(self.length / self.speed / STEPS)
     }
 }
 
@@ -146,10 +146,10 @@ mod tests {
 
     /// The hull as expected, and KVLCC2.
     fn hulls() -> [ScaledHull; 2] {
-        let form = &HullForm::of_ship(None)[0];
+        let form = &HullForm::candidates(None)[0];
         let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
         let quadratic = form.with(&means).expect("a ship");
-        let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.of_length_one(), 1.0).expect("a ship");
+        let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.at_unit_length(), 1.0).expect("a ship");
         let mmg = PrimeHull { in_calm: CalmHull::Mmg(Box::new(mmg), 0.0), windage: 0.0 };
         [quadratic, mmg].map(scaled)
     }

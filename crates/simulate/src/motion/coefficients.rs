@@ -71,7 +71,7 @@ impl PlanarCoefficients {
     }
 
     /// First coefficient outside its bounds: symbol, value and bounds; `None` if all are within.
-    pub fn beyond(self) -> Option<(&'static str, f64, [f64; 2])> {
+    pub fn first_out_of_bounds(self) -> Option<(&'static str, f64, [f64; 2])> {
         let all = SYMBOLS.into_iter().zip(self.to_array()).zip(BOUNDS);
         all.map(|((symbol, value), ends)| (symbol, value, ends))
             .find(|(_, value, [low, high])| !(*low..=*high).contains(value))

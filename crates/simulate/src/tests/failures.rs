@@ -6,7 +6,7 @@ use trial::TrialError;
 
 use super::{KEY, zig_zag};
 use crate::disturbance::GaussMarkov;
-use crate::limits::{LONGEST_TIME, MOST_EXECUTES, MOST_ROWS};
+use crate::limits::{MAX_EXECUTES, MAX_ROWS, MAX_TIME_S};
 use crate::sensor::Spikes;
 use crate::{Expected, Manoeuvre, SimulateError, Simulation, Solver, Vessel};
 
@@ -32,12 +32,12 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
         |sd, correlation_time| refused(|s| s.sensors.heading_wander = Some(GaussMarkov { sd, correlation_time }));
     assert_eq!(wander(-0.1, 10.0), ("sensor.heading-wander.sd-deg", Expected::NotNegative));
     assert_eq!(wander(0.1, 0.0), ("sensor.heading-wander.correlation-s", Expected::Positive));
-    assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Expected::AtMost(LONGEST_TIME)));
+    assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Expected::AtMost(MAX_TIME_S)));
     let spikes = |probability, size| refused(|s| s.sensors.heading_spikes = Some(Spikes { probability, size }));
     assert_eq!(spikes(-0.1, 0.1), ("sensor.heading-spikes.probability", Expected::Between(0.0, 1.0)));
     assert_eq!(spikes(0.1, 0.0), ("sensor.heading-spikes.size-deg", Expected::Positive));
     assert_eq!(spikes(0.1, 4.0), ("sensor.heading-spikes.size-deg", Expected::AtMost(180.0)));
-    let rows = Expected::Between(1.0, MOST_ROWS as f64);
+    let rows = Expected::Between(1.0, MAX_ROWS as f64);
     assert_eq!(refused(|s| s.sensors.heading_every_rows = Some(0)), ("sensor.heading-every-rows", rows));
 }
 
@@ -52,7 +52,7 @@ fn a_message_says_what_was_found_and_what_was_expected() {
 #[test]
 fn an_unstable_ship_that_runs_away_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 4000.0);
-    simulation.vessel = Vessel::first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
+    simulation.vessel = Vessel::from_first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
     simulation.manoeuvre = Manoeuvre::turning_circle(0.1).lasting(4000.0);
     match failure(&simulation) {
         SimulateError::Diverged { time, .. } => assert!(time > 100.0 && time < 400.0, "{time}"),
@@ -64,7 +64,7 @@ fn an_unstable_ship_that_runs_away_is_an_error() {
 fn a_heading_that_is_never_reached_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 3000.0);
     // A bias that outweighs the port rudder: the ship can only turn to starboard.
-    simulation.vessel = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
+    simulation.vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
     simulation.longest_wait = 500.0;
     match failure(&simulation) {
         SimulateError::NeverReached { execute, waited, .. } => assert_eq!((execute, waited), (2, 500.0)),
@@ -93,10 +93,10 @@ fn a_run_that_takes_too_much_is_given_up() {
         SimulateError::TooLong { what, most, .. } => (what, most),
         other => panic!("expected to be given up, found {other}"),
     };
-    assert_eq!(given_up(&simulation), ("executes", MOST_EXECUTES));
+    assert_eq!(given_up(&simulation), ("executes", MAX_EXECUTES));
     simulation.manoeuvre = Manoeuvre::zig_zag(0.1, 0.4).until_execute(12);
     (simulation.recording.duration, simulation.recording.period) = (None, 1e-3);
-    assert_eq!(given_up(&simulation), ("rows", MOST_ROWS));
+    assert_eq!(given_up(&simulation), ("rows", MAX_ROWS));
 }
 
 #[test]

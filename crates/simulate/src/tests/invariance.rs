@@ -88,7 +88,7 @@ fn closed_form_and_runge_kutta_agree_to_1e_9() {
 
 #[test]
 fn port_first_is_the_exact_mirror() {
-    for vessel in [Vessel::first_order(training_ship()), cubic(0.4)] {
+    for vessel in [Vessel::from_first_order(training_ship()), cubic(0.4)] {
         let mut starboard = zig_zag(15.0, 10.0, 2.5, 300.0);
         starboard.vessel = vessel;
         starboard.gear.lag = 0.5;

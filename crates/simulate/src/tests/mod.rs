@@ -19,7 +19,7 @@ fn training_ship() -> FirstOrder {
 /// A zig-zag (degrees) of the training ship with a rudder rate (deg/s), until the record is full.
 pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simulation {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(delta_deg), from_deg(psi_deg));
-    let mut simulation = Simulation::new(Vessel::first_order(training_ship()), manoeuvre);
+    let mut simulation = Simulation::new(Vessel::from_first_order(training_ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(rate_deg_s));
     simulation.recording.duration = Some(duration);
     simulation
@@ -36,7 +36,7 @@ struct TestShip<F> {
 
 impl<F: Fn(f64, &Input) -> f64 + Send + Sync + 'static> TestShip<F> {
     fn vessel(acceleration: F, speed: fn(f64) -> f64, dead_time: f64) -> Vessel {
-        Vessel::hull(Arc::new(Self { acceleration, speed, dead_time }))
+        Vessel::from_dynamics(Arc::new(Self { acceleration, speed, dead_time }))
     }
 }
 

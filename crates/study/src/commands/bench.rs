@@ -102,7 +102,7 @@ pub fn measure(
             continue;
         }
         let folder = match folder {
-            Some(folder) => folder.inside(&scenario.name)?,
+            Some(folder) => folder.subfolder(&scenario.name)?,
             None => ResultFolder::make(&desk.path().join("rows").join(&scenario.name))?,
         };
         let mut rows: Vec<StudyRow> = Vec::new();
@@ -174,10 +174,10 @@ pub fn skipped(record: &Skipped) -> String {
 /// Writes everything; what an earlier run left and this one does not make goes away. The text of the document.
 fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
     let text = results.json().on("describe", &folder.path().join(BENCH))?;
-    folder.keep(BENCH, &text)?;
+    folder.write_synced(BENCH, &text)?;
     folder.write(ROWS, bench_tables::rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
-    let pages = folder.inside(METHODS)?;
+    let pages = folder.subfolder(METHODS)?;
     pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {
         pages.write(&format!("{}.md", slug(method)), bench_page::of_method(results, method).to_markdown())?;

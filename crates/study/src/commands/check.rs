@@ -55,13 +55,13 @@ fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> CheckedScenario {
     CheckedScenario {
         file: path.display().to_string(),
         name: scenario.name.clone(),
-        question: scenario.words.question.trim().to_owned(),
+        question: scenario.prose.question.trim().to_owned(),
         seed: scenario.seed,
         design_sha256: scenario.design_sha256.clone(),
         replicates: scenario.replicates,
         cells: scenario.cells.iter().map(|cell| cell.labels.clone()).collect(),
         methods: scenario.method_names(),
-        assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
+        assumptions: scenario.influential_defaults().into_iter().map(|(_, sentence)| sentence).collect(),
         resolved: resolved.then(|| scenario.resolved().parse().expect("it has been resolved")),
     }
 }
@@ -75,7 +75,7 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
         counted(scenario.labels().count() as u64, "method"),
         counted(scenario.replicates, "trial"),
     );
-    let mut defaults = scenario.defaults_that_matter().into_iter();
+    let mut defaults = scenario.influential_defaults().into_iter();
     let instant = defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder);
     size + &instant.map(|(_, note)| format!("\n  note: {note}")).unwrap_or_default()
 }

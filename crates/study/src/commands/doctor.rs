@@ -33,7 +33,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
         ("machine", format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS)),
         ("processors", threads::cores().to_string()),
         ("threads", threads::count(common).to_string()),
-        ("instruction set", estimation::lanes::set().to_owned()),
+        ("instruction set", estimation::lanes::instruction_set().to_owned()),
         ("standard output", terminal(output.is_terminal(), screen::is_coloured(&output)).to_owned()),
         ("standard error", terminal(errors.is_terminal(), screen::is_coloured(&errors)).to_owned()),
         ("spreadsheets", String::from(if cfg!(feature = "spreadsheets") { "read" } else { "not compiled in" })),

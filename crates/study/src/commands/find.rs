@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use document::Warnings;
 use report::number::{MISSING, fixed, optional};
 use report::{Table, TableHead};
-use trial::file::called;
+use trial::file::display_path;
 
 use crate::documents;
 use crate::documents::find::{FindAnswer, ManoeuvreEntry, SearchedLog};
@@ -37,7 +37,7 @@ pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<Fin
 
 fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<SearchedLog, Failure> {
     let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
-    Ok(SearchedLog::of(called(file), &log, &log.manoeuvres()))
+    Ok(SearchedLog::of(display_path(file), &log, &log.manoeuvres()))
 }
 
 /// Prints the manoeuvres of every log.

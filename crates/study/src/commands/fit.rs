@@ -63,7 +63,7 @@ pub fn show(
     let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
     let table = fit_page::answers(document, curves);
     let output = CommandOutput { frame: [&head, ""], table: &table, notes: &notes, document: text };
-    screen::tell(common, &output, &shortened(document.of_answer()))
+    screen::tell(common, &output, &shortened(document.answer_warnings()))
 }
 
 /// Warnings that stand on the screen.

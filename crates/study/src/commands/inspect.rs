@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use document::{Code, Warning, Warnings};
+use document::{Warning, WarningCode, Warnings};
 use report::number::{MISSING, fixed, optional, significant};
 use report::{Table, TableHead};
-use trial::file::called;
+use trial::file::display_path;
 use trial::{Log, ReadError};
 
 use crate::documents;
@@ -37,7 +37,7 @@ pub struct InspectRequest {
 pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
-    let file = called(&request.log);
+    let file = display_path(&request.log);
     warnings.extend(source(file).of(doubts(log.clone())));
     let answer = InspectAnswer::of(file, &log, warnings.ranked());
     let LogEntry { file, rows, duration_s, .. } = &answer.log;
@@ -49,7 +49,8 @@ pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
 
 /// Warnings of the log read as one record; the reason where it cannot be.
 fn doubts(log: Log) -> Vec<Warning> {
-    let refused = |problem: String| vec![Code::Implausible.warning(format!("not usable as one record: {problem}"))];
+    let refused =
+        |problem: String| vec![WarningCode::Implausible.warning(format!("not usable as one record: {problem}"))];
     match log.into_trial(None) {
         Ok(read) => read.warnings,
         Err(ReadError::Table { problem, .. }) => refused(problem.to_string()),

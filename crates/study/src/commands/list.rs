@@ -7,7 +7,7 @@ use identify::{IdentifierSettings, registry};
 use report::number::MISSING;
 use report::{Table, TableHead};
 use ship::angle::KNOT;
-use ship::vessel::prior::{self, Assumed, Formula, Particular};
+use ship::vessel::prior::{self, AssumedParticular, CoefficientFormula, Particular};
 use ship::{effects, ships};
 
 use crate::documents::{self, answers::ListAnswer};
@@ -188,12 +188,12 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
     let mut table =
         Table::new(TableHead::default().texts(["key", "symbol"]).numbers(["mean", "sd"]).texts(["formula", "source"]));
     let digits = |value: f64| report::number::significant(value, 3);
-    for Assumed { key, value, sd, formula } in prior.assumed {
+    for AssumedParticular { key, value, sd, formula } in prior.assumed {
         let symbol = Particular::named(key).map_or("", |particular| particular.symbol);
-        table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::SOURCE_OF_RATIOS]);
+        table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::RATIO_SOURCE]);
     }
     for coefficient in &prior.coefficients {
-        let Formula { key, symbol, text, source, .. } = *coefficient.formula;
+        let CoefficientFormula { key, symbol, text, source, .. } = *coefficient.formula;
         table.push([key, symbol, &digits(coefficient.mean), &digits(coefficient.sd), text, source]);
     }
     Ok(table)

@@ -7,7 +7,7 @@ use document::{Warning, Warnings};
 use predict::PredictDocument;
 use predict::turn::{self, Current};
 use report::Theme;
-use trial::file::called;
+use trial::file::display_path;
 use trial::{Sidecar, Trial};
 
 use crate::documents::{self, PREDICT, draws, folder_for};
@@ -87,7 +87,7 @@ pub fn show(
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
 fn default_folder(model: &Path) -> PathBuf {
-    let model = called(model);
+    let model = display_path(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let name =
         model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));

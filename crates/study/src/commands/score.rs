@@ -38,7 +38,7 @@ pub struct ScoreRequest {
 }
 
 /// Description of trials: a scenario and a few keys.
-const LIST: Kind = Kind { name: "a description of trials", largest: 1 << 22 };
+const LIST: Kind = Kind { name: "a description of trials", max_bytes: 1 << 22 };
 
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` would.
 ///

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use ship::angle::to_deg;
 use trial::Log;
-use trial::find::FoundManoeuvre;
+use trial::find::DetectedManoeuvre;
 
 use super::answers::CommandAnswer;
 use super::log::LogEntry;
@@ -60,9 +60,9 @@ pub struct ManoeuvreEntry {
 
 impl SearchedLog {
     /// A log with its manoeuvres.
-    pub fn of(file: &Path, log: &Log, manoeuvres: &[FoundManoeuvre]) -> Self {
+    pub fn of(file: &Path, log: &Log, manoeuvres: &[DetectedManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
-        let manoeuvre = |(trial, manoeuvre): (usize, &FoundManoeuvre)| {
+        let manoeuvre = |(trial, manoeuvre): (usize, &DetectedManoeuvre)| {
             let [rudder_deg, heading_deg] = manoeuvre.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
                 trial,

@@ -70,7 +70,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let unit = readings.channel.written_unit();
         let shown = |value: f64| value / unit.to_si();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
-        let spoken = |channel: Channel| names::plain(channel.spoken());
+        let spoken = |channel: Channel| names::plain(channel.label());
         let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::missing_moment::{MissingMoment, Over, Panel};
+use ::trace::missing_moment::{MissingMoment, MomentChannel, Panel};
 use campaign::curves::degrees;
 use campaign::statistics::distinct;
 use document::names;
@@ -28,7 +28,7 @@ pub struct MissingMomentCurves {
 /// The moment over one channel, in the units of figures.
 pub struct ChannelCurve {
     /// The channel; `None` of one that no table has.
-    pub over: Option<Over>,
+    pub over: Option<MomentChannel>,
     /// The channel at the times of the moment.
     pub rows: Vec<f64>,
     /// Places of the curve.
@@ -46,7 +46,7 @@ impl MissingMomentCurves {
     pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
         let column_of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
         let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
-            over: Over::ALL.into_iter().find(|over| column(*over).0 == name),
+            over: MomentChannel::ALL.into_iter().find(|over| column(*over).0 == name),
             rows: column_of(time, name),
             x: column_of(channels, name),
             moment: column_of(channels, &format!("{name}_{MOMENT}")),
@@ -70,18 +70,18 @@ const HALF_WIDTH: &str = "half_width95_rudder_deg";
 const EXPLAINED: &str = "explained_rudder_deg";
 
 /// Name of a channel in a table, and whether it is an angle.
-fn column(over: Over) -> (&'static str, bool) {
+fn column(over: MomentChannel) -> (&'static str, bool) {
     match over {
-        Over::YawRate => ("yaw_rate_deg_s", true),
-        Over::Rudder => ("rudder_deg", true),
-        Over::Heading => ("heading_deg", true),
-        Over::Speed => ("speed_m_s", false),
-        Over::WindFrom => ("wind_relative_from_deg", true),
-        Over::Sway => ("sway_m_s", false),
+        MomentChannel::YawRate => ("yaw_rate_deg_s", true),
+        MomentChannel::Rudder => ("rudder_deg", true),
+        MomentChannel::Heading => ("heading_deg", true),
+        MomentChannel::Speed => ("speed_m_s", false),
+        MomentChannel::WindFrom => ("wind_relative_from_deg", true),
+        MomentChannel::Sway => ("sway_m_s", false),
     }
 }
 
-fn shown(over: Over, values: &[f64]) -> Vec<f64> {
+fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
     if column(over).1 { degrees(values) } else { values.to_vec() }
 }
 
@@ -115,7 +115,7 @@ pub fn over_channels(missing: &MissingMoment) -> String {
         let about = |values: &[f64]| values.iter().map(|value| to_deg(value + mean)).collect::<Vec<f64>>();
         columns.push(format!("{name}_{MOMENT}"), about(&curve.moment));
         columns.push(format!("{name}_{HALF_WIDTH}"), degrees(&curve.half_width));
-        if let Some(other) = curve.others.first() {
+        if let Some(other) = curve.explanations.first() {
             columns.push(format!("{name}_{EXPLAINED}"), about(other));
         }
     }
@@ -135,7 +135,7 @@ pub fn entry(
     verdict: Verdict,
     explains: bool,
 ) -> MissingMomentEntry {
-    let shows = |panel: &&Panel| panel.share.is_some() && !panel.curve.holds_nothing();
+    let shows = |panel: &&Panel| panel.share.is_some() && !panel.curve.contains_zero();
     let telling = || missing.panels.iter().filter(shows);
     let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
     let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
@@ -145,7 +145,7 @@ pub fn entry(
         channel: panel.over.as_str().to_owned(),
         column: column(panel.over).0.to_owned(),
         variance_share: panel.share,
-        shows: !panel.curve.holds_nothing(),
+        shows: !panel.curve.contains_zero(),
         inside: effects(missing, &panel.inside),
     };
     let square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;

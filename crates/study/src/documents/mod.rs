@@ -111,7 +111,7 @@ fn few(files: &[String]) -> String {
 /// Writes the document of a command to a folder and returns its text. Fails when the file cannot be written.
 pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
     let text = text(document).on("describe", &folder.path().join(name))?;
-    folder.keep(name, &text).map(|_| text)
+    folder.write_synced(name, &text).map(|_| text)
 }
 
 /// Writes the document of a command and the curves of its figures to a folder.

@@ -1,7 +1,7 @@
 //! Sentences on earlier trials of a ship (`--prior`) beside her records.
 
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use report::number::{fixed, significant};
 use ship::vessel::prime::meaning;
 
@@ -35,7 +35,7 @@ pub fn sentence(earlier: &EarlierTrials) -> String {
 
 /// Warning of a conflict between records and models; `None` where they agree.
 pub fn warning(earlier: &EarlierTrials) -> Option<Warning> {
-    earlier.conflict.then(|| Code::EarlierTrials.warning(contradiction(earlier)))
+    earlier.conflict.then(|| WarningCode::EarlierTrials.warning(contradiction(earlier)))
 }
 
 /// Text of the warning: the conflict, the coefficients farthest off, and what to do.

@@ -78,7 +78,7 @@ impl TrueIndices {
 /// Fails when the drawn values of the trial make no ship.
 pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
-    let specimen = cell.specimen(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;
+    let trial_spec = cell.trial_spec(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;
     let truth = &simulated.truth;
     Ok(TruthDocument {
         schema: "truth/1",
@@ -87,9 +87,9 @@ pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Tru
         cell: cell.title(),
         replicate: task.replicate,
         nearest: truths.nearest.map(TrueIndices::of),
-        own: truths.own.map(TrueIndices::of),
-        missing: specimen.specification.missing.clone(),
-        drawn: scenario.draws.iter().cloned().zip(specimen.drawn.iter().copied()).collect(),
+        own: truths.base.map(TrueIndices::of),
+        missing: trial_spec.specification.missing.clone(),
+        drawn: scenario.draws.iter().cloned().zip(trial_spec.drawn.iter().copied()).collect(),
         executes_s: truth.executes.iter().map(|execute| execute.time).collect(),
         motion: TrueMotion {
             t_s: truth.time.clone(),

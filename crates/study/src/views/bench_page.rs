@@ -8,7 +8,7 @@ use campaign::benchmark::cases::BenchCase;
 use campaign::benchmark::{BenchDocument, BenchTask};
 
 use campaign::scenario::name::slug;
-use campaign::statistics::{FEWEST, grouped};
+use campaign::statistics::{MIN_INTERVAL_VALUES, grouped};
 use report::markdown::text;
 use report::{Page, PlacedFigures};
 
@@ -57,7 +57,7 @@ pub fn page(results: &BenchDocument) -> Page {
 /// Cases and records of a leaderboard.
 fn counted(board: &Board) -> String {
     let Board { cases, clusters, .. } = *board;
-    let few = if (clusters as u64) < FEWEST { ", too few for an interval" } else { "" };
+    let few = if (clusters as u64) < MIN_INTERVAL_VALUES { ", too few for an interval" } else { "" };
     match cases == clusters {
         true => format!("{}{few}", report::number::counted(cases as u64, "record")),
         false => format!("{cases} cases on {clusters} records{few}"),

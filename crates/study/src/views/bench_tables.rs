@@ -164,7 +164,7 @@ pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
 }
 
 fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLine)>) -> Table {
-    let head = TableHead::default().texts(["method", first]).counts(["n"]).counts(Naming::ALL.map(Naming::words));
+    let head = TableHead::default().texts(["method", first]).counts(["n"]).counts(Naming::ALL.map(Naming::label));
     let mut table = Table::new(head.counts(["failed"]).numbers(["named"]).unit("%"));
     for (ships, line) in lines {
         let head = [line.method.clone(), ships.to_owned(), line.named.of.to_string()];
@@ -225,7 +225,7 @@ pub fn rows(results: &BenchDocument) -> Table {
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();
-            let judgement = answer.naming.map_or_else(String::new, |naming| naming.words().to_owned());
+            let judgement = answer.naming.map_or_else(String::new, |naming| naming.label().to_owned());
             table.push([
                 task.id().to_owned(),
                 field.clone(),

@@ -364,7 +364,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
             layers: compared.methods.iter().filter_map(of_method).chain(bound).collect(),
         }
     };
-    let marks = design.words.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
+    let marks = design.prose.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
     let stack = Stack {
         x: vec![across; groups.len()],
         rows: titles.iter().enumerate().map(row).collect(),

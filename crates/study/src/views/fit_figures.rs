@@ -36,7 +36,7 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
         let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(gain)));
         PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
-    let shown = document.shown_method();
+    let shown = document.drawn_method();
     for (number, record) in curves.records.iter().enumerate() {
         figures.extend(of_record(record, if number == 0 { "" } else { &record.name }, shown));
     }
@@ -49,7 +49,7 @@ const TOLERANCE: f64 = 0.1;
 /// Finding: K and T of the shown method, and how many other methods agree.
 fn agreement(document: &FitDocument) -> String {
     let answer = |entry: &MethodEntry| Some([entry.parameters?.k_per_s.value, entry.parameters?.t_s.value]);
-    let shown = document.shown_method();
+    let shown = document.drawn_method();
     let (of_shown, other_answers): (Vec<_>, Vec<_>) =
         document.methods.iter().partition(|entry| Some(entry.method.as_str()) == shown);
     let Some([k, t]) = of_shown.first().and_then(|entry| answer(entry)) else {

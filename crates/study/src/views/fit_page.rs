@@ -1,7 +1,7 @@
 //! The page of a fit: what was read, the answers, what was measured, and the figures.
 
 use askama::Template;
-use document::fit::{FitDocument, Reason, ResidualKind, VerdictEntry, ZigZagEntry};
+use document::fit::{FitDocument, ResidualKind, VerdictEntry, VerdictReason, ZigZagEntry};
 use document::method::MethodEntry;
 use document::names;
 use report::markdown::text;
@@ -79,7 +79,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         mark: "###",
         answers: answers(document, curves),
         records: document.single_records.as_ref().map(indices::records),
-        warnings: document.of_answer().map(ToString::to_string).collect(),
+        warnings: document.answer_warnings().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
         scales: scales(document),
         remarks: document.notes().map(ToString::to_string).collect(),
@@ -140,10 +140,12 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         return Some(format!("No K and T can be taken from {trial}, because {because}.\n{advice}"));
     }
     let because = match verdict.reason {
-        Reason::NearestReplay => "its replay is closest to the recorded headings",
-        Reason::RandomMoment => "random yaw moments (gusts, waves) act on the ship, and this method allows for them",
-        Reason::RudderNoise => "the recorded rudder is noisy, and this method allows for it",
-        Reason::HeadingJumps => "the recorded heading jumps, and this method estimates the jumps",
+        VerdictReason::NearestReplay => "its replay is closest to the recorded headings",
+        VerdictReason::RandomMoment => {
+            "random yaw moments (gusts, waves) act on the ship, and this method allows for them"
+        }
+        VerdictReason::RudderNoise => "the recorded rudder is noisy, and this method allows for it",
+        VerdictReason::HeadingJumps => "the recorded heading jumps, and this method estimates the jumps",
     };
     let mut text = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
     let amplitude = indices::of_amplitude(document.amplitude.as_ref());
@@ -202,11 +204,11 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let name = &other.method;
     let has_moment = other.noise.is_some_and(|noise| !noise.moment.is_none());
     let why = match verdict.reason {
-        Reason::NearestReplay if has_moment => "it explains part of the manoeuvre as random gusts",
-        Reason::NearestReplay => "its answer differs; compare both replays",
-        Reason::RandomMoment => "it attributes the random yaw moments to the rudder",
-        Reason::RudderNoise => "it does not allow for noise of the rudder",
-        Reason::HeadingJumps => "it takes jumps of the heading for turns of the ship",
+        VerdictReason::NearestReplay if has_moment => "it explains part of the manoeuvre as random gusts",
+        VerdictReason::NearestReplay => "its answer differs; compare both replays",
+        VerdictReason::RandomMoment => "it attributes the random yaw moments to the rudder",
+        VerdictReason::RudderNoise => "it does not allow for noise of the rudder",
+        VerdictReason::HeadingJumps => "it takes jumps of the heading for turns of the ship",
     };
     format!("\nNot used: {name}, because {why}.")
 }

@@ -8,7 +8,7 @@ use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
-use trace::missing_moment::Over;
+use trace::missing_moment::MomentChannel;
 
 use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
@@ -19,14 +19,14 @@ const MAX_PANELS: usize = 4;
 const REACHES: [f64; 2] = [8.0, 2.5];
 
 /// Title of an axis over a channel.
-fn title_of(over: Over) -> String {
+fn title_of(over: MomentChannel) -> String {
     match over {
-        Over::YawRate => format!("yaw rate {} [°/s]", symbol("r")),
-        Over::Rudder => format!("rudder {} [°]", symbol("δ")),
-        Over::Heading => format!("heading {} [°]", symbol("ψ")),
-        Over::Speed => format!("speed {} [m/s]", symbol("U")),
-        Over::Sway => format!("sway velocity {} [m/s]", symbol("v")),
-        Over::WindFrom => String::from("relative wind from [° off the bow]"),
+        MomentChannel::YawRate => format!("yaw rate {} [°/s]", symbol("r")),
+        MomentChannel::Rudder => format!("rudder {} [°]", symbol("δ")),
+        MomentChannel::Heading => format!("heading {} [°]", symbol("ψ")),
+        MomentChannel::Speed => format!("speed {} [m/s]", symbol("U")),
+        MomentChannel::Sway => format!("sway velocity {} [m/s]", symbol("v")),
+        MomentChannel::WindFrom => String::from("relative wind from [° off the bow]"),
     }
 }
 

@@ -32,7 +32,7 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
         // The limits are for ships: a model has none, and which ship it is a model of the record does not say.
-        let ship = record.particulars().filter(|ship| ship.length >= imo::SHORTEST_M);
+        let ship = record.particulars().filter(|ship| ship.length >= imo::MIN_LENGTH_M);
         let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
         let rudder = trial.rudder().iter().fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
         for (number, word) in [(0, "first"), (1, "second")] {

@@ -2,7 +2,7 @@
 
 use askama::Template;
 use campaign::statistics::grouped;
-use predict::form::{DECIMALS, ImoFormEntry, STOPPING, TRACK_REACH_LENGTHS};
+use predict::form::{ImoFormEntry, MAX_DECIMALS, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -16,13 +16,13 @@ const EMPTY: &str = "–";
 /// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
 fn filled(entry: &ImoFormEntry) -> String {
     if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
-        return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(DECIMALS));
+        return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(MAX_DECIMALS));
     }
     match entry.value.as_ref().map(|value| value.as_f64().ok_or(value)) {
         // As many decimals of a measured result as its standard deviation supports.
         Some(Ok(number)) if entry.side.is_some() => {
-            let supported = |sd: f64| ((-sd.log10()).ceil().max(0.0) as usize).min(DECIMALS);
-            fixed(number, entry.sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, supported))
+            let supported = |sd: f64| ((-sd.log10()).ceil().max(0.0) as usize).min(MAX_DECIMALS);
+            fixed(number, entry.sd.filter(|sd| *sd > 0.0).map_or(MAX_DECIMALS, supported))
         }
         Some(Ok(number)) => significant(number, if number.fract() == 0.0 { 1 } else { 3 }),
         Some(Err(text_value)) => text_value.as_str().unwrap_or_default().to_owned(),

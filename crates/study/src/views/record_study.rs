@@ -8,7 +8,7 @@ use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
-use campaign::scenario::Words;
+use campaign::scenario::Prose;
 use campaign::statistics::{MIN_SUMMARISED, Statistic};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
@@ -209,7 +209,7 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
 /// Text of the screen: question, table, coverage of predictions.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
-    let mut text = format!("{}: {}\n\n", stored.manifest.name, design.words.question.trim());
+    let mut text = format!("{}: {}\n\n", stored.manifest.name, design.prose.question.trim());
     text += &brief(&summary.records, design).to_text();
     if !summary.predictions.is_empty() {
         text += "\ncoverage of 90 % prediction intervals\n";
@@ -223,7 +223,7 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
 #[template(path = "records.md", escape = "none")]
 struct RecordsPage<'a> {
     manifest: &'a Manifest,
-    words: &'a Words,
+    words: &'a Prose,
     brief: Table,
     coverage: Option<Table>,
     figures: PlacedFigures<FigurePlace>,
@@ -234,7 +234,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     let predictions = &summary.predictions;
     let page = RecordsPage {
         manifest,
-        words: &design.words,
+        words: &design.prose,
         brief: brief(&summary.records, design),
         coverage: (!predictions.is_empty()).then(|| coverage_table::pooled(predictions, design)),
         figures: PlacedFigures(figures),

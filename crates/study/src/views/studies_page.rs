@@ -73,7 +73,7 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
     let path = folder.join(files::MANIFEST);
     let missing = || Failure::about(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
-    let words = manifest.words();
+    let words = manifest.prose();
     let unfit = |stem: &str, unfit| Failure::about(&path, format!("`output.figure` is {}; {unfit}", name::shown(stem)));
     let figure = match &words.output.figure {
         Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),

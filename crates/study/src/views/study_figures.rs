@@ -55,7 +55,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
     if choice == FigureChoice::None {
         return Vec::new();
     }
-    let (output, mut figures) = (&design.words.output, all());
+    let (output, mut figures) = (&design.prose.output, all());
     // Two titles may make one slug.
     let stems = names(figures.iter().map(|(_, figure)| &figure.stem));
     figures.iter_mut().zip(&stems).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
@@ -107,7 +107,7 @@ const MAX_TRACED_CELLS: usize = 24;
 
 /// Summaries of one of several traces: the first that the scenario highlights, else the first.
 pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
-    let about = &design.words.output.highlight.series;
+    let about = &design.prose.output.highlight.series;
     let is_about = |line: &&TraceSummary| about.contains(&design.methods[line.method].label);
     let method = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
     summary.tracing.iter().filter(|line| line.method == method).cloned().collect()

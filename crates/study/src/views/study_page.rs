@@ -2,8 +2,8 @@
 
 use askama::Template;
 use campaign::manifest::Manifest;
-use campaign::scenario::{MethodName, Words};
-use campaign::showcase::{Showcase, ShownAnswer};
+use campaign::scenario::{MethodName, Prose};
+use campaign::showcase::{Showcase, ShowcaseAnswer};
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, blind_spots};
 use document::names;
@@ -19,7 +19,7 @@ const MAX_SHOWN_CELLS: usize = 12;
 /// Text of the screen: the first trial of every cell in detail, all trials in brief, failures with their reasons.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let StoredStudy { manifest, design, showcases, .. } = stored;
-    let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
+    let mut text = format!("{}: {}\n\n", manifest.name, design.prose.question.trim());
     for showcase in showcases {
         text += &format!("{}\n{}\n", title(showcase, "first trial"), tables::showcase(showcase).to_text());
     }
@@ -55,7 +55,7 @@ fn title<'a>(showcase: &'a Showcase, otherwise: &'a str) -> &'a str {
 #[template(path = "study.md", escape = "none")]
 struct StudyPage<'a> {
     manifest: &'a Manifest,
-    words: &'a Words,
+    words: &'a Prose,
     trials: Vec<FirstTrial<'a>>,
     named: Option<NamedEffects>,
     coverage: Option<Table>,
@@ -110,7 +110,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
     let is_predicted = !summary.predictions.is_empty();
     let page = StudyPage {
         manifest,
-        words: &design.words,
+        words: &design.prose,
         trials: showcases.iter().enumerate().map(trial).collect(),
         named: (!tracing.is_empty()).then(named),
         coverage: is_predicted.then(|| coverage_table::pooled(&summary.predictions, design)),
@@ -127,7 +127,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
 }
 
 fn first_trial<'a>(showcase: &'a Showcase, figures: String) -> FirstTrial<'a> {
-    let warning = |answer: &ShownAnswer, warning| format!("{}: {warning}", answer.entry.method);
+    let warning = |answer: &ShowcaseAnswer, warning| format!("{}: {warning}", answer.entry.method);
     FirstTrial {
         title: title(showcase, "The first trial"),
         table: tables::showcase(showcase),

@@ -324,7 +324,7 @@ pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
 }
 
 fn is_of_time(id: &str) -> bool {
-    ship::effects::all().iter().any(|effect| effect.id() == id && effect.is_of_time())
+    ship::effects::all().iter().any(|effect| effect.id() == id && effect.is_time_dependent())
 }
 
 /// Probability that a noncentral χ² exceeds a limit: a Poisson mixture of central ones.

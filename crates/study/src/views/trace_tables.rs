@@ -1,11 +1,11 @@
 //! Tables of a trace, from its document alone.
 
 use ::trace::replay_errors::HORIZONS;
-use document::stored_hull::StoredCoefficient;
+use document::identified_hull::IdentifiedCoefficient;
 use document::trace::{
     ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
 };
-use document::{Moment, names};
+use document::{MomentKind, names};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Table, TableHead};
 use ship::angle::to_deg;
@@ -120,7 +120,7 @@ pub fn hulls(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
-        let mut far: Vec<&StoredCoefficient> =
+        let mut far: Vec<&IdentifiedCoefficient> =
             hull.coefficients.iter().filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).collect();
         far.sort_by(|a, b| b.departure().abs().total_cmp(&a.departure().abs()));
         for entry in far {
@@ -236,13 +236,15 @@ pub fn coloured(noise: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     let size = two(noise.moment_sd_rudder_deg);
     let moment = match noise.moment {
-        Moment::White => Some(format!("a random yaw moment of {size}° of rudder (mean over 1 s)")),
-        Moment::OrnsteinUhlenbeck => {
+        MomentKind::White => Some(format!("a random yaw moment of {size}° of rudder (mean over 1 s)")),
+        MomentKind::OrnsteinUhlenbeck => {
             let time = two(noise.moment_correlation_s);
             Some(format!("gusts of {size}° of rudder that last about {time} s"))
         }
-        Moment::Walk => Some(format!("a randomly drifting yaw moment ({size}° of rudder in 1 s, twice that in 4 s)")),
-        Moment::None => None,
+        MomentKind::Walk => {
+            Some(format!("a randomly drifting yaw moment ({size}° of rudder in 1 s, twice that in 4 s)"))
+        }
+        MomentKind::None => None,
     };
     let heading = noise.heading_wander_sd_deg.map(|sd| {
         let whose = noise.heading_wander.unwrap_or(HeadingWander::Compass);

@@ -11,7 +11,7 @@ use super::trace_charts::calibration;
 use campaign::design::Design;
 use campaign::scenario::TRACE;
 use campaign::statistics::{Statistic, share};
-use campaign::summary::{CALIBRATION, CLEAR, Performance, Summary, TraceSummary};
+use campaign::summary::{CALIBRATION, MIN_CLEAR_MARGIN, Performance, Summary, TraceSummary};
 use trace::Verdict;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -26,7 +26,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     let shares = ["all named", "exact", "false names", "named where clear"];
     let shares = shares.iter().flat_map(|name| ends.iter().map(move |end| format!("{name}{end}")));
     let head = head_of_cells(design).texts(several.then_some("method")).texts(["missing"]).counts(["trials"]);
-    let head = head.numbers(shares).unit("%").counts([format!("clear (margin above {CLEAR:.0})")]);
+    let head = head.numbers(shares).unit("%").counts([format!("clear (margin above {MIN_CLEAR_MARGIN:.0})")]);
     let head = head.counts(Verdict::ALL.map(|verdict| verdict.to_string()));
     let head = head.numbers(["heading before", "heading after", "validation before", "validation after"]).unit("deg");
     let head = head.numbers(["expected likelihood ratio"]).numbers(["band covers", "band covers validation"]).unit("%");

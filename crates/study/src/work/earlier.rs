@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use campaign::earlier::hulls_of;
 use campaign::failure::Failure;
-use campaign::known::RecordFacts;
+use campaign::identified_ship::RecordFacts;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
-use document::stored_hull::rows_of;
-use document::{Code, IdentifiedShip, Warning};
-use identify::hull::{self, EarlierHull, ExpectationCheck, is_other_froude_number};
+use document::identified_hull::rows_of;
+use document::{IdentifiedShip, Warning, WarningCode};
+use identify::hull::{self, EarlierHull, PriorCheck, differs_in_froude_number};
 use predict::drawable_hull;
 use report::number::fixed;
 use ship::vessel::prior::HullParticulars;
@@ -32,7 +32,7 @@ impl EarlierModel {
     /// The models of some files. Fails when one cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
-            let shown = file::called(path).display().to_string();
+            let shown = file::display_path(path).display().to_string();
             Self::of_document(&shown, &text_of(path)?)
         };
         paths.iter().map(read).collect()
@@ -105,9 +105,9 @@ pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, 
 fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning> {
     let of_model = |model: &EarlierModel| {
         let earlier_ship = model.hulls[0].particulars;
-        is_other_froude_number(&earlier_ship, ship).then(|| {
+        differs_in_froude_number(&earlier_ship, ship).then(|| {
             let [of_model, of_records] = [earlier_ship, *ship].map(|ship| fixed(ship.froude_number(), 3));
-            Code::EarlierTrials.warning(format!(
+            WarningCode::EarlierTrials.warning(format!(
                 "--prior {}: its ship sailed at a Froude number of {of_model}, that of the records at {of_records}; coefficients change with \
                  the Froude number, so prefer trials at a similar one",
                 model.file
@@ -146,7 +146,7 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
     let before_trials = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
     for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
-        let Some((after, check)) = hull::after_earlier(hull_before, &earlier) else { continue };
+        let Some((after, check)) = hull::combined(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = rows_of(&after.covariance);
@@ -168,10 +168,10 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
 fn earlier_trials(
     models: &[EarlierModel],
     ship: &HullParticulars,
-    checks: &[(&str, ExpectationCheck)],
+    checks: &[(&str, PriorCheck)],
     takes_part: impl Fn(&str) -> bool,
 ) -> EarlierTrials {
-    let hull = |&(form, ref check): &(&str, ExpectationCheck)| PriorCheckEntry {
+    let hull = |&(form, ref check): &(&str, PriorCheck)| PriorCheckEntry {
         form: form.to_owned(),
         chi_square: check.chi_square,
         degrees_of_freedom: check.degrees_of_freedom,

@@ -5,11 +5,11 @@ use campaign::stored_figures::Replays;
 use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
-use document::{Code, ErrorCode, ImoFormEntry, Source, Warning, Warnings};
+use document::{ErrorCode, ImoFormEntry, Warning, WarningCode, WarningSource, Warnings};
 use identify::answer::entry;
 use identify::estimate::Uncertainty;
+use identify::plausibility::unusual_ship;
 use identify::replay::replay;
-use identify::suspicion::suspicion;
 use identify::{Estimate, Identifier, IdentifierSettings, registry, verdict};
 use indicatif::ParallelProgressIterator;
 use predict::form::{self, Form, FormRecord};
@@ -32,7 +32,7 @@ use crate::progress;
 use crate::records::{self, file_of, no_track, source_of};
 use crate::scales::{self, RescaledRecords};
 use campaign::curves::{curve, replay_curves, zigzag_figure};
-use campaign::known::{self, RecordFacts};
+use campaign::identified_ship::{self, RecordFacts};
 use campaign::statistics::grouped;
 
 /// Result of an identification.
@@ -136,7 +136,7 @@ pub fn fit(
         return Err(unusable(&records[0], &entries, &warnings.ranked()));
     }
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
-    warnings.extend(surest.and_then(|estimate| suspicion(estimate, ship, records)));
+    warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
     let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
     warnings.extend(no_track(&shown).into_iter().chain(no_loading(trials, &shown)));
@@ -144,7 +144,7 @@ pub fn fit(
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     warnings.extend(answers.iter().flat_map(of_answer));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
-        Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
+        Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };
     let (verdict, zigzags) = (verdict::of_answers(trials, &answers), RecordedZigZags::of(trials));
     let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
@@ -228,22 +228,22 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
 }
 
 /// Warnings of a method.
-fn of_answer((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
     let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
-    Source::Method(entry.method.clone()).of(warnings).collect()
+    WarningSource::Method(entry.method.clone()).of(warnings).collect()
 }
 
 /// The warning of a ship of known draught that cannot be taken to another loading.
 fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
     let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
-    (has_form && speak_against_form(&shown.hulls)).then(|| Code::NoLoading.warning(text))
+    (has_form && speak_against_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
 }
 
 /// The warning of a record whose first overshoot cannot be read.
 fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     let text = "the record begins at a reversal of the rudder, so the first overshoot is not read; begin it earlier if the log allows";
-    zigzag.begins_at_reversal.then(|| Warning::new(Code::LateBegin, source_of(trial), text))
+    zigzag.begins_at_reversal.then(|| Warning::new(WarningCode::LateBegin, source_of(trial), text))
 }
 
 /// The named methods of the project with their default settings, the best first, and the usual ones for no name; those
@@ -253,7 +253,7 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
 pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
-    let place = |id: &str| registry::USUAL.iter().position(|usual| *usual == id);
+    let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let ids: Vec<&str> = all.iter().map(|method| method.id()).collect();
     if let Some(unknown) = names.iter().find(|name| *name != ALL && !ids.contains(&name.as_str())) {

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use campaign::earlier::hulls_of;
 use campaign::failure::Failure;
-use document::stored_hull::StoredHull;
-use document::{Code, IdentifiedShip, Source, Warnings};
-use identify::hull::ExpectedHull;
+use document::identified_hull::IdentifiedHull;
+use document::{IdentifiedShip, WarningCode, WarningSource, Warnings};
+use identify::hull::FormPrior;
 use predict::drawable_hull;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
@@ -21,7 +21,7 @@ pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records:
                                 replay fails";
 
 /// Whether records speak against a hull of this form: where one is fitted, all are.
-pub fn speak_against_form(hulls: &[StoredHull]) -> bool {
+pub fn speak_against_form(hulls: &[IdentifiedHull]) -> bool {
     !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
 
@@ -43,7 +43,7 @@ impl DescribedLoading {
     /// Fails as a sidecar does, and for a file without a draught.
     pub fn of_file(path: &Path) -> Result<Self, Failure> {
         let given = Sidecar::load(path).map_err(Failure::input)?.conditions.hull;
-        let loading = Self { file: file::called(path).display().to_string(), given };
+        let loading = Self { file: file::display_path(path).display().to_string(), given };
         match given.draught {
             Some(_) => Ok(loading),
             None => Err(loading.refused("it has no draught-m; give the mean draught of the loading under [form]")),
@@ -77,10 +77,10 @@ impl DescribedLoading {
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
-        let expected = ExpectedHull::of_ship(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
-        let at_loading = |expected: ExpectedHull| {
+        let expected = FormPrior::of_ship(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
+        let at_loading = |expected: FormPrior| {
             let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.law()?);
-            Some(StoredHull { propeller_per_s: self.given.propeller_rate, ..hull })
+            Some(IdentifiedHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };
         let hull = expected.and_then(at_loading).filter(|hull| drawable_hull::check(hull).is_ok());
         let none =
@@ -105,7 +105,7 @@ impl DescribedLoading {
             let advice = "it changes with the loading, so give it where it is known";
             let value = ShortNumber::rounded(value, 4);
             let text = format!("{key} = {value} is taken, as at the trials; {advice}");
-            warnings.push(Code::KeptParticulars, Source::File(self.file.clone()), text);
+            warnings.push(WarningCode::KeptParticulars, WarningSource::File(self.file.clone()), text);
         }
     }
 
@@ -190,8 +190,8 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 mod tests {
     use super::*;
     use document::Warning;
-    use document::stored_hull::{StoredCoefficient, by_keys};
-    use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
+    use document::identified_hull::{IdentifiedCoefficient, by_keys};
+    use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 
     /// A tanker in ballast.
     fn at_trial() -> HullParticulars {
@@ -207,23 +207,23 @@ mod tests {
 
     /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known
     /// to a hundredth of one.
-    fn taken(given: HullParticulars) -> (StoredHull, Vec<Warning>) {
+    fn taken(given: HullParticulars) -> (IdentifiedHull, Vec<Warning>) {
         let terms = formulas(&at_trial());
         let entry = |i: usize, j: usize| if i == j { (0.01 * terms[i].sd).powi(2) } else { 0.0 };
         let coefficient = |term: &HullCoefficient| {
             let (key, symbol, value) = (term.key.into(), term.symbol.into(), term.mean + 0.5 * term.sd);
-            StoredCoefficient { key, symbol, value, expected: term.mean, expected_sd: term.sd }
+            IdentifiedCoefficient { key, symbol, value, expected: term.mean, expected_sd: term.sd }
         };
-        let hull = StoredHull {
+        let hull = IdentifiedHull {
             form: FORM.into(),
             length_m: 320.0,
             speed_m_s: 8.0,
             particulars: by_keys(&at_trial()),
             coefficients: terms.iter().map(coefficient).collect(),
             covariance: (0..terms.len()).map(|i| (0..terms.len()).map(|j| entry(i, j)).collect()).collect(),
-            ..StoredHull::default()
+            ..IdentifiedHull::default()
         };
-        let ship = IdentifiedShip { hulls: vec![StoredHull::default(), hull], ..IdentifiedShip::default() };
+        let ship = IdentifiedShip { hulls: vec![IdentifiedHull::default(), hull], ..IdentifiedShip::default() };
         let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Warnings::default());
         let (mut ship, _) = loading.of_ship("fit.json", &ship, &mut warnings).expect("another loading");
         assert_eq!(ship.hulls.len(), 1);
@@ -245,8 +245,8 @@ mod tests {
         assert_eq!((to, hull.propeller_per_s, warnings.len()), (at_load(same_ship), None, 1), "{warnings:?}");
         for (place, (formula, before)) in formulas(&to).into_iter().zip(formulas(&at_trial())).enumerate() {
             let (truth, sd) = match formula.key {
-                key if is_of_trial(key) => (0.5 * before.sd, 0.01 * before.sd),
-                key if is_of_friction(key) => (formula.mean, formula.sd),
+                key if is_trial_specific(key) => (0.5 * before.sd, 0.01 * before.sd),
+                key if is_frictional(key) => (formula.mean, formula.sd),
                 _ => (formula.mean + 0.5 * before.sd, 0.03 * before.sd),
             };
             let (value, sd_found) = (hull.coefficients[place].value, hull.covariance[place][place].sqrt());

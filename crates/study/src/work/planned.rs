@@ -45,7 +45,7 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
 /// come to the end of it.
 fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
-    let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
+    let mut simulation = Simulation::new(Vessel::from_response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
     simulation.recording.period = records[0].sampling_period();
     simulation.longest_wait = MAX_LENGTH * longest;

@@ -6,8 +6,8 @@ use std::path::Path;
 use campaign::failure::Failure;
 use campaign::scenario::TRACE;
 use document::earlier_trials::Likeness;
-use document::{Code, IdentifiedShip, Source, Warning, Warnings};
-use identify::suspicion::unusual_froude_number;
+use document::{IdentifiedShip, Warning, WarningCode, WarningSource, Warnings};
+use identify::plausibility::unusual_froude_number;
 use predict::correction::{self, Correction};
 use predict::document::{ModelWeight, OtherLoading, SCHEMA};
 use predict::form::{self, FormRecord};
@@ -65,7 +65,7 @@ impl StoredModel {
     ///
     /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
-        let shown = file::called(path).display().to_string();
+        let shown = file::display_path(path).display().to_string();
         Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
@@ -86,16 +86,16 @@ impl StoredModel {
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
             let text = format!("the answer of {method} is used; choose another with --method");
-            warnings.push(Code::Answer, Source::File(shown.to_owned()), text);
+            warnings.push(WarningCode::Answer, WarningSource::File(shown.to_owned()), text);
         }
         if let Some(because) = disbelief {
             let text = format!("no K and T can be taken from its records, so do not trust its predictions: {because}");
-            warnings.push(Code::NotIdentified, Source::File(shown.to_owned()), text);
+            warnings.push(WarningCode::NotIdentified, WarningSource::File(shown.to_owned()), text);
         }
         let ship = ships.remove(&method).expect("it was found there");
         if let Some(late) = ship.rudder_logged_late() {
             let text = format!("{}; she is steered without it", rudder_logged_late(late));
-            warnings.push(Code::LateRudder, Source::File(shown.to_owned()), text);
+            warnings.push(WarningCode::LateRudder, WarningSource::File(shown.to_owned()), text);
         }
         let ship = if calm { ship.in_calm() } else { Ok(ship) };
         let ship = ship.map_err(|error| Failure::about(shown, error))?;
@@ -141,7 +141,7 @@ pub struct PredictInput<'a> {
 /// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
 fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
-        ([], true) => standard::of_imo(),
+        ([], true) => standard::imo_manoeuvres(),
         (asked, _) => asked.to_vec(),
     };
     let mut of_form = form::manoeuvres();
@@ -168,7 +168,8 @@ impl SteeredShips<'_> {
         warnings: &mut Warnings,
     ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
         let (mut predictions, mut lost) = (Vec::new(), None);
-        let warning = |text: String| Warning::new(Code::Unpredicted, Source::File(self.file.to_owned()), text);
+        let warning =
+            |text: String| Warning::new(WarningCode::Unpredicted, WarningSource::File(self.file.to_owned()), text);
         for kind in kinds {
             let prediction = self.mixture.predict(kind, self.draws, true);
             steps.advance();
@@ -271,7 +272,7 @@ fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> 
     let (_, sha256) = file_of(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
     let text = format!("{} is fitted to it; the error on it validates nothing", model.file);
-    Some(Warning::new(Code::Repetition, source_of(record), text))
+    Some(Warning::new(WarningCode::Repetition, source_of(record), text))
 }
 
 /// Puts the form of MSC/Circ.1053 into a document that holds all else.
@@ -348,7 +349,7 @@ impl ReplayedModels<'_> {
             Ok(correction) => correction,
             Err(error @ PredictError::Lost { .. }) => {
                 let text = format!("{error}; it is not corrected to {loading}");
-                warnings.push(Code::Correction, source_of(record), text);
+                warnings.push(WarningCode::Correction, source_of(record), text);
                 return Ok((replayed, None));
             }
             Err(error) => return Err(Failure::about(file, error)),
@@ -357,12 +358,12 @@ impl ReplayedModels<'_> {
             let text = format!(
                 "it has no zig-zag or turn that begins with the first execute, so it is not corrected to {loading}"
             );
-            warnings.push(Code::Correction, source_of(record), text);
+            warnings.push(WarningCode::Correction, source_of(record), text);
             return Ok((replayed, None));
         }
         let mut of_models = correction::differences(&full[0].ship, &ballast[0].ship, loading);
         if full[0].method != ballast[0].method {
-            of_models.push(correction::different("methods", &full[0].method, &ballast[0].method, loading));
+            of_models.push(correction::difference_warning("methods", &full[0].method, &ballast[0].method, loading));
         }
         correction.warnings.splice(0..0, of_models);
         [correction.full, correction.ballast] = [full, ballast].map(files);

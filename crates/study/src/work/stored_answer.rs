@@ -12,7 +12,7 @@ use serde_json::Value;
 use trial::file;
 
 /// A stored model; the covariances of the longest mixtures have a hundredth of this size.
-const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
+const MODEL: file::Kind = file::Kind { name: "a model", max_bytes: 1 << 26 };
 
 /// Expected documents, for messages.
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
@@ -32,7 +32,7 @@ pub struct StoredAnswer {
 /// The text of a model. Fails when it cannot be read.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
     name::of_file(path)?;
-    let shown = file::called(path).display().to_string();
+    let shown = file::display_path(path).display().to_string();
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 

@@ -3,8 +3,8 @@
 
 use campaign::failure::Failure;
 use document::identified_ship::is_same_length;
-use document::{Code, IdentifiedShip, IdentifiedShipError, Warnings};
-use identify::hull::is_other_froude_number;
+use document::{IdentifiedShip, IdentifiedShipError, WarningCode, Warnings};
+use identify::hull::differs_in_froude_number;
 use report::number::fixed;
 use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
@@ -73,7 +73,7 @@ pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Part
 pub fn is_alike(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
-    a.has_length_of(&b) && !is_other_froude_number(&a, &b)
+    a.has_length_of(&b) && !differs_in_froude_number(&a, &b)
 }
 
 /// A ship at a scale; one whose scale is not known takes it as its own.
@@ -103,6 +103,6 @@ pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
         fixed(declared.length, 2),
         fixed(declared.speed, 2)
     );
-    warnings.push(Code::Scale, source_of(&record), text);
+    warnings.push(WarningCode::Scale, source_of(&record), text);
     record.with_particulars(declared)
 }

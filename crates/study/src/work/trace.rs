@@ -5,11 +5,11 @@ use ::trace::{Analysis, Innovations, Settings, TraceError, Watcher};
 use campaign::Observer;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::known::{self, RecordFacts};
+use campaign::identified_ship::{self, RecordFacts};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
-use document::{Code, Warnings};
+use document::{WarningCode, Warnings};
 use identify::output_error;
-use identify::suspicion::suspicion;
+use identify::plausibility::unusual_ship;
 use indicatif::ProgressBar;
 use trial::{Channel, Trial};
 
@@ -96,13 +96,13 @@ pub fn trace(
         busy: progress::busy("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
     };
-    let analysis = ::trace::watched(&together.trials, &together.held_out, settings, &watch);
+    let analysis = ::trace::trace_with_watcher(&together.trials, &together.held_out, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let (scales, RescaledRecords { trials, held_out, .. }) = (together.sentence(), together);
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(no_track(&shown));
-    warnings.extend(suspicion(&analysis.base, scales::particulars(&trials), records));
+    warnings.extend(unusual_ship(&analysis.base, scales::particulars(&trials), records));
     let names = names(trials.iter().chain(&held_out).map(Trial::name));
     let innovations = analysis.innovations();
     let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
@@ -121,8 +121,8 @@ pub fn trace(
     let (staircase, table) = curves::staircase(analysis.staircase());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
-    let ship = known::of_analysis(&analysis, &shown);
-    warnings.extend(ship.rudder_logged_late().map(|late| Code::LateRudder.warning(rudder_logged_late(late))));
+    let ship = identified_ship::from_analysis(&analysis, &shown);
+    warnings.extend(ship.rudder_logged_late().map(|late| WarningCode::LateRudder.warning(rudder_logged_late(late))));
     let earlier_trials = earlier::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;

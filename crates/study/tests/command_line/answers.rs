@@ -1,6 +1,6 @@
 //! What `study fit` says of a good record: which methods, which warnings, with figures and without.
 
-use identify::registry::{self, USUAL};
+use identify::registry::{self, DEFAULT_METHODS};
 use serde_json::Value;
 
 use crate::desk::{Desk, of_repository, with_column, zig_zag_csv};
@@ -20,7 +20,7 @@ fn fit_asks_the_usual_methods_and_all_on_request() {
     };
     let (usual, verdict) = fitted(&[], "usual");
     let (all, with_all) = fitted(&["--method", "all"], "all");
-    assert_eq!(usual, USUAL);
+    assert_eq!(usual, DEFAULT_METHODS);
     assert!(all.starts_with(&usual) && all.len() == registry::defaults().len(), "{all:?}");
     assert!(["method", "reason", "residual", "residual_deg"].iter().all(|key| verdict[*key] == with_all[*key]));
     let fit = desk.json("all/fit.json");

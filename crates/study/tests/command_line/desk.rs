@@ -174,7 +174,7 @@ pub fn zig_zag_csv_of(ship: &Ship) -> String {
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: 1.0, duration: Some(300.0), ..Recording::default() },
-        ..Simulation::new(Vessel::ship(ship), manoeuvre)
+        ..Simulation::new(Vessel::from_ship(ship), manoeuvre)
     };
     let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");
     let trial = &simulated.trial;

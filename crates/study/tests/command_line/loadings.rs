@@ -4,9 +4,9 @@
 
 use std::sync::Arc;
 
-use document::stored_hull::{StoredHull, by_keys};
+use document::identified_hull::{IdentifiedHull, by_keys};
 use serde_json::{Value, json};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_of_friction, is_of_trial};
+use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, priors};
 use ship::vessel::scaled::ScaledHull;
 use simulate::Vessel;
@@ -36,7 +36,7 @@ fn particulars(draught: f64, block_coefficient: f64) -> HullParticulars {
 fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
     let [form, ballast] = [at, &particulars(6.5, 0.7)].map(|own| HullForm::mmg(&priors(own).expect("a ship")));
     let departs = |(place, (own, trial)): (usize, (&HullCoefficient, f64))| {
-        let is_ship = !is_of_friction(own.key) && !is_of_trial(own.key);
+        let is_ship = !is_frictional(own.key) && !is_trial_specific(own.key);
         own.mean + if is_ship { [0.5, -0.3, 0.4][place % 3] * trial } else { 0.0 }
     };
     let sd = ballast.coefficients().iter().map(|own| own.sd);
@@ -49,7 +49,7 @@ fn record(angle_deg: f64) -> String {
     let (form, values) = values(&particulars(6.5, 0.7));
     let hull = form.with(&values).expect("a ship");
     let ship = ScaledHull { hull, length: 160.0, speed: 7.7, propeller: None };
-    zig_zag_with_speed(Vessel::hull(Arc::new(ship)), angle_deg, angle_deg)
+    zig_zag_with_speed(Vessel::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
 }
 
 /// A desk with a fit of a 20/20 in ballast, `f/fit.json`, the record, `run.csv`, and the loading, `full.toml`.
@@ -68,7 +68,7 @@ fn truth(desk: &Desk) {
     let mut document = desk.json("f/fit.json");
     let ship = &mut document["ships"]["output-error"];
     let own = ship["hulls"].as_array().expect("hulls").iter().find(|own| own["form"] == "mmg").expect("it is near");
-    let mut hull: StoredHull = serde_json::from_value(own.clone()).expect("a hull");
+    let mut hull: IdentifiedHull = serde_json::from_value(own.clone()).expect("a hull");
     let at = particulars(9.5, 0.74);
     hull.particulars = by_keys(&at);
     hull.coefficients.iter_mut().zip(values(&at).1).for_each(|(own, value)| own.value = value);

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use identify::registry::USUAL;
+use identify::registry::DEFAULT_METHODS;
 
 use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
 
@@ -196,7 +196,7 @@ fn a_good_record_gives_a_table_figures_and_json() {
     let desk = Desk::new();
     desk.file("run 1.csv", zig_zag_csv());
     let run = desk.draw(&["fit", "run 1.csv"]);
-    for method in USUAL {
+    for method in DEFAULT_METHODS {
         assert!(run.is_done().out.contains(method), "{method}\n{}", run.out);
     }
     assert!(run.out.contains("overshoots") && run.out.contains("run 1-fit"), "{}", run.out);
@@ -215,7 +215,7 @@ fn a_good_record_gives_a_table_figures_and_json() {
     assert_eq!(trial["sha256"].as_str().map(str::len), Some(64));
     let methods = fit["methods"].as_array().expect("a list");
     let ids: Vec<&str> = methods.iter().filter_map(|method| method["method"].as_str()).collect();
-    assert_eq!(ids, USUAL);
+    assert_eq!(ids, DEFAULT_METHODS);
     let exact = methods.iter().find(|method| method["method"] == "output-error").expect("it is there");
     assert_eq!(
         (&exact["status"], &exact["reason"], &exact["course_unstable"]),
@@ -289,7 +289,7 @@ fn options_of_fit_do_what_they_say() {
 
     let csv = desk.run(&["fit", "a/run.csv", "--format", "csv", "--out", "csv"]);
     let lines: Vec<&str> = csv.is_done().out.lines().collect();
-    assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + USUAL.len(), "{}", csv.out);
+    assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + DEFAULT_METHODS.len(), "{}", csv.out);
     let latex = desk.run(&["fit", "a/run.csv", "--format", "latex", "--out", "latex"]);
     assert!(
         latex.is_done().out.starts_with("% Needs \\usepackage{booktabs,siunitx")

@@ -19,7 +19,7 @@ fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: 1.0, duration: Some(duration), ..Recording::default() },
-        ..Simulation::new(Vessel::ship(&ship), manoeuvre)
+        ..Simulation::new(Vessel::from_ship(&ship), manoeuvre)
     };
     let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;
     let speed = truth.speed.as_ref().expect("a hull has a speed");

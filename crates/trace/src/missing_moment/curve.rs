@@ -131,7 +131,7 @@ pub struct MomentCurve {
     pub half_width: Vec<f64>,
     /// Curves of the explanations, in their order, estimated in the same way from their heading responses, rad of
     /// rudder.
-    pub others: Vec<Vec<f64>>,
+    pub explanations: Vec<Vec<f64>>,
     /// Variance per second of the remaining walk, rad² of rudder per s.
     pub walk: f64,
     /// Deviance −2 log L with the curve, up to a constant of the record.
@@ -181,7 +181,7 @@ impl MomentCurve {
         Some(Self {
             moment: of_grid.iter().map(|values| along(&coefficients, values)).collect(),
             half_width: of_grid.iter().map(half_width).collect(),
-            others: explanations.iter().map(other).collect(),
+            explanations: explanations.iter().map(other).collect(),
             walk: intensity * variance,
             deviance: deviance(square, &filter, count),
             x: grid,
@@ -195,7 +195,7 @@ impl MomentCurve {
     }
 
     /// Whether zero lies inside the band everywhere.
-    pub fn holds_nothing(&self) -> bool {
+    pub fn contains_zero(&self) -> bool {
         self.contains(&[0.0; POINTS])
     }
 }

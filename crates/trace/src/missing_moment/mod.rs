@@ -20,7 +20,7 @@ pub use curve::MomentCurve;
 
 /// Channel over which a missing moment is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Over {
+pub enum MomentChannel {
     /// Smoothed yaw rate, rad/s.
     YawRate,
     /// Recorded rudder, rad.
@@ -35,7 +35,7 @@ pub enum Over {
     Sway,
 }
 
-impl Over {
+impl MomentChannel {
     /// Every channel.
     pub const ALL: [Self; 6] = [Self::YawRate, Self::Rudder, Self::Heading, Self::Speed, Self::WindFrom, Self::Sway];
 
@@ -65,7 +65,7 @@ pub struct Explanation {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
     /// Channel.
-    pub over: Over,
+    pub over: MomentChannel,
     /// Curve with its band.
     pub curve: MomentCurve,
     /// Share of the variance per second of the walk that the curve explains; `None` where the moment is constant.
@@ -84,7 +84,7 @@ pub struct MissingMoment {
     /// Standard deviation of the smoothed moment, rad of rudder.
     pub sd: Vec<f64>,
     /// Values of the channels that the record has, at the rows with a heading.
-    pub channels: Vec<(Over, Vec<f64>)>,
+    pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
     pub explanations: Vec<Explanation>,
     /// Moment of every explanation after the same smoother, rad of rudder.
@@ -97,7 +97,7 @@ fn at_rows(signal: &Polyline, time: &[f64]) -> Vec<f64> {
     time.iter().map(|&t| signal.at(t)).collect()
 }
 
-/// Sum of the squared distances from the mean.
+/// Sum of squared deviations from the mean.
 fn spread(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     values.iter().map(|value| (value - mean).powi(2)).sum()
@@ -130,11 +130,15 @@ impl MissingMoment {
         let moment: Vec<f64> = states.iter().map(|state| state[2]).collect();
 
         let mut channels = vec![
-            (Over::YawRate, states.iter().map(|state| state[1]).collect()),
-            (Over::Rudder, at_rows(&record.rudder, &time)),
-            (Over::Heading, states.iter().map(|state| first + state[0]).collect::<Vec<f64>>()),
+            (MomentChannel::YawRate, states.iter().map(|state| state[1]).collect()),
+            (MomentChannel::Rudder, at_rows(&record.rudder, &time)),
+            (MomentChannel::Heading, states.iter().map(|state| first + state[0]).collect::<Vec<f64>>()),
         ];
-        let signals = [(Over::Speed, &record.speed), (Over::WindFrom, &record.wind_from), (Over::Sway, &record.sway)];
+        let signals = [
+            (MomentChannel::Speed, &record.speed),
+            (MomentChannel::WindFrom, &record.wind_from),
+            (MomentChannel::Sway, &record.sway),
+        ];
         channels
             .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
 
@@ -149,14 +153,14 @@ impl MissingMoment {
             .filter_map(|(over, x)| {
                 let curve = MomentCurve::new(&rows, gain, &column, x, &responses)?;
                 let share = varies.then(|| (1.0 - curve.walk / (intensity * unit)).max(0.0));
-                let inside = match curve.holds_nothing() {
+                let inside = match curve.contains_zero() {
                     true => Vec::new(),
-                    false => (0..responses.len()).filter(|&k| curve.contains(&curve.others[k])).collect(),
+                    false => (0..responses.len()).filter(|&k| curve.contains(&curve.explanations[k])).collect(),
                 };
                 Some(Panel { over: *over, curve, share, inside })
             })
             .collect();
-        let rank = |panel: &Panel| (panel.curve.holds_nothing(), panel.curve.deviance);
+        let rank = |panel: &Panel| (panel.curve.contains_zero(), panel.curve.deviance);
         panels.sort_by(|a, b| {
             let ((a, first), (b, second)) = (rank(a), rank(b));
             a.cmp(&b).then(first.total_cmp(&second))

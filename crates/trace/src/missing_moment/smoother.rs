@@ -54,7 +54,7 @@ impl MomentRows {
             let h = pair[1] - pair[0];
             let equal = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
             of_row.push(equal.unwrap_or_else(|| {
-                steps.push((h, Step::over(&generator, 1.0, h)));
+                steps.push((h, Step::from_generator(&generator, 1.0, h)));
                 steps.len() - 1
             }));
         }
@@ -103,7 +103,7 @@ impl MomentRows {
     pub fn filter(&self, intensity: f64) -> MomentFilter {
         let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
-        MomentFilter(Smoother::new(System::of_rows(steps, initial, &self.of_row, &self.variance, None)))
+        MomentFilter(Smoother::new(System::from_rows(steps, initial, &self.of_row, &self.variance, None)))
     }
 }
 

@@ -99,7 +99,7 @@ fn no_moment_is_missing_from_the_true_base() {
         inside += (0..missing.time.len()).filter(holds).count();
         all += missing.time.len();
         assert_eq!(missing.panels.len(), 3);
-        shown += missing.panels.iter().filter(|panel| !panel.curve.holds_nothing()).count();
+        shown += missing.panels.iter().filter(|panel| !panel.curve.contains_zero()).count();
     }
     assert!(10 * inside >= 9 * all && shown <= 2, "{inside} of {all} rows, {shown} of 60 panels");
 }
@@ -133,7 +133,7 @@ fn an_unstable_base_is_smoothed_as_well() {
     }
 }
 
-/// Cubic damping is seen as what it is: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
+/// Cubic damping shows its shape: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
 #[test]
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;
@@ -141,9 +141,14 @@ fn cubic_damping_has_its_shape() {
     let record = PreparedRecord::whole(&record(&damped, TrialPlan::default()));
     let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
     let panel = &missing.panels[0];
-    assert_eq!(panel.over, Over::YawRate, "{:?}", missing.panels.iter().map(|p| (p.over, p.share)).collect::<Vec<_>>());
+    assert_eq!(
+        panel.over,
+        MomentChannel::YawRate,
+        "{:?}",
+        missing.panels.iter().map(|p| (p.over, p.share)).collect::<Vec<_>>()
+    );
     assert!(panel.share.is_some_and(|share| share > 0.8), "{:?}", panel.share);
-    assert!(!panel.curve.holds_nothing());
+    assert!(!panel.curve.contains_zero());
     // r' = … − c r³ is that of a rudder angle of −c r³ T/K.
     let per = CUBE / BASE[1];
     let rates = &missing.channels[0].1;

@@ -15,7 +15,7 @@ const MAX_SHIFT_ROWS: usize = 2;
 /// Maximum number of iterations of ends and pooled rates.
 const MAX_ROUNDS: usize = 3;
 
-/// A rest or a stroke.
+/// Rest or stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RudderPiece {
     /// First row.

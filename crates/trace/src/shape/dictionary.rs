@@ -7,7 +7,7 @@ use document::trace::Dependence;
 
 use super::motion::PredictedMotion;
 
-/// A signal of the ship.
+/// Signal of the ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShipSignal {
     /// Heading ψ.
@@ -52,7 +52,7 @@ impl ShipSignal {
     }
 }
 
-/// A function of one number.
+/// Function of one variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Power {
     /// x.

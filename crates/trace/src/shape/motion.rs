@@ -4,7 +4,7 @@
 //! before. A shape of predicted states is exogenous to the row that it explains; one of smoothed states would contain
 //! the random moment itself and always explain it.
 
-use estimation::kalman::MOST;
+use estimation::kalman::MAX_STATES;
 use ship::Replayable;
 use ship::dynamics::Dynamics;
 use ship::first_order::{State, Transition};
@@ -50,7 +50,7 @@ impl<'a> PredictedMotion<'a> {
         structure: &Structure,
         theta: &[f64],
         initial: [f64; 2],
-        predicted: Option<&[[f64; MOST]]>,
+        predicted: Option<&[[f64; MAX_STATES]]>,
     ) -> Self {
         let response = structure.response(Some(number), theta);
         let recorded = record.recorded(&response);
@@ -140,7 +140,7 @@ fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f6
     value(after - 1) * (1.0 - share) + value(after) * share
 }
 
-/// Running medians.
+/// Running median.
 fn medians(values: &[f64]) -> Vec<f64> {
     let half = MEDIAN_ROWS / 2;
     let at = |row: usize| {

@@ -99,7 +99,7 @@ fn moments_of_the_motion_are_located() {
     }
 }
 
-/// Instruments leave nothing; a moment that walks is a random moment of its size, and no shape.
+/// Instrument noise alone gives no shape; a random-walk moment is a random moment of its size, and no shape.
 #[test]
 fn chance_is_no_shape() {
     for seed in 1..4 {
@@ -114,7 +114,7 @@ fn chance_is_no_shape() {
     }
 }
 
-/// A moment of one record is none of another; K and T that change are found where they do.
+/// A moment of one record is located in that record only.
 #[test]
 fn shapes_of_time_belong_to_their_record() {
     let trials = [in_moment(7, |_| 0.0), in_moment(8, |t| if t > 120.0 { 1.5 } else { 0.0 })];
@@ -151,7 +151,7 @@ fn criteria_are_those_of_dense_matrices() {
         let step = matrix.clone().cholesky().expect("independent").solve(&(x.transpose() * &e));
         let variance = (&e - &x * &step).norm_squared() / freedom;
         let integrated = matrix.view((0, 0), (2, 2)).determinant();
-        // The t value of a coefficient behind those before it, from where it is neutral.
+        // Sequential t value of a coefficient, from its neutral value.
         let penalty = |k: usize, away: f64| {
             let before = x.columns(0, k).into_owned();
             let column = x.column(k).into_owned();
@@ -187,7 +187,7 @@ fn laws_have_the_sizes_they_say() {
         let size = kind.size(level, longest) / gain;
         assert!((size / law.size - 1.0).abs() < 1e-9, "{kind:?} {size} {}", law.size);
     }
-    // Beside known waves no others are looked for, and rows far apart show none of the short ones.
+    // With waves of the noise law no others are tried, and rows far apart exclude the short ones.
     let sea = Some(ship::narrow_band::NarrowBand { sd: 1.0, frequency: 0.7, damping: 0.1 });
     assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
     assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);

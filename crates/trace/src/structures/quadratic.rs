@@ -2,7 +2,7 @@
 //! terms.
 
 use estimation::levenberg_marquardt::Normal;
-use estimation::subsets::{MOST_TERMS, Removable, condition, conditional, subsets};
+use estimation::subsets::{MAX_TERMS, RemovableTerm, condition_neutral, conditional_mean, subset_log_weights};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -29,7 +29,7 @@ pub struct Support {
 pub(super) struct QuadraticPosterior {
     pub covariance: DMatrix<f64>,
     pub mean: DVector<f64>,
-    pub removable: Vec<Removable>,
+    pub removable: Vec<RemovableTerm>,
     /// `true` for a term whose coefficients would leave their bounds at the neutral value; it is removed.
     pinned: Vec<bool>,
     /// `false` for an unknown of a removed term.
@@ -54,7 +54,7 @@ impl QuadraticPosterior {
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));
-            Removable { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
+            RemovableTerm { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
         // A coefficient that would leave its bounds at the neutral value is zero.
         for _ in 0..ranges.len() {
@@ -81,13 +81,13 @@ impl QuadraticPosterior {
             };
             let out = removable(&mean, worst);
             pinned[worst] = true;
-            mean = conditional(&covariance, &mean, &[&out]);
-            condition(&mut covariance, &out);
+            mean = conditional_mean(&covariance, &mean, &[&out]);
+            condition_neutral(&mut covariance, &out);
         }
-        let removable: Vec<Removable> = (0..ranges.len()).map(|number| removable(&mean, number)).collect();
+        let removable: Vec<RemovableTerm> = (0..ranges.len()).map(|number| removable(&mean, number)).collect();
         let mut free = vec![true; count];
         for (term, _) in removable.iter().zip(&pinned).filter(|(_, pinned)| **pinned) {
-            let term: &Removable = term;
+            let term: &RemovableTerm = term;
             term.sizes.iter().for_each(|(unknown, _)| free[*unknown] = false);
         }
         Some(Self { covariance, mean, removable, pinned, free })
@@ -118,11 +118,11 @@ impl QuadraticPosterior {
         (0..self.removable.len()).map(support).collect()
     }
 
-    /// Weighed terms, at most [`MOST_TERMS`], and the log weights of all their subsets.
+    /// Weighed terms, at most [`MAX_TERMS`], and the log weights of all their subsets.
     fn weighed(&self) -> (Vec<usize>, Vec<f64>) {
         let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
         let (kept, covariance, removable) = self.most_relevant(free);
-        (kept, subsets(&covariance, &removable))
+        (kept, subset_log_weights(&covariance, &removable))
     }
 
     /// Best subsets of terms: the best overall, and the best with one term more than `about`, for which the quadratic
@@ -153,18 +153,19 @@ impl QuadraticPosterior {
         order.into_iter().map(chosen).collect()
     }
 
-    /// The [`MOST_TERMS`] most relevant terms, with the covariance after the others are removed.
-    fn most_relevant(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<Removable>) {
+    /// The [`MAX_TERMS`] most relevant terms, with the covariance after the others are removed.
+    fn most_relevant(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<RemovableTerm>) {
         let mut covariance = self.covariance.clone();
         let mut mean = self.mean.clone();
         let mut removable = self.removable.clone();
-        while kept.len() > MOST_TERMS {
-            let loss =
-                |&k: &usize| subsets(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds;
+        while kept.len() > MAX_TERMS {
+            let loss = |&k: &usize| {
+                subset_log_weights(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds
+            };
             let place = (0..kept.len()).max_by(|&i, &j| loss(&kept[i]).total_cmp(&loss(&kept[j]))).expect("many");
             let out = removable[kept.remove(place)].clone();
-            let moved = conditional(&covariance, &mean, &[&out]);
-            condition(&mut covariance, &out);
+            let moved = conditional_mean(&covariance, &mean, &[&out]);
+            condition_neutral(&mut covariance, &out);
             for &k in &kept {
                 removable[k]
                     .sizes
@@ -187,14 +188,14 @@ pub fn chi_square_p_value(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> 
     Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
 }
 
-/// Removable term at a point θ of the full model; `places` are its indices in θ with their unknowns.
+/// RemovableTerm term at a point θ of the full model; `places` are its indices in θ with their unknowns.
 fn removable(
     term: &Term,
     theta: &[f64],
     mean: &DVector<f64>,
     places: impl Iterator<Item = (usize, Option<usize>)>,
-) -> Removable {
-    let mut removable = Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
+) -> RemovableTerm {
+    let mut removable = RemovableTerm { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
     for (((place, unknown), prior), neutral) in places.zip(&term.priors).zip(term.neutral()) {
         let Some(unknown) = unknown else { continue };
         let at = if prior.is_shape { theta[place] } else { neutral };

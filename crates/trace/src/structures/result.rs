@@ -82,7 +82,8 @@ impl Structures {
 
     /// Mean square residual of the most probable structure without moments of time, rad²; infinite where there is none.
     pub fn mean_square_of_ship(&self) -> f64 {
-        let is_ship = |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
+        let is_ship =
+            |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_time_dependent());
         let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
         let (sum, rows) = residual.fold((0.0, 0.0), |(sum, rows), e| (sum + e * e, rows + 1.0));
         if rows > 0.0 { sum / rows } else { f64::INFINITY }

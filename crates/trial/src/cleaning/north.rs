@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use super::reject;
 use crate::channel::Channel;
@@ -72,7 +72,7 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
         heading[read[swept.start] + 1..].iter_mut().for_each(|psi| *psi -= turns);
     }
     rows.iter().for_each(|&row| heading[row] = f64::NAN);
-    Some(Code::RejectedReadings.warning(format!(
+    Some(WarningCode::RejectedReadings.warning(format!(
         "the heading sweeps through the compass at north {times}: it was resampled or filtered across the step from \
          360 to 0; {} left out there; unwrap a heading before it is resampled or filtered",
         counted(rows.len(), "heading"),

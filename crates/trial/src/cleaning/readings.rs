@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 
 use super::reject;
@@ -105,9 +105,9 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         let times = reject(channel, time, values, &lost, rejected);
         lost.iter().for_each(|&row| values[row] = f64::NAN);
         // Equal readings beside them may be lost as well; that cannot be decided.
-        warnings.push(Code::RejectedReadings.warning(format!(
+        warnings.push(WarningCode::RejectedReadings.warning(format!(
             "{} of exactly {} far from both neighbours taken as missing (polls without an answer), {times}",
-            counted(lost.len(), channel.spoken()),
+            counted(lost.len(), channel.label()),
             if written == 0 {
                 "zero".to_owned()
             } else {
@@ -138,9 +138,9 @@ pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRead
             let rows: Vec<usize> = spikes.iter().map(|&(row, _)| row).collect();
             let times = reject(channel, time, values, &rows, rejected);
             rows.into_iter().for_each(|row| values[row] = f64::NAN);
-            warnings.push(Code::RejectedReadings.warning(format!(
+            warnings.push(WarningCode::RejectedReadings.warning(format!(
                 "{} far from both neighbours (by up to {:.1}°) taken as missing, {times}",
-                counted(spikes.len(), channel.spoken()),
+                counted(spikes.len(), channel.label()),
                 largest.to_degrees(),
             )));
         }
@@ -173,7 +173,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
     let largest = jumps.iter().map(|(_, step)| *step).fold(0.0, f64::max);
     let rows: Vec<usize> = jumps.iter().map(|&(row, _)| row).collect();
     let times = reject(Channel::Heading, time, heading, &rows, rejected);
-    Some(Code::HeadingJump.warning(format!(
+    Some(WarningCode::HeadingJump.warning(format!(
         "the heading jumps (by up to {:.1}°) faster than a ship turns, {times}; it is not changed, because either side \
          of a jump may be right",
         largest.to_degrees(),
@@ -206,7 +206,7 @@ pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
     reject(Channel::YawRate, &columns.time, rate, &at_end, rejected);
     at_end.iter().for_each(|&row| rate[row] = f64::NAN);
-    Some(Code::RejectedReadings.warning(format!(
+    Some(WarningCode::RejectedReadings.warning(format!(
         "the yaw rate is clipped at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as \
          missing",
         end.to_degrees(),

@@ -1,6 +1,6 @@
 //! Notations of a logger: a rudder from 0 to 360, a heading that is written only after a minimum change.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use crate::channel::Channel;
 use crate::record::{Columns, Trial};
@@ -35,7 +35,7 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
         let text = format!(
             "the rudder is written from 0 to 360°; {count} angles above 270° are read as angles to port, 360° less"
         );
-        Code::TurnedSign.warning(text)
+        WarningCode::TurnedSign.warning(text)
     })
 }
 
@@ -48,7 +48,7 @@ pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
         read.windows(2).filter(is_new).map(|pair| (heading[pair[1]] - heading[pair[0]]).abs()).collect();
     let after_rest = read.windows(3).filter(|rows| heading[rows[0]] == heading[rows[1]] && is_new(&&rows[1..])).count();
     let few = changes.len() / 20;
-    if changes.len() < MIN_AFTER_REST.1.max(Trial::FEWEST_ROWS)
+    if changes.len() < MIN_AFTER_REST.1.max(Trial::MIN_ROWS)
         || (after_rest as f64) < MIN_AFTER_REST.0 * changes.len() as f64
     {
         return None;
@@ -59,7 +59,7 @@ pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
     }
     let repeated: Vec<usize> = read.windows(2).filter(|pair| !is_new(pair)).map(|pair| pair[1]).collect();
     repeated.iter().for_each(|&row| heading[row] = f64::NAN);
-    Some(Code::FaultyReadings.warning(format!(
+    Some(WarningCode::FaultyReadings.warning(format!(
         "the heading holds a value until it has changed by {:.1}° (a dead band, or written on change): repeated values \
          are taken as missing; other channels may have a dead band too, and the rudder may be wrong by as much",
         least.to_degrees(),

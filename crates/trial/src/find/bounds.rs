@@ -2,7 +2,7 @@
 //! rudder leaves its last hold or the propeller stops.
 
 use super::course::middle;
-use super::detection::{Approach, FoundManoeuvre, Quality, STEADY_SPEED};
+use super::detection::{Approach, DetectedManoeuvre, Quality, STEADY_SPEED};
 use super::pattern::{Pattern, Prepared};
 use super::rudder::{Hold, usual};
 use crate::manoeuvre::Manoeuvre;
@@ -41,7 +41,7 @@ const MIN_RAMP_ROWS: usize = 3;
 const MEDIAN_ROWS: usize = 8;
 
 /// The manoeuvres of patterns that are in order of time and do not overlap.
-pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<FoundManoeuvre> {
+pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<DetectedManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
@@ -63,7 +63,7 @@ pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<FoundManoe
             quality.approach = Some(segment.approach);
             quality.speed_change = segment.speed_change;
         }
-        list.push(FoundManoeuvre {
+        list.push(DetectedManoeuvre {
             manoeuvre: Some(pattern.manoeuvre.clone()),
             from: time[first],
             until: time[last],

@@ -93,7 +93,7 @@ impl Quality {
 
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FoundManoeuvre {
+pub struct DetectedManoeuvre {
     /// Kind of manoeuvre with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds
     /// to each side, its heading the median over the executes; `None` where the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
@@ -109,7 +109,7 @@ pub struct FoundManoeuvre {
     pub quality: Quality,
 }
 
-impl FoundManoeuvre {
+impl DetectedManoeuvre {
     /// Name in lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out", "spiral",
     /// "straight".
     pub fn name(&self) -> String {

@@ -27,14 +27,14 @@ use course::Course;
 use pattern::{Pattern, Prepared};
 use rudder::{Hold, RudderHolds};
 
-pub use detection::{Approach, FoundManoeuvre, Quality};
+pub use detection::{Approach, DetectedManoeuvre, Quality};
 pub use pattern::Signals;
 
 /// Manoeuvres of a log in order of time, without overlap.
 ///
 /// Empty where no manoeuvre is recognised, and for a log that violates the rules of [`Signals`]. Time and memory grow
 /// in proportion to the rows.
-pub fn manoeuvres(log: &Signals) -> Vec<FoundManoeuvre> {
+pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }

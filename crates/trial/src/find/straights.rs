@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::detection::{FoundManoeuvre, Quality};
+use super::detection::{DetectedManoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
 use super::rudder::usual;
 
@@ -27,7 +27,7 @@ const MIN_ROWS: usize = 20;
 const AT_REST_SHARE: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<FoundManoeuvre>) {
+pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<DetectedManoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(patterns.iter().map(|pattern| pattern.scale));
@@ -60,7 +60,7 @@ fn pieces_in(
     is_straight: impl Fn(usize) -> bool,
     rows: Range<usize>,
     shortest: f64,
-) -> Vec<FoundManoeuvre> {
+) -> Vec<DetectedManoeuvre> {
     let log = record.log;
     let mut pieces = Vec::new();
     let mut piece: Option<Piece> = None;
@@ -107,9 +107,9 @@ impl Piece {
         near
     }
 
-    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<FoundManoeuvre> {
+    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<DetectedManoeuvre> {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
-        (until - from >= shortest && self.last + 1 - self.first >= MIN_ROWS).then(|| FoundManoeuvre {
+        (until - from >= shortest && self.last + 1 - self.first >= MIN_ROWS).then(|| DetectedManoeuvre {
             manoeuvre: None,
             from,
             until,

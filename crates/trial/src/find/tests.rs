@@ -6,7 +6,7 @@ mod ship;
 use ::ship::angle::{from_deg, to_deg};
 
 use self::ship::Sea;
-use super::{Approach, FoundManoeuvre, manoeuvres};
+use super::{Approach, DetectedManoeuvre, manoeuvres};
 use crate::Manoeuvre;
 
 /// A zig-zag after twelve minutes on a course, and straight on.
@@ -21,7 +21,7 @@ fn half_an_hour(step: f64) -> (Sea, (f64, f64)) {
     (sea, part)
 }
 
-fn assert_part(part: &FoundManoeuvre, (start, until): (f64, f64), step: f64) {
+fn assert_part(part: &DetectedManoeuvre, (start, until): (f64, f64), step: f64) {
     assert!((part.start - start).abs() <= 2.001 * step, "starts at {} for {start}", part.start);
     assert!((part.until - until).abs() <= 2.001 * step, "ends at {} for {until}", part.until);
 }
@@ -229,7 +229,7 @@ fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
 }
 
 /// Parts, without what changes its sign.
-fn parts(list: &[FoundManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
+fn parts(list: &[DetectedManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
     list.iter().map(|part| (part.from, part.until, part.start, part.executes)).collect()
 }
 

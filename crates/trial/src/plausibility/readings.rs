@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use super::extremes;
 use crate::channel::Channel;
@@ -44,9 +44,9 @@ pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning
         let values = if channel == Channel::Rudder { trial.rudder() } else { trial.heading() };
         let name = columns.iter().find(|(named, _)| *named == channel);
         let name = name.map_or_else(String::new, |(_, name)| format!(" (column `{}`)", shortened(name)));
-        let spoken = format!("the {}{name}", channel.spoken());
+        let spoken = format!("the {}{name}", channel.label());
         let texts = [still(trial.time(), values, &spoken), coarse(values, &spoken)];
-        texts.into_iter().flatten().map(|text| Code::FaultyReadings.warning(text))
+        texts.into_iter().flatten().map(|text| WarningCode::FaultyReadings.warning(text))
     });
     warnings.collect()
 }

@@ -1,6 +1,6 @@
 //! Checks of the recorded rudder: sign, scale, unit of the time, and whether it is an order in place of an angle.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::median;
 use ship::angle::to_deg;
 
@@ -63,7 +63,7 @@ fn unsigned(trial: &Trial) -> Option<Warning> {
         .collect();
     levels.dedup();
     (is_one_sided && levels.len() >= 6 && starboard.min(port) > MIN_SIDE_SHARE * (starboard + port)).then(|| {
-        Code::RudderSign.warning(format!(
+        WarningCode::RudderSign.warning(format!(
             "the rudder is never negative (from {:.1}° to {:.1}°) while the ship turns to both sides: it has lost its sign, \
              or its zero is at the end of its scale; record the side with it, as in `P 10.0` or a column of sides, or write \
              `zero` or `formula` for its column in a sidecar NAME.trial.toml",
@@ -89,7 +89,7 @@ fn held(trial: &Trial) -> Option<Warning> {
              small by a factor of 0.35; record the angle in degrees"
         )
     };
-    Some(Code::RudderScale.warning(text))
+    Some(WarningCode::RudderScale.warning(text))
 }
 
 /// Order, deg, of an angle in per cent of the usual stop at 35°; `None` unless the order is a multiple of 5°.
@@ -147,7 +147,7 @@ fn steps(strokes: &[RudderStroke], noise_deg: f64) -> Option<Warning> {
     let slowest_deg_s =
         steps.iter().map(|step| step.largest_deg / step.largest_duration_s).fold(f64::INFINITY, f64::min);
     (steps.len() >= 2 && steps.len() as f64 >= MIN_STEP_SHARE * strokes.len() as f64).then(|| {
-        Code::RudderOrder.warning(format!(
+        WarningCode::RudderOrder.warning(format!(
             "the rudder jumps within a row in {} of {} movements, at {slowest_deg_s:.0}°/s or more, while steering gears move \
              at 2 to 7°/s: it looks like the order in place of the angle, which makes T too long by about half the time of a \
              movement; record the angle, or write the rate of the gear (`order-rate-deg-s = 2.5`) under [rudder] in a sidecar \
@@ -164,7 +164,7 @@ fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<Warning> {
     let mut rates: Vec<f64> = seen.map(|stroke| stroke.length_deg / stroke.duration_s).collect();
     let rate = median(&mut rates).filter(|_| rates.len() >= 2)?;
     (!RUDDER_RATES_DEG_S.contains(&rate)).then(|| {
-        Code::TimeUnit.warning(format!(
+        WarningCode::TimeUnit.warning(format!(
             "the rudder moves at {rate:.2}°/s, while steering gears move at 2 to 7°/s: check the unit of the time (t_s, t_ms, \
              t_min; stamps of minutes and seconds are read as hours and minutes)"
         ))
@@ -185,7 +185,7 @@ fn feedback(trial: &Trial, order: &[f64]) -> Option<Warning> {
     }
     let ratio = cross / square;
     (rows >= 10 && !(1.0 - FEEDBACK_TOLERANCE..=1.0 + FEEDBACK_TOLERANCE).contains(&ratio)).then(|| {
-        Code::RudderScale.warning(format!(
+        WarningCode::RudderScale.warning(format!(
             "the recorded rudder comes to {ratio:.2} of its order: if the feedback is not calibrated (or in per cent), K is \
              wrong by that factor; check it against the rudder stops"
         ))

@@ -3,7 +3,7 @@
 //! linearly between its readings, as the steering gear moves; so are model inputs such as speed and wind. Gaps are not
 //! interpolated.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use super::error::Problem;
 use super::source::Series;
@@ -111,7 +111,7 @@ pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
     }
     let order = channels.get(&Channel::RudderOrder)?.clone();
     channels.insert(Channel::Rudder, order);
-    Some(Code::RudderOrder.warning(
+    Some(WarningCode::RudderOrder.warning(
         "there is no rudder angle; the rudder order is used instead, so the lag of the steering gear is part of the response",
     ))
 }
@@ -144,7 +144,8 @@ pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     let notes = notes.into_iter().filter(|(count, _)| *count > 0);
     let notes = notes.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
     // Where many rows are left out, the movement of the rudder is unknown.
-    let code = if left_out as f64 > MAX_LEFT_OUT_SHARE * keep.len() as f64 { Code::Gap } else { Code::LeftOut };
+    let code =
+        if left_out as f64 > MAX_LEFT_OUT_SHARE * keep.len() as f64 { WarningCode::Gap } else { WarningCode::LeftOut };
     Some(code.warning(notes.join("; ")))
 }
 
@@ -156,7 +157,7 @@ pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
     let heading = find([Channel::Heading, Channel::YawRate]);
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
-        let channels = channels.keys().map(|&channel| channel.spoken().to_owned()).collect();
+        let channels = channels.keys().map(|&channel| channel.label().to_owned()).collect();
         return Err(Problem::NoChannel { wanted, channels });
     };
     let span = |values: &[f64]| {

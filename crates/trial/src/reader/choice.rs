@@ -1,13 +1,13 @@
 //! Part of a log that becomes a record: the selected manoeuvre, else its only zig-zag. A log with several is refused.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::Particulars;
 
 use super::error::{Problem, ReadError};
 use super::log::ReadRecord;
 use super::source::Log;
 use crate::channel::Channel;
-use crate::find::{self, FoundManoeuvre, Signals};
+use crate::find::{self, DetectedManoeuvre, Signals};
 use crate::manoeuvre::Manoeuvre;
 
 /// Maximum share of time outside the zig-zag for a record to be used whole; more is a run-up, a stop, the way back to
@@ -16,7 +16,7 @@ const MAX_SURPLUS_SHARE: f64 = 0.02;
 
 impl Log {
     /// The manoeuvres of the log, in order of time; none where it has no heading.
-    pub fn manoeuvres(&self) -> Vec<FoundManoeuvre> {
+    pub fn manoeuvres(&self) -> Vec<DetectedManoeuvre> {
         let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
             return Vec::new();
         };
@@ -51,7 +51,7 @@ impl Log {
             Some(number) => number
                 .checked_sub(1)
                 .and_then(|place| manoeuvres.get(place))
-                .ok_or_else(|| self.fault(Problem::NoManoeuvre { file, number, count: manoeuvres.len() }))?,
+                .ok_or_else(|| self.fault(Problem::ManoeuvreParseError { file, number, count: manoeuvres.len() }))?,
             None => match zig_zags(&manoeuvres)[..] {
                 [] => {
                     self.warnings.extend(unrecognised(&manoeuvres, &file));
@@ -59,7 +59,7 @@ impl Log {
                 }
                 [(_, only)] => only,
                 ref several => {
-                    let line = |(number, zig_zag): &(usize, &FoundManoeuvre)| {
+                    let line = |(number, zig_zag): &(usize, &DetectedManoeuvre)| {
                         let [from, until] = [zig_zag.from, zig_zag.until].map(|time| self.shown(time));
                         format!("\n  --trial {number}: {}, {from} to {until}", zig_zag.name())
                     };
@@ -80,7 +80,7 @@ impl Log {
             self.shown(from),
             self.shown(until)
         );
-        self.warnings.push(Code::Part.warning(text));
+        self.warnings.push(WarningCode::Part.warning(text));
         self.part(from, until)
     }
 
@@ -92,17 +92,17 @@ impl Log {
 }
 
 /// The zig-zags among some manoeuvres, with their numbers.
-fn zig_zags(manoeuvres: &[FoundManoeuvre]) -> Vec<(usize, &FoundManoeuvre)> {
+fn zig_zags(manoeuvres: &[DetectedManoeuvre]) -> Vec<(usize, &DetectedManoeuvre)> {
     let numbered = (1..).zip(manoeuvres);
     numbered.filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect()
 }
 
 /// The warning of a log in which no zig-zag is recognised and something else is.
-fn unrecognised(manoeuvres: &[FoundManoeuvre], file: &str) -> Option<Warning> {
+fn unrecognised(manoeuvres: &[DetectedManoeuvre], file: &str) -> Option<Warning> {
     let has_straight = manoeuvres.iter().any(|entry| entry.manoeuvre.is_none());
     let text = format!(
         "no zig-zag is recognised, so the whole record is used; `study find {file}` lists its manoeuvres; to use a part, \
          write `from-s` and `until-s` under [part] of its sidecar"
     );
-    has_straight.then(|| Code::WholeRecord.warning(text))
+    has_straight.then(|| WarningCode::WholeRecord.warning(text))
 }

@@ -1,7 +1,7 @@
 //! Numbers in another unit than their name says: counts of a converter, tenths and hundredths of a degree, a rudder
 //! with its side in another column, milliseconds since 1970.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::angle::DEGREE;
 
 use super::error::Problem;
@@ -127,7 +127,7 @@ pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
     columns[side].values = signs;
     let [rudder, side] = [rudder, side].map(|index| shortened(&columns[index].name));
     let text = format!("the rudder `{rudder}` has no sign; the sign is taken from the side in `{side}`, port negative");
-    Some(Code::TurnedSign.warning(text))
+    Some(WarningCode::TurnedSign.warning(text))
 }
 
 /// Refuses a time in milliseconds or microseconds since 1970 under a name that says seconds.

@@ -232,7 +232,7 @@ pub enum Problem {
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// No manoeuvre has the number that was asked for.
     #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
-    NoManoeuvre { file: String, number: usize, count: usize },
+    ManoeuvreParseError { file: String, number: usize, count: usize },
     /// Several zig-zags, of which one has to be chosen: a line for each.
     #[error("there are {count} zig-zags in this log; choose one:{lines}")]
     SeveralZigZags { count: usize, lines: String },

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::effects::ColumnFormula;
 
 use super::error::{Problem, ReadError};
@@ -276,10 +276,10 @@ impl Layout {
                     return Err(self.duplicate(channel.quantity(), index, rival));
                 }
                 let [first, second] = [index, rival].map(|index| shortened(&self.columns[index].name));
-                self.warnings.push(Code::Columns.warning(format!(
+                self.warnings.push(WarningCode::Columns.warning(format!(
                     "the columns `{first}` and `{second}` could both be the {}; neither is used: name the right one in a \
                      sidecar",
-                    channel.spoken()
+                    channel.label()
                 )));
                 continue;
             }

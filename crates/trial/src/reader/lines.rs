@@ -10,7 +10,7 @@ use super::error::Problem;
 use crate::encoding::{Encoding, windows_1252};
 
 /// Maximum length of a line of a table, bytes.
-pub const LONGEST_LINE: usize = 1 << 20;
+pub const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// SHA-256 of the bytes read so far.
 #[derive(Clone, Default)]
@@ -89,11 +89,11 @@ impl<R: Read> Lines<R> {
             let begin = self.input.fill_buf().map_err(Problem::from_input)?;
             self.end = if begin.contains(&b'\r') && !begin.contains(&b'\n') { b'\r' } else { b'\n' };
         }
-        let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
+        let mut limited = (&mut self.input).take(MAX_LINE_BYTES as u64 + 1);
         let length = limited.read_until(self.end, &mut self.bytes).map_err(Problem::from_input)?;
         self.number += usize::from(length > 0);
         self.consumed += length as u64;
-        let whole = length <= LONGEST_LINE || self.bytes.last() == Some(&self.end);
+        let whole = length <= MAX_LINE_BYTES || self.bytes.last() == Some(&self.end);
         if self.number == 1 && self.bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
             self.bytes.drain(..3);
         }
@@ -113,8 +113,8 @@ impl<R: Read> Lines<R> {
         if self.bytes.contains(&0) {
             return Err(Problem::Binary { line });
         }
-        if length > LONGEST_LINE {
-            return Err(Problem::LongLine { line, limit: LONGEST_LINE });
+        if length > MAX_LINE_BYTES {
+            return Err(Problem::LongLine { line, limit: MAX_LINE_BYTES });
         }
         Ok(true)
     }
@@ -141,7 +141,7 @@ impl<R: Read> Lines<R> {
 
     /// Bytes of the next line without its end, text or not: for logs, where noise spoils a line and not the file.
     ///
-    /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and its remainder is skipped; `None` at the end
+    /// A line longer than [`MAX_LINE_BYTES`] is cut one byte beyond that, and its remainder is skipped; `None` at the end
     /// of the file.
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
         let Some((_, whole)) = self.take_line()? else { return Ok(None) };
@@ -196,12 +196,12 @@ mod tests {
     #[test]
     fn bytes_of_a_log_are_given_whatever_they_are() {
         let mut file = b"\xef\xbb\xbf$A\r\nb\0\xffc\n".to_vec();
-        file.extend(vec![b'7'; 3 * LONGEST_LINE]);
+        file.extend(vec![b'7'; 3 * MAX_LINE_BYTES]);
         file.extend(b"\nlast");
         let mut lines = Lines::new(&file[..], Encoding::Utf8);
         assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"$A"[..]));
         assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"b\0\xffc"[..]));
-        assert_eq!(lines.next_bytes().expect("bytes").map(<[u8]>::len), Some(LONGEST_LINE + 1));
+        assert_eq!(lines.next_bytes().expect("bytes").map(<[u8]>::len), Some(MAX_LINE_BYTES + 1));
         assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"last"[..]));
         assert_eq!(lines.next_bytes().expect("bytes"), None);
         assert_eq!((lines.number(), lines.consumed()), (4, file.len() as u64));

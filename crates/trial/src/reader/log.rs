@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::Particulars;
 
 use super::assemble::{check, columns, complete, interpolate_rudder, series, without_duplicates};
@@ -19,7 +19,7 @@ use crate::channel::Channel;
 use crate::cleaning;
 use crate::clock::{Clock, DAY};
 use crate::encoding::Encoding;
-use crate::file::called;
+use crate::file::display_path;
 use crate::plausibility;
 use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
@@ -71,7 +71,7 @@ impl Log {
     /// Reads a file; a `whole` record needs rudder and heading.
     fn of_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
         let sidecar = sidecar.map(Sidecar::load).transpose()?;
-        let name = called(path);
+        let name = display_path(path);
         let (content, size) = input::open(path).map_err(|problem| ReadError::table(name, problem))?;
         Self::of_content(name, content, size, sidecar, whole)
     }
@@ -112,7 +112,7 @@ impl Log {
 
     /// Adds the channels of another file.
     fn join(&mut self, file: &Path) -> Result<(), ReadError> {
-        let mut joined = Self::of_file(file, Sidecar::found_beside(file).as_deref(), false)?;
+        let mut joined = Self::of_file(file, Sidecar::existing_beside(file).as_deref(), false)?;
         let offset = match (&self.clock, &joined.clock) {
             (Some(first), Some(second)) => offset(first, second),
             (None, None) => 0.0,
@@ -135,8 +135,8 @@ impl Log {
         all.extend(series(joined.columns, offset));
         let (all, dropped) = without_duplicates(all);
         self.warnings.extend(dropped.into_iter().map(|channel| {
-            let text = format!("the {} is also in an earlier file, from which it is taken", channel.spoken());
-            with_file(Code::Instrument.warning(text))
+            let text = format!("the {} is also in an earlier file, from which it is taken", channel.label());
+            with_file(WarningCode::Instrument.warning(text))
         }));
         self.columns = columns(&all);
         self.names.extend(joined.names);
@@ -163,11 +163,11 @@ impl Log {
             let rejected = self.rejected.iter_mut().filter(|reading| reading.channel == Channel::Rudder);
             rejected.for_each(|reading| reading.time -= late);
             let text = format!("the rudder is taken {late} s earlier than it was read, as the sidecar declares");
-            self.warnings.push(Code::MovedRudder.warning(text));
+            self.warnings.push(WarningCode::MovedRudder.warning(text));
         }
         if let Some(rate) = order_rate_deg_s.filter(|rate| rudder::follow_order(&mut self.columns, *rate)) {
             let text = format!("the rudder follows its order at {rate}°/s, as the sidecar declares");
-            self.warnings.push(Code::MovedRudder.warning(text));
+            self.warnings.push(WarningCode::MovedRudder.warning(text));
         }
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(interpolate_rudder(&mut self.columns));
@@ -250,7 +250,7 @@ impl Log {
         })?;
         if trial.heading_from_yaw_rate() {
             let text = "there is no heading; the integral of the yaw rate, from zero, is used instead";
-            warnings.push(Code::HeadingFromYawRate.warning(text));
+            warnings.push(WarningCode::HeadingFromYawRate.warning(text));
         }
         if let Some(particulars) = ship.or(sidecar.conditions.particulars) {
             trial = trial.with_particulars(particulars);
@@ -263,11 +263,11 @@ impl Log {
             trial = trial.without(&[Channel::YawRate]);
             let text = "the yaw rate is the derivative of the heading, with its noise and jumps: it is not a second \
                         instrument and is not used";
-            warnings.push(Code::YawRate.warning(text));
+            warnings.push(WarningCode::YawRate.warning(text));
         }
         match plausibility::check(&trial) {
             Ok(doubts) => warnings.extend(doubts),
-            Err(implausible) if !checked => warnings.push(Code::Implausible.warning(implausible.to_string())),
+            Err(implausible) if !checked => warnings.push(WarningCode::Implausible.warning(implausible.to_string())),
             Err(implausible) => return Err(fault(implausible.into())),
         }
         Ok(ReadRecord { trial, warnings })
@@ -327,13 +327,13 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
 ///
 /// Fails as [`read_with`] does.
 pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
-    read_with(path, Sidecar::found_beside(path).as_deref())
+    read_with(path, Sidecar::existing_beside(path).as_deref())
 }
 
 /// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` uses the header only.
 ///
 /// Fails with [`ReadError`] when the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format, when
-/// a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more
+/// a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`] or more
 /// than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
     Log::open(path, sidecar, &[])?.into_trial(None)

@@ -10,7 +10,7 @@ mod table;
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::angle::DEGREE;
 
 use super::error::Problem;
@@ -114,7 +114,7 @@ impl MessageLog {
                 (Channel::Heading, 1) => "magnetic heading",
                 (Channel::Speed, 0) => "speed through the water",
                 (Channel::Speed, _) => "speed over ground",
-                (channel, _) => channel.spoken(),
+                (channel, _) => channel.label(),
             };
             let unused_sources: Vec<String> =
                 offers[1..].iter().map(|(source, signal)| format!("{} ({})", source.name, signal.time.len())).collect();
@@ -124,10 +124,10 @@ impl MessageLog {
                 format!("; not used: {}", unused_sources.join(", "))
             };
             let text = format!("{kind} from {name} ({}){unused}", counted(signal.time.len(), "reading"));
-            warnings.push(Code::Instrument.warning(text));
+            warnings.push(WarningCode::Instrument.warning(text));
             if (channel, *class) == (Channel::Heading, 1) {
                 let text = "the heading is magnetic; changes of heading are correct, its zero is not true north";
-                warnings.push(Code::OtherReference.warning(text));
+                warnings.push(WarningCode::OtherReference.warning(text));
             }
             series.push(signal.clone());
         }
@@ -170,7 +170,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
     }
     if unread > 0 {
         let text = format!("{} of {} hold no quantity that is used", counted(unread, "line"), counted(rows, "line"));
-        warnings.push(Code::LeftOut.warning(text));
+        warnings.push(WarningCode::LeftOut.warning(text));
     }
     let clock = begin_at_zero(&mut series, clock);
     Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
@@ -188,9 +188,9 @@ fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
         series.iter_mut().filter(is_angle).flat_map(|signal| &mut signal.values).for_each(|value| *value *= DEGREE);
     }
     let unit = if seems_si { "radians" } else { "degrees" };
-    is_si
-        .is_none()
-        .then(|| Code::AssumedUnit.warning(format!("angles are read as {unit}, the only unit that fits their values")))
+    is_si.is_none().then(|| {
+        WarningCode::AssumedUnit.warning(format!("angles are read as {unit}, the only unit that fits their values"))
+    })
 }
 
 /// Shifts times so that the first instant is 0.

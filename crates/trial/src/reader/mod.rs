@@ -38,7 +38,7 @@ pub use description::describe;
 pub use error::{Problem, ReadError};
 pub use inspection::{ChannelInspection, ChannelRelation};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
-pub use lines::LONGEST_LINE;
+pub use lines::MAX_LINE_BYTES;
 pub use log::{ReadRecord, read, read_bytes, read_with};
 
 pub use source::{ChannelReadings, Log};

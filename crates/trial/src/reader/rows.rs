@@ -115,7 +115,7 @@ impl<'a> Rows<'a> {
         const ESTIMATE_ROWS: usize = 10_000;
         const MIN_EXCESS: f64 = 1.5;
         let kept = self.time.len();
-        let limit = MAX_ROWS.min(MAX_CELLS / self.width).max(Trial::FEWEST_ROWS);
+        let limit = MAX_ROWS.min(MAX_CELLS / self.width).max(Trial::MIN_ROWS);
         if kept <= limit && kept != ESTIMATE_ROWS {
             return Ok(());
         }

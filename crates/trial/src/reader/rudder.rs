@@ -1,7 +1,7 @@
 //! Corrections of the rudder before it becomes part of a record: a rudder written on change holds its value, and a
 //! sidecar may declare a delay of the rudder, or the column as an order.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::median;
 use ship::angle::from_deg;
 
@@ -64,10 +64,10 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
         *series = held;
     }
     *columns = assemble::columns(&all);
-    Some(Code::FaultyReadings.warning(format!(
+    Some(WarningCode::FaultyReadings.warning(format!(
         "the {} is written on change: its empty cells are read as the last value; changes below {:.2}°, too small to be \
          written, are missing",
-        channel.spoken(),
+        channel.label(),
         least.to_degrees(),
     )))
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use super::counts;
 use super::error::{Problem, ReadError};
@@ -93,7 +93,7 @@ impl Rows<'_> {
                 // A channel without values counts as absent.
                 Content::Channel(..) if missing => {
                     let text = format!("the column `{}` has no value and is left out", shortened(&name));
-                    warnings.push(Code::LeftOut.warning(text));
+                    warnings.push(WarningCode::LeftOut.warning(text));
                 }
                 Content::Channel(channel, _) => {
                     channels.insert(channel, values);
@@ -116,11 +116,11 @@ impl Rows<'_> {
         let decided = units::settle(&mut log, open, open_time, line)?;
         if skipped > 0 {
             let text = format!("{} before the header skipped", counted(skipped, "line"));
-            log.warnings.push(Code::Notation.warning(text));
+            log.warnings.push(WarningCode::Notation.warning(text));
         }
         if !recognised.is_empty() {
             let text = format!("columns recognised by their names: {}", listed(&recognised));
-            log.warnings.push(Code::Columns.warning(text));
+            log.warnings.push(WarningCode::Columns.warning(text));
         }
         log.warnings.extend(decided.into_iter().chain(warnings));
         Ok(log)
@@ -145,7 +145,7 @@ impl Rows<'_> {
         thin(&mut self.time);
         self.layout.columns.iter_mut().for_each(|column| thin(&mut column.values));
         usual.map(|usual| {
-            Code::SharedStamps.warning(format!(
+            WarningCode::SharedStamps.warning(format!(
                 "rows share their time stamps, usually {usual} per stamp; they are spread evenly up to the next stamp"
             ))
         })
@@ -166,13 +166,13 @@ impl Rows<'_> {
         }
         let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
         if let Some(place) = layout.rudder().filter(is_empty) {
-            return all_missing(place, Channel::Rudder.spoken());
+            return all_missing(place, Channel::Rudder.label());
         }
         let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.index(channel));
         match (heading, rate) {
             (_, Some(rate)) if !is_empty(&rate) => Ok(()),
-            (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.spoken()),
-            (None, Some(rate)) => all_missing(rate, Channel::YawRate.spoken()),
+            (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.label()),
+            (None, Some(rate)) => all_missing(rate, Channel::YawRate.label()),
             _ => Ok(()),
         }
     }
@@ -180,33 +180,33 @@ impl Rows<'_> {
     fn warnings(&mut self) -> Vec<Warning> {
         let counts = &self.counts;
         let mut warnings = std::mem::take(&mut self.layout.warnings);
-        let mut count = |number: usize, code: Code, text: &str| {
+        let mut count = |number: usize, code: WarningCode, text: &str| {
             warnings.extend((number > 0).then(|| code.warning(format!("{} {text}", counted(number, "row")))));
         };
-        count(counts.no_time, Code::LeftOut, "without time left out");
-        count(counts.nothing, Code::LeftOut, "with neither rudder nor heading nor yaw rate left out");
-        count(counts.repeated, Code::LeftOut, "left out as exact copies of the row before");
+        count(counts.no_time, WarningCode::LeftOut, "without time left out");
+        count(counts.nothing, WarningCode::LeftOut, "with neither rudder nor heading nor yaw rate left out");
+        count(counts.repeated, WarningCode::LeftOut, "left out as exact copies of the row before");
         let short = "with fewer cells than the header; their last columns are taken as missing";
-        count(counts.short, Code::MissingValues, short);
+        count(counts.short, WarningCode::MissingValues, short);
         let first = instant(counts.astray.first().copied().unwrap_or_default());
         let astray =
             format!("left out, because the time does not fit the neighbouring rows; the first is at {first} s");
-        count(counts.astray.len(), Code::LeftOut, &astray);
+        count(counts.astray.len(), WarningCode::LeftOut, &astray);
         if counts.decimal_commas > 0 {
             let text = format!("{} read with a decimal comma", counted(counts.decimal_commas, "number"));
-            warnings.push(Code::Notation.warning(text));
+            warnings.push(WarningCode::Notation.warning(text));
         }
         let columns = || self.layout.columns.iter().map(|column| (shortened(&column.name), column));
         for (name, RawColumn { text, .. }) in columns().filter(|(_, column)| column.text > 0) {
             let text = format!("the column `{name}` holds text in {}, taken as missing", counted(*text, "row"));
-            warnings.push(Code::MissingValues.warning(text));
+            warnings.push(WarningCode::MissingValues.warning(text));
         }
         for (name, RawColumn { sentinels: (count, value), .. }) in
             columns().filter(|(_, column)| column.sentinels.0 > 0)
         {
             let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
             let text = format!("the column `{name}` holds {value} {times}, taken as missing");
-            warnings.push(Code::MissingValues.warning(text));
+            warnings.push(WarningCode::MissingValues.warning(text));
         }
         warnings
     }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 
 use super::error::Problem;
@@ -87,13 +87,13 @@ pub(super) fn settle(
                 decided.push(format!(
                     "`{}` is the {} in {}",
                     shortened(&open.name),
-                    open.channel.spoken(),
-                    unit.spoken()
+                    open.channel.label(),
+                    unit.label()
                 ));
             }
             None if is_needed => {
                 let UnitlessColumn { channel, name: column, largest } = open.clone();
-                return Err(Problem::OpenUnit { line, column, quantity: channel.spoken(), largest, channel });
+                return Err(Problem::OpenUnit { line, column, quantity: channel.label(), largest, channel });
             }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
@@ -105,11 +105,11 @@ pub(super) fn settle(
     let mut warnings = Vec::new();
     if !decided.is_empty() {
         let text = format!("columns without a unit: {}, the only unit that fits their values", decided.join(", "));
-        warnings.push(Code::AssumedUnit.warning(text));
+        warnings.push(WarningCode::AssumedUnit.warning(text));
     }
     warnings.extend(left_out.into_iter().map(without_unit));
     if let Some(name) = open_time {
-        warnings.push(Code::AssumedUnit.warning(seconds(log, &name, line)?));
+        warnings.push(WarningCode::AssumedUnit.warning(seconds(log, &name, line)?));
     }
     Ok(warnings)
 }
@@ -117,9 +117,9 @@ pub(super) fn settle(
 /// Warning of a column that is left out because its values do not show its unit.
 fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warning {
     let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
-    Code::LeftOut.warning(format!(
+    WarningCode::LeftOut.warning(format!(
         "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
-        channel.spoken(),
+        channel.label(),
         shortened(name),
         names.join(" or "),
         channel.column_name()

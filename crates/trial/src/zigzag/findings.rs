@@ -194,18 +194,18 @@ pub struct ZigZag {
 }
 
 /// Maximum yaw rate at the first execute after a straight approach, as a share of the largest of the record.
-pub const STRAIGHT_APPROACH: f64 = 0.1;
+pub const MAX_APPROACH_RATE_SHARE: f64 = 0.1;
 
 /// Tolerance of a yaw rate, standard deviations.
 const TOLERANCE_SDS: f64 = 3.0;
 
 impl ZigZag {
-    /// Yaw rate at the first execute after a straight approach, rad/s: at most [`STRAIGHT_APPROACH`] of the largest yaw
+    /// Yaw rate at the first execute after a straight approach, rad/s: at most [`MAX_APPROACH_RATE_SHARE`] of the largest yaw
     /// rate, within its error. `None` for a record that begins in a turn or within the trial.
     pub fn straight_yaw_rate(&self) -> Option<Quantity> {
         self.side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
-        let limit = STRAIGHT_APPROACH * largest.value + TOLERANCE_SDS * rate.sd.unwrap_or(0.0);
+        let limit = MAX_APPROACH_RATE_SHARE * largest.value + TOLERANCE_SDS * rate.sd.unwrap_or(0.0);
         (rate.value.abs() <= limit).then_some(rate)
     }
 

@@ -4,7 +4,7 @@ use super::tests::manoeuvres;
 use super::*;
 use crate::dynamics::{Dynamics, Input};
 use crate::number::Tangent;
-use crate::replay::{Recorded, replay_states};
+use crate::replay::{RecordedSignals, replay_states};
 use crate::replayable::Replayable;
 use crate::response::{Response, ResponseModel};
 use crate::signal::Polyline;
@@ -21,7 +21,7 @@ fn states(ship: &Response, side: f64, heading: f64, has_speed: bool) -> Vec<[f64
     let rudder = [0.0, 0.2, 0.2, -0.2, -0.2, 0.2, 0.2].map(|angle| side * angle).to_vec();
     let rudder = Polyline::new(vec![0.0, 4.0, 20.0, 28.0, 60.0, 68.0, 100.0], rudder).expect("increasing");
     let speed = Polyline::new(vec![0.0, 100.0], vec![8.0, 6.0]).expect("increasing");
-    let recorded = Recorded { speed: has_speed.then_some(&speed), ..Recorded::rudder(&rudder) };
+    let recorded = RecordedSignals { speed: has_speed.then_some(&speed), ..RecordedSignals::rudder(&rudder) };
     let times: Vec<f64> = (0..=400).map(|row| 0.25 * f64::from(row)).collect();
     let mut state = vec![0.0; 4];
     ship.enter(heading, 0.0, &recorded.input(0.0, 0.0), &mut state);
@@ -88,7 +88,7 @@ fn a_way_carries_its_derivatives() {
         let end = |values: [Tangent; 6]| {
             let ship = model.clone().with(values[..4].to_vec());
             let mut state = vec![Tangent::default(); 4];
-            let recorded = Recorded::rudder(&rudder);
+            let recorded = RecordedSignals::rudder(&rudder);
             ship.enter(values[4], values[5], &recorded.input(0.0, Tangent::default()), &mut state);
             replay_states(&ship, &recorded, &[0.0, 100.0], |_, _| 0.25, &mut state, |_, _, _| {});
             state[0]
@@ -113,7 +113,7 @@ fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {
         let formula = Formula::read("bank = c * y").expect("a formula");
         let Proposal { effect, priors } =
-            formula.proposal(&Manoeuvres { speed, ..manoeuvres() }).expect("any record will do");
+            formula.proposal(&RecordScales { speed, ..manoeuvres() }).expect("any record will do");
         let constants: Vec<f64> = effect.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!(constants, way);
         assert!((priors[0].sd * way[0] / 6e-3 - 1.0).abs() < 0.2, "{priors:?}");

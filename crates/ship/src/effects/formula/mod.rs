@@ -16,7 +16,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Places, Prior, Proposal};
+use super::effect::{Action, Description, Effect, OperatingPoint, Prior, Proposal, RecordScales, Targets};
 use crate::dynamics::{Measured, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
@@ -34,22 +34,22 @@ type FormulaCache = BTreeMap<(String, String), Arc<Formula>>;
 
 /// Symmetry of a moment when port and starboard are exchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sides {
+pub enum MirrorSymmetry {
     /// Odd: it changes its sign, as for a symmetric ship.
-    Alike,
+    Odd,
     /// Even: it keeps its sign.
-    Same,
+    Even,
     /// Neither odd nor even.
-    Differ,
+    Neither,
 }
 
-impl Sides {
+impl MirrorSymmetry {
     /// Verb phrase for messages.
     pub fn as_str(self) -> &'static str {
         match self {
-            Self::Alike => "acts equally to port and to starboard",
-            Self::Same => "acts to the same side in turns to port and in turns to starboard",
-            Self::Differ => "acts differently to port and to starboard",
+            Self::Odd => "acts equally to port and to starboard",
+            Self::Even => "acts to the same side in turns to port and in turns to starboard",
+            Self::Neither => "acts differently to port and to starboard",
         }
     }
 }
@@ -59,9 +59,9 @@ impl Sides {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`Places::RUDDER`] for the acting rudder, from `delta` alone, rad; [`Places::MOMENT`] for a yaw acceleration,
+    /// [`Targets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`Targets::MOMENT`] for a yaw acceleration,
     /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
-    pub(super) acts: Places,
+    pub(super) acts: Targets,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
     /// Prior of every constant.
@@ -71,14 +71,14 @@ pub(super) struct ListedFormula {
 }
 
 /// Prior of the constants in given records: mean, standard deviation and largest value.
-pub(super) type ListedPrior = fn(&Manoeuvres) -> Option<[f64; 3]>;
+pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 
 /// Effect defined by a formula.
 #[derive(Debug, Clone)]
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
-    acts: Places,
+    acts: Targets,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: OfRecord,
@@ -144,7 +144,7 @@ impl Formula {
             channels: program.channels(),
             program,
             description,
-            acts: Places::MOMENT,
+            acts: Targets::MOMENT,
             of_record: OF_RECORD.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
@@ -203,7 +203,7 @@ impl Formula {
     }
 
     /// `true` if it is zero or constant in a signal for ships without a measured channel.
-    pub fn is_idle_without(&self, channel: Regressor) -> bool {
+    pub fn is_inactive_without(&self, channel: Regressor) -> bool {
         self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
     }
 
@@ -223,7 +223,7 @@ impl Effect for Formula {
         self.description
     }
 
-    fn proposal(&self, records: &Manoeuvres) -> Option<Proposal> {
+    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
         let has = |channel| match channel {
             Regressor::Speed => records.speed.is_some(),
             Regressor::Sway => records.sway.is_some(),
@@ -248,7 +248,7 @@ impl Effect for Formula {
         Some(Proposal::new(effect, priors))
     }
 
-    fn places(&self) -> Places {
+    fn targets(&self) -> Targets {
         self.acts
     }
 
@@ -257,7 +257,7 @@ impl Effect for Formula {
     }
 
     fn uses(&self, channel: Regressor) -> bool {
-        self.is_idle_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralWay)
+        self.is_inactive_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralWay)
     }
 
     /// Two states for the lateral way: the way, and the initial course ψ₀.
@@ -275,28 +275,28 @@ impl Effect for Formula {
         Some(Arc::new(effect))
     }
 
-    fn is_of_time(&self) -> bool {
+    fn is_time_dependent(&self) -> bool {
         self.has(FormulaSignal::Time)
     }
 
-    fn is_of_weather(&self) -> bool {
+    fn is_environmental(&self) -> bool {
         self.listed.is_some_and(|row| row.of_weather)
     }
 
     /// A lateral way is relative to the initial course, so it does not depend on the absolute heading.
-    fn sees_heading(&self) -> bool {
+    fn is_heading_dependent(&self) -> bool {
         self.has(FormulaSignal::Heading)
     }
 }
 
-impl<R: Real> Acts<R> for Formula {
-    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+impl<R: Real> Action<R> for Formula {
+    fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         if let [way, course] = z {
             (*way, *course) = (R::from(0.0), now.heading);
         }
     }
 
-    fn rates(&self, _p: &[R], z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
+    fn rates(&self, _p: &[R], z: &[R], now: &OperatingPoint<R>, _before: R, rate: &mut [R]) {
         let (sin, _) = (now.heading - z[1]).sin_cos();
         (rate[0], rate[1]) = (sin * self.way_speed(now.measured), R::from(0.0));
     }
@@ -310,7 +310,7 @@ impl<R: Real> Acts<R> for Formula {
     }
 
     #[inline]
-    fn yaw_acceleration(&self, p: &[R], z: &[R], now: &Now<R>) -> R {
+    fn yaw_acceleration(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> R {
         if !self.acts.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }

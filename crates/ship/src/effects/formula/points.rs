@@ -1,7 +1,7 @@
 //! Sample points at which a formula is evaluated: signals with the scales of given records.
 
 use super::program::FormulaSignal;
-use crate::effects::effect::Manoeuvres;
+use crate::effects::effect::RecordScales;
 
 /// Scales of the signals in given records.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +33,7 @@ impl SignalSizes {
     }
 
     /// Scales in records: r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
-    pub(super) fn of(records: &Manoeuvres) -> Self {
+    pub(super) fn of(records: &RecordScales) -> Self {
         let speed = records.speed.or(records.sway).unwrap_or(1.0);
         Self {
             yaw_rate: 0.3 / records.time,
@@ -50,7 +50,7 @@ impl SignalSizes {
 }
 
 /// Speed that drives a lateral way in given records, m/s; 1 where a record has no speed.
-pub(super) fn way_speed(records: &Manoeuvres) -> f64 {
+pub(super) fn way_speed(records: &RecordScales) -> f64 {
     records.speed.unwrap_or(1.0)
 }
 

@@ -4,7 +4,7 @@
 use estimation::number::Real;
 
 use crate::dynamics::{Measured, Regressor};
-use crate::effects::effect::Now;
+use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
 /// Largest number of values on the stack, and the number that suffices for most formulas (also of signals).
@@ -97,7 +97,12 @@ impl FormulaSignal {
 
     /// Value at an operating point with its channels; `z` are the states of the formula.
     #[inline(always)]
-    pub(super) fn at<R: Real>(self, now: &Now<R>, z: &[R], &[approach_speed, start, length, ..]: &OfRecord) -> R {
+    pub(super) fn at<R: Real>(
+        self,
+        now: &OperatingPoint<R>,
+        z: &[R],
+        &[approach_speed, start, length, ..]: &OfRecord,
+    ) -> R {
         let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
         let value = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
         let constant = |channel: Option<f64>| R::from(value(channel));

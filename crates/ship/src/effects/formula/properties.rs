@@ -3,8 +3,8 @@
 
 use super::points::{SignalPoint, SignalSizes};
 use super::program::FormulaSignal;
-use super::{Formula, Sides};
-use crate::effects::effect::{Manoeuvres, Parameter, Prior};
+use super::{Formula, MirrorSymmetry};
+use crate::effects::effect::{Parameter, Prior, RecordScales};
 use crate::particulars::{self, Dimension};
 
 /// Range of a constant without one.
@@ -71,7 +71,7 @@ impl Formula {
             let neutral = if self.is_size[place] { 0.0 } else { typical };
             let ends = self.expected[place].ends.unwrap_or([-UNBOUNDED, UNBOUNDED]);
             Parameter {
-                odd: self.is_size[place] && self.sides_of(place, &shapes) == Sides::Same,
+                odd: self.is_size[place] && self.sides_of(place, &shapes) == MirrorSymmetry::Even,
                 ..Parameter::even([key, key, unit], [neutral, typical], ends)
             }
         };
@@ -79,7 +79,7 @@ impl Formula {
     }
 
     /// Symmetry of the contribution of one size when port and starboard are exchanged.
-    fn sides_of(&self, place: usize, shapes: &[f64]) -> Sides {
+    fn sides_of(&self, place: usize, shapes: &[f64]) -> MirrorSymmetry {
         let constants = self.with_size(Some(place), shapes);
         let agrees = |sign: f64| {
             SignalPoint::all(&SignalSizes::ones()).all(|point| {
@@ -88,18 +88,19 @@ impl Formula {
             })
         };
         match (agrees(-1.0), agrees(1.0)) {
-            (true, _) => Sides::Alike,
-            (_, true) => Sides::Same,
-            _ => Sides::Differ,
+            (true, _) => MirrorSymmetry::Odd,
+            (_, true) => MirrorSymmetry::Even,
+            _ => MirrorSymmetry::Neither,
         }
     }
 
     /// Symmetry of the moment when port and starboard are exchanged at the same constants.
-    pub fn sides(&self) -> Sides {
+    pub fn mirror_symmetry(&self) -> MirrorSymmetry {
         let shapes = self.shapes(&SignalSizes::ones());
         let sizes = (0..shapes.len()).filter(|place| self.is_size[*place]);
         let all = sizes.map(|place| self.sides_of(place, &shapes));
-        all.reduce(|first, next| if first == next { first } else { Sides::Differ }).unwrap_or(Sides::Differ)
+        all.reduce(|first, next| if first == next { first } else { MirrorSymmetry::Neither })
+            .unwrap_or(MirrorSymmetry::Neither)
     }
 
     /// Dimensions of the constants, where they follow from the signals, because the result is an angle. Unknown for
@@ -171,7 +172,7 @@ impl Formula {
     /// Priors of the constants. A size is normal about zero, with the expected value as its standard deviation, else
     /// with that of a moment of a fifth of the largest rudder angle. A shape is normal about its expected value, with
     /// half of it as standard deviation. `None` where a prior is not finite.
-    pub(super) fn derived_priors(&self, records: &Manoeuvres) -> Option<Vec<Prior>> {
+    pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
         let scales = SignalSizes::of(records);
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {

@@ -4,8 +4,8 @@ use crate::dynamics::Measured;
 use crate::effects::effect::Parameter;
 use crate::effects::list::{LIST, ListedEffect};
 
-pub(super) fn manoeuvres() -> Manoeuvres {
-    Manoeuvres {
+pub(super) fn manoeuvres() -> RecordScales {
+    RecordScales {
         time: 20.0,
         rudder: 0.35,
         duration: 600.0,
@@ -52,25 +52,30 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
 fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
     let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
     assert_eq!(bank.is_size, [true, false]);
-    assert!(bank.parameters().iter().all(|p| !p.odd) && bank.sees_heading());
+    assert!(bank.parameters().iter().all(|p| !p.odd) && bank.is_heading_dependent());
     let even = Formula::read("drift = c * abs(r) + d * v").expect("a formula");
     assert_eq!(even.parameters().iter().map(|p| p.odd).collect::<Vec<_>>(), [true, false]);
     for (line, sides) in [
-        ("bank = c * tanh(k * psi)", Sides::Alike),
-        ("trend = c * t", Sides::Same),
-        ("drift = c * abs(r) + d * abs(v)", Sides::Same),
-        ("drift = c * abs(r) + d * v", Sides::Differ),
-        ("one_sided = c * max(r, 0)", Sides::Differ),
-        ("bank = c * y", Sides::Alike),
-        ("banks = c * y + d * y^3", Sides::Alike),
-        ("bank = c * abs(y)", Sides::Same),
-        ("bank = c * y + d * y^2", Sides::Differ),
+        ("bank = c * tanh(k * psi)", MirrorSymmetry::Odd),
+        ("trend = c * t", MirrorSymmetry::Even),
+        ("drift = c * abs(r) + d * abs(v)", MirrorSymmetry::Even),
+        ("drift = c * abs(r) + d * v", MirrorSymmetry::Neither),
+        ("one_sided = c * max(r, 0)", MirrorSymmetry::Neither),
+        ("bank = c * y", MirrorSymmetry::Odd),
+        ("banks = c * y + d * y^3", MirrorSymmetry::Odd),
+        ("bank = c * abs(y)", MirrorSymmetry::Even),
+        ("bank = c * y + d * y^2", MirrorSymmetry::Neither),
     ] {
-        assert_eq!(Formula::read(line).expect("a formula").sides(), sides, "{line}");
+        assert_eq!(Formula::read(line).expect("a formula").mirror_symmetry(), sides, "{line}");
     }
-    assert!(Formula::read("trend = c * t").expect("a formula").is_of_time());
+    assert!(Formula::read("trend = c * t").expect("a formula").is_time_dependent());
     let bank = Formula::read("bank = c * y").expect("a formula");
-    assert!(!bank.is_of_time() && !bank.sees_heading() && bank.needs().is_none() && bank.uses(Regressor::Speed));
+    assert!(
+        !bank.is_time_dependent()
+            && !bank.is_heading_dependent()
+            && bank.needs().is_none()
+            && bank.uses(Regressor::Speed)
+    );
     for (line, units) in [
         ("cross = c * r * abs(v)", vec!["s²/m"]),
         ("bank = c * tanh(k * psi)", vec!["1", "1"]),
@@ -157,7 +162,7 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
 #[test]
 fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
     let measured = Measured { speed: Some(6.0), sway: Some(-0.5), ..Measured::default() };
-    let now = Now {
+    let now = OperatingPoint {
         t: 10.0,
         heading: 0.3,
         yaw_rate: 0.02,
@@ -166,7 +171,7 @@ fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
         gain: 0.004,
         measured: &measured,
     };
-    let acceleration = |line: &str, now: &Now| {
+    let acceleration = |line: &str, now: &OperatingPoint| {
         Formula::read(line).expect("a formula").with_length(150.0).yaw_acceleration(&[-3.0], &[], now)
     };
     for (line, moment) in [
@@ -178,6 +183,10 @@ fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
         assert!((acceleration(line, &now) / (0.004 * moment) - 1.0).abs() < 1e-14, "{line}");
     }
     let measured = Measured::default();
-    assert_eq!(acceleration("cross = c * r * abs(v)", &Now { measured: &measured, ..now }), 0.0, "no sway, no moment");
-    assert_eq!(acceleration("ratio = c * r * q", &Now { measured: &measured, ..now }), 0.004 * -3.0 * 0.02);
+    assert_eq!(
+        acceleration("cross = c * r * abs(v)", &OperatingPoint { measured: &measured, ..now }),
+        0.0,
+        "no sway, no moment"
+    );
+    assert_eq!(acceleration("ratio = c * r * q", &OperatingPoint { measured: &measured, ..now }), 0.004 * -3.0 * 0.02);
 }

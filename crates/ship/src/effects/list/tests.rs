@@ -1,12 +1,12 @@
 use super::*;
 use crate::dynamics::Measured;
-use crate::effects::effect::{EffectReal, Now};
+use crate::effects::effect::{EffectReal, OperatingPoint};
 use crate::number::Tangent;
 use estimation::number::Real;
 
 /// Equations of the rows, written by hand: the acting rudder, or the yaw acceleration.
-fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &Now<R>) -> R {
-    let Now { rudder, gain, yaw_rate: r, measured, .. } = *now;
+fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &OperatingPoint<R>) -> R {
+    let OperatingPoint { rudder, gain, yaw_rate: r, measured, .. } = *now;
     match (id, form) {
         ("nonlinear_damping", "r³") => -p[0] * r * r * r,
         ("nonlinear_damping", "r|r|") => -p[0] * r * r.abs(),
@@ -53,7 +53,7 @@ fn rows_are_their_equations_to_the_last_bit() {
         let constants: Vec<f64> =
             formula.constants().iter().map(|(neutral, _)| if *neutral > 0.0 { 7.3 } else { 3.25 }).collect();
         let formula = formula.with_constants(&constants).expect("as many");
-        let acts = Tangent::acts(formula.as_ref());
+        let acts = Tangent::action(formula.as_ref());
         for round in 0..500 {
             let variable = |place: u32, size: f64| {
                 Tangent::variable(size * number(round, place), place as usize, 0.5 + number(round, place + 20).abs())
@@ -65,7 +65,7 @@ fn rows_are_their_equations_to_the_last_bit() {
                 wind_from: Some(3.0 * number(round, 9)),
                 propeller: None,
             };
-            let mut now = Now {
+            let mut now = OperatingPoint {
                 t: 100.0 * number(round, 10),
                 heading: variable(0, 1.0),
                 yaw_rate: variable(1, 0.03),
@@ -94,8 +94,11 @@ fn rows_are_their_equations_to_the_last_bit() {
 
 #[test]
 fn a_calm_is_without_wind_waves_and_moments_from_outside() {
-    let mut ids: Vec<&str> = ALL.iter().filter(|effect| effect.is_of_weather()).map(|effect| effect.id()).collect();
+    let mut ids: Vec<&str> = ALL.iter().filter(|effect| effect.is_environmental()).map(|effect| effect.id()).collect();
     ids.dedup();
     assert_eq!(ids, ["wind_moment", "moment_drift", "transient_disturbance", "wave_yaw"]);
-    assert!(!Formula::read("trend = c * t").expect("a formula").is_of_weather(), "nobody knows what a formula is of");
+    assert!(
+        !Formula::read("trend = c * t").expect("a formula").is_environmental(),
+        "nobody knows what a formula is of"
+    );
 }

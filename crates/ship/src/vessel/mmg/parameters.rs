@@ -188,7 +188,7 @@ impl Wake {
 impl Parameters {
     /// Hull scaled to length 1.
     #[must_use]
-    pub fn of_length_one(&self) -> Self {
+    pub fn at_unit_length(&self) -> Self {
         let L = self.Lpp;
         Self {
             Lpp: 1.0,

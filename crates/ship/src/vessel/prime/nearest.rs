@@ -52,7 +52,7 @@ type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 /// Priors of the quadratic and the cubic polynomial; `None` where the prior of the hull is not valid.
 pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     let of_mmg = |parameters: &Parameters| {
-        let hull = Mmg::at_speed(parameters.of_length_one(), 1.0).ok()?;
+        let hull = Mmg::at_speed(parameters.at_unit_length(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&CalmHull::Mmg(Box::new(hull), 0.0))))
     };
     let differences = prior.deviations.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
@@ -136,7 +136,7 @@ mod tests {
     /// some, is nearer.
     #[test]
     fn published_hulls_depart_from_the_formulas_by_so_much() {
-        let forms = HullForm::of_ship(None);
+        let forms = HullForm::candidates(None);
         let distances = |ship: &ships::Ship| {
             let truth = published(ship)?;
             let nearest = laws(&truth, &DMatrix::zeros(truth.len(), 0)).expect("independent terms");

@@ -21,7 +21,7 @@ use Spread::{Absolute, Share};
 
 /// Formula of a coefficient from the particulars, with spread and source.
 #[derive(Debug)]
-pub struct Formula {
+pub struct CoefficientFormula {
     /// Name of the coefficient in files: "Nvvr", "gammaR-port".
     pub key: &'static str,
     /// Symbol.
@@ -42,8 +42,8 @@ const fn row(
     spread: Spread,
     text: &'static str,
     source: &'static str,
-) -> Formula {
-    Formula { key, symbol, of, spread, text, source }
+) -> CoefficientFormula {
+    CoefficientFormula { key, symbol, of, spread, text, source }
 }
 
 impl HullDimensions {
@@ -131,7 +131,7 @@ const PUBLISHED: &str = "typical: KVLCC2, Esso Osaka, SEIUN-like";
 const KVLCC2: &str = "as KVLCC2, Yasukawa and Yoshimura (2015)";
 
 /// Table of formulas. Symbols: k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J the advance ratio of the straight approach.
-pub(super) const FORMULAS: &[Formula] = &[
+pub(super) const FORMULAS: &[CoefficientFormula] = &[
     row("mx", "m_x'", HullDimensions::added_surge, Absolute(0.008), "m' f(C_b, L/B, d/B)", ZHOU),
     row("my", "m_y'", HullDimensions::added_sway, Share(0.15), "m' f(C_b, L/B, d/B)", ZHOU),
     row(

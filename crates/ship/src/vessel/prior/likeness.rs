@@ -57,7 +57,7 @@ impl HullParticulars {
     /// Particulars with missing values taken from another ship, scaled to the length of this one; given values stay.
     /// Mass and revolutions depend on the water and the trial and are not transferred.
     #[must_use]
-    pub fn filled_from(&self, other: &Self) -> Self {
+    pub fn with_missing_from(&self, other: &Self) -> Self {
         let ratio = self.length / other.length;
         let mut filled = *self;
         for particular in PARTICULARS.iter().filter(|p| is_of_hull(p.key)) {
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn a_model_has_the_particulars_of_her_ship() {
         let bare = HullParticulars { length: 7.0, speed: 1.18, ..HullParticulars::default() };
-        let model = bare.filled_from(&KVLCC2);
+        let model = bare.with_missing_from(&KVLCC2);
         let near = |value: Option<f64>, expected: f64| (value.expect("filled") / expected - 1.0).abs() < 0.005;
         assert!(near(model.beam, 1.27) && near(model.draught, 0.455) && near(model.rudder_area, 0.0539), "{model:?}");
         assert_eq!((model.block_coefficient, model.propeller_rate, model.length), (Some(0.81), None, 7.0));
@@ -90,7 +90,7 @@ mod tests {
     fn another_loading_differs() {
         let ballast = HullParticulars { draught: Some(12.0), x_g: Some(5.0), ..KVLCC2 };
         assert_eq!(ballast.differing(&KVLCC2), ["draught-m", "x-g-m"]);
-        assert_eq!(ballast.filled_from(&KVLCC2).draught, Some(12.0));
+        assert_eq!(ballast.with_missing_from(&KVLCC2).draught, Some(12.0));
         assert!(HullParticulars { draught: Some(20.7), ..KVLCC2 }.differing(&KVLCC2).is_empty(), "rounding");
     }
 }

@@ -51,7 +51,7 @@ fn bare(length: f64, speed: f64) -> HullParticulars {
     HullParticulars { length, speed, ..HullParticulars::default() }
 }
 
-fn coefficient<'a>(prior: &'a HullPrior, key: &str) -> &'a Coefficient {
+fn coefficient<'a>(prior: &'a HullPrior, key: &str) -> &'a CoefficientPrior {
     prior.coefficients.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
 }
 
@@ -69,7 +69,7 @@ fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
 }
 
 /// The value of a coefficient in some parameters; NaN where they have none.
-fn value_in(coefficient: &Coefficient, mut parameters: Parameters) -> f64 {
+fn value_in(coefficient: &CoefficientPrior, mut parameters: Parameters) -> f64 {
     parameters.named(coefficient.formula.key).map_or(f64::NAN, |value| *value)
 }
 
@@ -126,7 +126,7 @@ fn the_seiun_like_ship_is_made_of_regressions() {
 fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
         let prior = priors(&given).expect("a ship");
-        let off = |c: &&Coefficient| (value_in(c, published) - c.mean).abs() > 2.0 * c.sd;
+        let off = |c: &&CoefficientPrior| (value_in(c, published) - c.mean).abs() > 2.0 * c.sd;
         let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|c| c.formula.key).collect();
         assert!(10 * beyond.len() <= prior.coefficients.len(), "{beyond:?}");
     }
@@ -156,7 +156,7 @@ fn what_is_missing_widens_the_prior() {
     let bare = priors(&bare(320.0, 7.97)).expect("a ship");
     for key in ["Yv", "Yr", "Nv", "Yvrr", "my", "f_alpha", "wP0"] {
         let share = |prior| {
-            let prior: &Coefficient = coefficient(prior, key);
+            let prior: &CoefficientPrior = coefficient(prior, key);
             prior.sd / prior.mean.abs()
         };
         assert!(share(&bare) > 1.05 * share(&complete), "{key}: {} against {}", share(&bare), share(&complete));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use approx::assert_relative_eq;
 use ship::angle::from_deg;
 use ship::effects::SpeedLoss;
-use ship::replay::Recorded;
+use ship::replay::RecordedSignals;
 use ship::{Dynamics, Polyline, ResponseModel};
 
 use crate::motion::{COEFFICIENTS, Planar, PlanarCoefficients, PlanarShip};
@@ -65,7 +65,7 @@ fn a_response_sees_the_speed_of_its_ship() {
         assert_eq!(state[state.len() - 2..], [SPEED, 0.0]);
         let step = ship.largest_step();
         let mut last = None;
-        ship::replay::replay(&ship, &Recorded::rudder(&rudder), &[0.0, 200.0], step, &mut state, |_, motion| {
+        ship::replay::replay(&ship, &RecordedSignals::rudder(&rudder), &[0.0, 200.0], step, &mut state, |_, motion| {
             last = Some(*motion);
         });
         let (motion, [u, v]) = (last.expect("a motion"), [state[state.len() - 2], state[state.len() - 1]]);
@@ -94,7 +94,7 @@ fn states_steps_and_memory_of_the_response_are_passed_on() {
         let mut state = vec![0.0; dynamics.dimension()];
         dynamics.approach(0.0, 0.0, &mut state);
         let mut headings = Vec::new();
-        ship::replay::replay(dynamics, &Recorded::rudder(&rudder), &times, 0.05, &mut state, |_, motion| {
+        ship::replay::replay(dynamics, &RecordedSignals::rudder(&rudder), &times, 0.05, &mut state, |_, motion| {
             headings.push(motion.heading);
         });
         headings

@@ -3,7 +3,7 @@
 
 use ship::angle::from_deg;
 
-use crate::find::{FoundManoeuvre, Signals, manoeuvres};
+use crate::find::{DetectedManoeuvre, Signals, manoeuvres};
 use crate::testing::Gaussian;
 
 /// A log under way.
@@ -127,7 +127,7 @@ impl Sea {
     }
 
     /// The manoeuvres but for the straight pieces.
-    pub fn detected(&self) -> Vec<FoundManoeuvre> {
+    pub fn detected(&self) -> Vec<DetectedManoeuvre> {
         manoeuvres(&self.log()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
     }
 

@@ -2,7 +2,7 @@
 //! heading before magnetic, speed through the water before speed over ground), then the instrument with the most
 //! readings, then the first in the log. A choice among several is a warning.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 use ship::angle::to_deg;
 
@@ -114,13 +114,13 @@ impl<'a> Choice<'a> {
                 [name] => text.push_str(&format!("; {name} is not used")),
                 [first @ .., last] => text.push_str(&format!("; {} and {last} are not used", first.join(", "))),
             }
-            self.warn(Code::Instrument, text);
+            self.warn(WarningCode::Instrument, text);
         }
         self.warn_of_invalid(what, chosen);
         Some(chosen)
     }
 
-    fn warn(&mut self, code: Code, text: String) {
+    fn warn(&mut self, code: WarningCode, text: String) {
         self.warnings.push(code.warning(text));
     }
 
@@ -128,7 +128,10 @@ impl<'a> Choice<'a> {
         let invalid = chosen.instrument.invalid[chosen.column];
         if invalid > 0 {
             let text = counted(invalid, "entry").replace("entrys", "entries");
-            self.warn(Code::MissingValues, format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()));
+            self.warn(
+                WarningCode::MissingValues,
+                format!("{text} of {} cannot be a {what}, taken as missing", chosen.name()),
+            );
         }
     }
 
@@ -170,7 +173,7 @@ impl<'a> Choice<'a> {
         }
         let Some(chosen) = self.pick("heading", offers, false) else { return };
         if chosen.class == 1 {
-            self.warn(Code::OtherReference, format!(
+            self.warn(WarningCode::OtherReference, format!(
                 "the heading of {} is magnetic, because no variation is given; changes of heading are correct, its zero is \
                  not true north",
                 chosen.name()
@@ -204,7 +207,7 @@ impl<'a> Choice<'a> {
             let second = chosen.with_quantity(1 - chosen.column).readings;
             if chosen.column == 1 || second > 0 {
                 self.warn(
-                    Code::Instrument,
+                    WarningCode::Instrument,
                     format!(
                         "the rudder angle is that of the {side} rudder; the other rudder has {}",
                         counted(second, "reading")
@@ -216,12 +219,15 @@ impl<'a> Choice<'a> {
         let rms_deg = to_deg((pairs().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / number as f64).sqrt());
         if rms_deg > MAX_RUDDER_DIFFERENCE_DEG {
             self.warn(
-                Code::RuddersApart,
+                WarningCode::RuddersApart,
                 format!("the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"),
             );
             return self.push_column(Channel::Rudder, chosen);
         }
-        self.warn(Code::Instrument, format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"));
+        self.warn(
+            WarningCode::Instrument,
+            format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"),
+        );
         let mean = starboard.iter().zip(port).map(|(a, b)| 0.5 * (a + b));
         self.push(Channel::Rudder, chosen, mean);
     }
@@ -248,7 +254,7 @@ impl<'a> Choice<'a> {
         let offers = self.offers(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
         let Some(surge) = self.pick("surge velocity", offers, false) else { return };
         if surge.class == 1 {
-            self.warn(Code::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
+            self.warn(WarningCode::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
         }
         self.push_column(Channel::Surge, surge);
         let sway = surge.with_quantity(surge.column + 1);
@@ -294,12 +300,12 @@ impl<'a> Choice<'a> {
             }
         }
         if offers.len() > 1 {
-            self.warn(Code::Instrument, format!("the propeller rate is the mean of {} shafts", offers.len()));
+            self.warn(WarningCode::Instrument, format!("the propeller rate is the mean of {} shafts", offers.len()));
         }
         let counter: Vec<&str> = offers.iter().filter(is_counter).map(Offer::name).collect();
         if !counter.is_empty() {
             self.warn(
-                Code::TurnedSign,
+                WarningCode::TurnedSign,
                 format!(
                     "{} turns counter-clockwise (negative) in most readings; its rate is taken as positive",
                     counter.join(" and ")
@@ -326,7 +332,7 @@ impl<'a> Choice<'a> {
         let from_bow = chosen.name();
         let Some(heading) = self.series.iter().find(|series| series.channel == Channel::Heading) else {
             self.warn(
-                Code::LeftOut,
+                WarningCode::LeftOut,
                 format!("{from_bow} gives the true wind from the bow; without a heading its direction is left out"),
             );
             return;
@@ -336,7 +342,7 @@ impl<'a> Choice<'a> {
         let values: Vec<f64> = readings.map(|(&time, from)| turned(from + near.at(time))).collect();
         self.push(Channel::WindTrueFrom, chosen, values);
         self.warn(
-            Code::Instrument,
+            WarningCode::Instrument,
             format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"),
         );
     }

@@ -2,7 +2,7 @@
 //! instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the others is filled
 //! at the usual pace, and its end stays empty.
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 
 use super::log::{NmeaInstrument, NmeaLog};
@@ -53,12 +53,12 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     .into_iter()
     .filter(|(number, _)| *number > 0)
     .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
-    .map(|text| Code::LeftOut.warning(text))
+    .map(|text| WarningCode::LeftOut.warning(text))
     .collect();
     if spread > 0 {
         let text = "several sentences of an instrument have the same time stamp; they are spread evenly over the time to \
                     the next stamp";
-        warnings.push(Code::SharedStamps.warning(text));
+        warnings.push(WarningCode::SharedStamps.warning(text));
     }
     (log.stamps.clock(), warnings)
 }
@@ -122,18 +122,18 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
         several |= spread(&mut instrument.at, &groups, usual);
         drop_rows(instrument);
     }
-    let mut warnings = vec![Code::Clock.warning(format!(
+    let mut warnings = vec![WarningCode::Clock.warning(format!(
         "the clock is {name} ({driven} times, every {usual:.1} s): each sentence gets the time before it, so heading and \
          rudder may be off by that much{}",
         if several { "; sentences between two times are spread evenly" } else { "" }
     ))];
     if before > 0 {
         let text = format!("{} before the first time {} left out", counted(before, "sentence"), are(before));
-        warnings.push(Code::LeftOut.warning(text));
+        warnings.push(WarningCode::LeftOut.warning(text));
     }
     if strayed > 0 {
         let text = format!("{} of {name} far from its neighbours left out", counted(strayed, "time"));
-        warnings.push(Code::LeftOut.warning(text));
+        warnings.push(WarningCode::LeftOut.warning(text));
     }
     Ok((Some(clock), warnings))
 }

@@ -17,7 +17,7 @@ mod tests;
 
 use std::io::Read;
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 
 use self::choice::Choice;
 use self::epochs::{are, from_sentences, from_stamps, rounded};
@@ -140,13 +140,13 @@ fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
     ];
     let faults = faults.into_iter().filter(|(number, _)| *number > 0);
     let texts = faults.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));
-    let mut warnings: Vec<Warning> = texts.map(|text| Code::LeftOut.warning(text)).collect();
+    let mut warnings: Vec<Warning> = texts.map(|text| WarningCode::LeftOut.warning(text)).collect();
     if counts.unsummed > 0 {
         let number = counts.unsummed;
         let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };
         let sentences = counted(number, "sentence");
         let text = format!("{sentences} {have} no checksum; damage to {them} cannot be detected");
-        warnings.push(Code::NoChecksum.warning(text));
+        warnings.push(WarningCode::NoChecksum.warning(text));
     }
     warnings
 }

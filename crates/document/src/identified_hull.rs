@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_of_trial};
+use ship::vessel::prime::{HullCoefficient, HullForm, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 
 use crate::error::IdentifiedShipError;
 
 /// Coefficient of a hull with its prior.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StoredCoefficient {
+pub struct IdentifiedCoefficient {
     /// Key.
     pub key: String,
     /// Symbol.
@@ -25,7 +25,7 @@ pub struct StoredCoefficient {
     pub expected_sd: f64,
 }
 
-impl StoredCoefficient {
+impl IdentifiedCoefficient {
     /// Distance from the prior mean in prior standard deviations.
     pub fn departure(&self) -> f64 {
         (self.value - self.expected) / self.expected_sd
@@ -43,7 +43,7 @@ pub struct RandomYawMoment {
 
 /// Hull model of three degrees of freedom with the estimate of its dimensionless coefficients.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct StoredHull {
+pub struct IdentifiedHull {
     /// Form: `quadratic`, `cubic` or `mmg`.
     pub form: String,
     /// Weight among the hulls of the file.
@@ -59,7 +59,7 @@ pub struct StoredHull {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub particulars: BTreeMap<String, f64>,
     /// Coefficients.
-    pub coefficients: Vec<StoredCoefficient>,
+    pub coefficients: Vec<IdentifiedCoefficient>,
     /// Covariance of the coefficients, by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Random moment of the model error.
@@ -77,7 +77,7 @@ pub struct StoredHull {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialHull {
     /// Hull of the trials.
-    pub hull: Box<StoredHull>,
+    pub hull: Box<IdentifiedHull>,
     /// Gain G of the coefficients at the other loading with respect to those of the hull.
     pub gain: DMatrix<f64>,
     /// Covariance of the coefficients given those of the hull.
@@ -94,11 +94,11 @@ pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
-impl StoredHull {
+impl IdentifiedHull {
     /// Hull form; fails for an unknown form, and where the coefficients are not those of the form.
     pub fn form(&self) -> Result<HullForm, IdentifiedShipError> {
         let refused = || self.refused();
-        let forms = HullForm::of_ship(Some(&self.particulars()?));
+        let forms = HullForm::candidates(Some(&self.particulars()?));
         let form = forms.into_iter().find(|form| form.as_str() == self.form).ok_or_else(refused)?;
         let keys = self.coefficients.iter().map(|stored| stored.key.as_str());
         let are_same = form.coefficients().iter().map(|coefficient| coefficient.key).eq(keys);
@@ -149,7 +149,7 @@ impl StoredHull {
     ) -> Self {
         let size = expected.len();
         let trial = DMatrix::from_fn(size, size, |row, column| self.covariance[row][column]);
-        let of_trial: Vec<usize> = (0..size).filter(|&place| is_of_trial(expected[place].key)).collect();
+        let of_trial: Vec<usize> = (0..size).filter(|&place| is_trial_specific(expected[place].key)).collect();
         for &place in &of_trial {
             gain.row_mut(place).fill(0.0);
             gain.column_mut(place).fill(0.0);
@@ -161,10 +161,10 @@ impl StoredHull {
             covariance.row_mut(place).fill(0.0);
             covariance.column_mut(place).fill(0.0);
         }
-        let coefficient = |(place, prior): (usize, &HullCoefficient)| StoredCoefficient {
+        let coefficient = |(place, prior): (usize, &HullCoefficient)| IdentifiedCoefficient {
             key: prior.key.to_owned(),
             symbol: prior.symbol.to_owned(),
-            value: if is_of_trial(prior.key) { self.coefficients[place].value } else { prior.mean },
+            value: if is_trial_specific(prior.key) { self.coefficients[place].value } else { prior.mean },
             expected: prior.mean,
             expected_sd: prior.sd,
         };

@@ -10,7 +10,7 @@ use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 
 /// Prose and presentation of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Words {
+pub struct Prose {
     /// The question.
     pub question: String,
     /// Analysis, in paragraphs.
@@ -89,7 +89,7 @@ pub struct Published {
     pub T_s: Option<f64>,
 }
 
-impl Words {
+impl Prose {
     /// Prose of the text of a scenario; empty for an invalid text.
     pub fn of(scenario: &str) -> Self {
         let mut document: Table = scenario.parse().unwrap_or_default();
@@ -144,7 +144,7 @@ mod tests {
         let schema = schemars::schema_for!(Presentation);
         let keys = schema.as_value()["properties"].as_object().expect("a table");
         assert!(keys.keys().eq(Presentation::KEYS), "{keys:?}");
-        let words = Words::of("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
+        let words = Prose::of("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
         assert_eq!((words.question.as_str(), words.output.figure.as_deref()), ("Which?", Some("errors")));
     }
 }

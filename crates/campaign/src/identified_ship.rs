@@ -1,20 +1,20 @@
 //! Identified ship of an estimate or a trace, for predictions: structures, noise, steering gear, valid range, hulls.
 
-use document::stored_hull::{by_keys, rows_of};
+use document::identified_hull::{by_keys, rows_of};
 use document::{
-    HeadingNoise, IdentifiedShip, KnownGear, RandomYawMoment, StoredCoefficient, StoredEffect, StoredHull,
-    ValidityRange, WeightedStructure,
+    HeadingNoise, IdentifiedCoefficient, IdentifiedEffect, IdentifiedGear, IdentifiedHull, IdentifiedShip,
+    RandomYawMoment, ValidityRange, WeightedStructure,
 };
 use identify::estimate::{Estimate, Uncertainty};
-use identify::hull::{self, EarlierHull, ExpectationCheck, HullEstimate, HullFitError, HullReference, HullResidual};
+use identify::hull::{self, EarlierHull, HullEstimate, HullFitError, HullReference, HullResidual, PriorCheck};
 use identify::replay::{Replay, pooled_rms, replay};
 use identify::{Identifier, maximum_likelihood};
 use ship::Particulars;
 use ship::angle::to_deg;
 use ship::vessel::prime::HullCoefficient;
 use trace::Analysis;
-use trace::analysis::Plausible;
-use trial::zigzag::STRAIGHT_APPROACH;
+use trace::analysis::PlausibleStructure;
+use trial::zigzag::MAX_APPROACH_RATE_SHARE;
 use trial::{Channel, Trial, ZigZag};
 
 /// Reason for a prediction without a track.
@@ -24,7 +24,7 @@ const NO_MOTION: &str = "these records do not determine speed loss and drift, so
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
     trials: &'a [Trial],
-    gear: Option<KnownGear>,
+    gear: Option<IdentifiedGear>,
     /// Standard deviation of the heading readings, rad.
     reading_noise: Option<f64>,
     /// Zig-zag of each record; `None` for other manoeuvres.
@@ -32,10 +32,10 @@ pub struct RecordFacts<'a> {
     length: Option<f64>,
     speed: Option<f64>,
     /// Fitted hulls, smallest replay error first.
-    pub hulls: Vec<StoredHull>,
+    pub hulls: Vec<IdentifiedHull>,
     /// Consistency checks of the records with the priors from earlier trials, one per form of hull, smallest replay
     /// error first; hulls that are too far off to take part are included.
-    pub checks: Vec<(&'static str, ExpectationCheck)>,
+    pub checks: Vec<(&'static str, PriorCheck)>,
     /// Why records with speed or positions allow no prediction of a track; `None` where they do, and for records
     /// without.
     pub no_track: Option<String>,
@@ -108,10 +108,10 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Stored form of a fitted hull; its weight is one over the number `of` hulls.
-    fn stored(&self, hull: &HullEstimate, count: usize) -> StoredHull {
+    /// Stored form of a fitted hull; its weight is one over the `count` of hulls.
+    fn stored(&self, hull: &HullEstimate, count: usize) -> IdentifiedHull {
         let expected = &hull.expected;
-        let coefficient = |(prior, value): (&HullCoefficient, &f64)| StoredCoefficient {
+        let coefficient = |(prior, value): (&HullCoefficient, &f64)| IdentifiedCoefficient {
             key: prior.key.to_owned(),
             symbol: prior.symbol.to_owned(),
             value: *value,
@@ -119,7 +119,7 @@ impl<'a> RecordFacts<'a> {
             expected_sd: prior.sd,
         };
         let HullReference { length, speed, propeller } = hull.reference;
-        StoredHull {
+        IdentifiedHull {
             form: expected.form.as_str().to_owned(),
             weight: 1.0 / count as f64,
             length_m: length,
@@ -140,7 +140,7 @@ impl<'a> RecordFacts<'a> {
     /// Root mean square of the initial yaw rates of hull replays less those of the straight approaches, rad/s.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
         let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
-            Some((record.begins_with - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
+            Some((record.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
         };
         let squares: Vec<f64> = self.zigzags.iter().zip(&hull.records).filter_map(beyond).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
@@ -157,7 +157,7 @@ impl<'a> RecordFacts<'a> {
             }
             None => {
                 let first = *rates.first()?;
-                (first.abs() <= STRAIGHT_APPROACH * largest(*rates)).then_some(first * first)
+                (first.abs() <= MAX_APPROACH_RATE_SHARE * largest(*rates)).then_some(first * first)
             }
         };
         let squares: Vec<f64> = self.zigzags.iter().zip(replays).filter_map(square).collect();
@@ -174,7 +174,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 ///
 /// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is that of the readings, or
 /// the rms residual of the replay where the records are not zig-zags.
-pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
+pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
@@ -198,8 +198,8 @@ pub fn of_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identifie
 ///
 /// Where no effect is missing but a random moment acts, the first-order member is that of `maximum-likelihood`, whose
 /// covariance includes the uncertainty of the noise law.
-pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
-    let members = analysis.plausible().iter().map(member).collect();
+pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
+    let members = analysis.plausible_structures().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = analysis.noise;
     let ship = facts.with(members, noise, rates);
@@ -212,7 +212,8 @@ pub fn of_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
 /// The ship with first-order member and noise of `maximum-likelihood`, if that also estimates a random moment.
 fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
-    let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| of_estimate(&estimate, facts)) else {
+    let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| from_estimate(&estimate, facts))
+    else {
         return ship;
     };
     if let [member] = &likelihood.members[..]
@@ -232,9 +233,9 @@ fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     sum.map(|sum| (sum / zigzags.len() as f64).sqrt())
 }
 
-fn member(plausible: &Plausible) -> WeightedStructure {
-    let Plausible { weight, response, fitted, covariance } = plausible;
-    let stored = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
+fn member(plausible: &PlausibleStructure) -> WeightedStructure {
+    let PlausibleStructure { weight, response, fitted, covariance } = plausible;
+    let stored = |effect: &std::sync::Arc<dyn ship::effects::Effect>| IdentifiedEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
         constants: effect.constants().into_iter().map(|(constant, _)| constant).collect(),
@@ -250,7 +251,7 @@ fn member(plausible: &Plausible) -> WeightedStructure {
     }
 }
 
-/// Plausible rates of a steering gear, deg/s; outside, the recorded rudder is an order or does not resolve the gear.
+/// PlausibleStructure rates of a steering gear, deg/s; outside, the recorded rudder is an order or does not resolve the gear.
 const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 
 /// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.
@@ -266,14 +267,14 @@ const MIN_STEPS: usize = 4;
 ///
 /// The rate is the mean over steps inside movements, with the standard error of that mean. Where movements are about as
 /// long as a sampling interval, the error is that of a duration whose ends lie between two rows.
-fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<KnownGear> {
+fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> {
     let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
     let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();
     let count = rates.len() as f64;
     let mean = rates.iter().sum::<f64>() / count;
     let spread = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let read = variances.iter().sum::<f64>() / count;
-    (count > 0.0).then(|| KnownGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
+    (count > 0.0).then(|| IdentifiedGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
 }
 
 /// Rate of the rudder on a record, rad/s, and its variance.
@@ -320,7 +321,7 @@ mod tests {
     use crate::prediction_check::PredictionCheck;
 
     fn record(walk_deg: f64) -> Trial {
-        let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+        let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
         let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(6);
         let mut simulation = Simulation::new(ship, zig_zag);
         simulation.gear = SteeringGear::with_rate(from_deg(2.32));
@@ -334,7 +335,7 @@ mod tests {
     fn a_ten_ten_predicts_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
         let gear = ship.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(ship.noise.heading_sd_rad) - 0.1).abs() < 0.02 && ship.noise.moment.is_none());
@@ -365,7 +366,7 @@ mod tests {
         assert!(ZigZag::of(&cut).is_ok(), "the rest is a zig-zag");
         let trials = [cut];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = of_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
         assert_eq!(ship.approach_yaw_rate_rad_s, 0.0);
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let prediction =
@@ -379,7 +380,7 @@ mod tests {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
         let ship =
-            of_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
+            from_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
         assert!(!ship.noise.moment.is_none());
         assert!(ship.noise.moment.size() > 0.0);
     }
@@ -388,7 +389,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let ship = of_analysis(&analysis, &RecordFacts::of(&trials));
+        let ship = from_analysis(&analysis, &RecordFacts::of(&trials));
         assert!((ship.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &ship.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
@@ -402,7 +403,7 @@ mod tests {
     /// KVLCC2 in a manoeuvre, by a gear of 2.34°/s.
     fn tanker(kind: &str) -> Simulation {
         let manoeuvre = predict::standard::steered(&kind.parse().expect("known"), KVLCC2).expect("steered");
-        let mut simulation = Simulation::new(Vessel::ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
+        let mut simulation = Simulation::new(Vessel::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.34));
         simulation.recording.period = 2.0;
         simulation
@@ -430,7 +431,7 @@ mod tests {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
-        let ship = of_estimate(&estimate, &facts).expect("a covariance");
+        let ship = from_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
         // She begins straight: the yaw rate of replays is an error, less than a twentieth of her rate in the circle.
         assert!(

@@ -2,7 +2,7 @@
 //! given length and speed, which a record alone cannot show, move K′, T′ and the rudder rate. Within the usual range no
 //! error is detected, for example a rudder read a fifth too large. Sources of the ranges: [`ship::particulars`].
 
-use document::{Code, Warning};
+use document::{Warning, WarningCode};
 use ship::Particulars;
 use ship::angle::to_deg;
 use ship::particulars::{USUAL_K_OVER_T_PRIME, USUAL_K_PRIME, USUAL_T_PRIME, usual_rudder_rate_deg_s};
@@ -26,7 +26,7 @@ const MAX_SPEED_RATIO: f64 = 1.25;
 /// A length and speed that contradict each other or the record are reported first. The other checks need zig-zags: a
 /// turn alone hardly determines K′ = K L/U, T′ = T U/L and K′/T′. `ship` is at the scale of the estimate, `records` at
 /// their own.
-pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<Warning> {
+pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<Warning> {
     if let Some(contradiction) = records.iter().find_map(other_scale) {
         return Some(contradiction);
     }
@@ -44,7 +44,7 @@ pub fn suspicion(estimate: &Estimate, ship: Option<Particulars>, records: &[Tria
     let has_speed = records.iter().all(|record| record.channel(Channel::Speed).is_some());
     let given = if has_speed { "length" } else { "length and speed" };
     (!unusual.is_empty()).then(|| {
-        Code::UnusualShip.warning(format!(
+        WarningCode::UnusualShip.warning(format!(
             "{}: check the scale of the rudder, the clock, and the {given} given; the record alone cannot show such an error",
             unusual.join(", ")
         ))
@@ -59,7 +59,7 @@ pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Opti
     let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
     let [low, high] = USUAL_FROUDE_NUMBER;
     (!(low..=high).contains(&froude)).then(|| {
-        Code::UnusualShip.warning(format!(
+        WarningCode::UnusualShip.warning(format!(
             "{length} m at {speed:.3} m/s is a Froude number of {froude:.3} (ships have {low} to {high}): {SAME_SCALE}"
         ))
     })
@@ -77,7 +77,7 @@ fn other_scale(record: &Trial) -> Option<Warning> {
     let is_other = largest > 0.0 && !(1.0 / MAX_SPEED_RATIO..=MAX_SPEED_RATIO).contains(&(largest / speed));
     is_other.then(|| {
         let name = record.title();
-        Code::UnusualShip.warning(format!(
+        WarningCode::UnusualShip.warning(format!(
             "{name} sails at {largest:.3} m/s at most, and {speed:.3} m/s is given as its approach speed: {SAME_SCALE}"
         ))
     })
@@ -117,7 +117,7 @@ mod tests {
         let record = case.trial().with_particulars(ship);
         let method = output_error::Settings::default().build().expect("defaults");
         let estimate = method.identify(std::slice::from_ref(&record)).expect("a fit");
-        suspicion(&estimate, Some(ship), &[record]).map(|warning| warning.text)
+        unusual_ship(&estimate, Some(ship), &[record]).map(|warning| warning.text)
     }
 
     #[test]
