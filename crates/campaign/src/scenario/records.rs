@@ -275,7 +275,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
 /// Path of a file with this SHA-256; fails with the reason, without the path.
 fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
-    let bytes = disk::read(&path, RECORD.largest).map_err(|error| format!("it cannot be read: {error}"))?;
+    let bytes = disk::read(&path, RECORD.max_bytes).map_err(|error| format!("it cannot be read: {error}"))?;
     let hash = identity::hex(&Sha256::digest(bytes.unwrap_or_default()));
     if hash == sha256 {
         return Ok(path);
