@@ -83,12 +83,8 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
 fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > IMPOSSIBLE_RUDDER).collect();
-    let possible = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= IMPOSSIBLE_RUDDER);
-    let largest_possible = possible.fold(0.0, f64::max);
-    if wild.is_empty()
-        || wild.len() as f64 > MAX_IMPOSSIBLE_SHARE * rudder.len() as f64
-        || largest_possible > MAX_RUDDER
-    {
+    let largest = rudder.iter().map(|x| x.abs()).filter(|x| *x <= IMPOSSIBLE_RUDDER).fold(0.0, f64::max);
+    if wild.is_empty() || wild.len() as f64 > MAX_IMPOSSIBLE_SHARE * rudder.len() as f64 || largest > MAX_RUDDER {
         return None;
     }
     let times = reject(Channel::Rudder, &columns.time, rudder, &wild, rejected);
@@ -262,19 +258,19 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
         *begin = range.end;
         Some(range)
     });
-    let is_frozen = |rest: &std::ops::Range<usize>| {
-        let length = rest.len();
+    let is_frozen = |span: &std::ops::Range<usize>| {
+        let length = span.len();
         // The resolution is the step by which the value is left or was reached.
         let step = |at: Option<usize>| at.and_then(|at| steps.get(at)).copied().unwrap_or(0.0);
-        let digit = step(rest.start.checked_sub(1)).max(step(Some(rest.end)));
+        let digit = step(span.start.checked_sub(1)).max(step(Some(span.end)));
         let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > MIN_TURN_STEPS * digit;
-        let before = turned(rest.start.saturating_sub(length)..rest.start);
-        let after = turned(rest.end..(rest.end + length).min(steps.len()));
-        let leaves = rates_of_rows.get(rest.end).is_some_and(|rate| *rate > MIN_THAW_RATIO * usual);
-        length >= MIN_FROZEN_ROWS && steps[rest.start] == 0.0 && (leaves || (before && after))
+        let before = turned(span.start.saturating_sub(length)..span.start);
+        let after = turned(span.end..(span.end + length).min(steps.len()));
+        let leaves = rates_of_rows.get(span.end).is_some_and(|rate| *rate > MIN_THAW_RATIO * usual);
+        length >= MIN_FROZEN_ROWS && steps[span.start] == 0.0 && (leaves || (before && after))
     };
     // A rest of n steps has n + 1 rows, of which the first is a true reading.
-    let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
+    let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|span| &seen[span.start..=span.end]).collect();
     let spans: Vec<String> = frozen
         .iter()
         .map(|rows| [rows[0], rows[rows.len() - 1]].map(|row| instant(time[row])))
@@ -354,8 +350,8 @@ mod tests {
     #[test]
     fn a_reading_no_rudder_has_is_left_out() {
         let mut wild = with(Channel::Rudder, |row, values| if row == 700 { -5.7 } else { values[row] });
-        let [told] = clean(&mut wild).try_into().expect("one sentence");
-        assert!(told.contains("1 row") && told.contains("-327°") && told.contains("t = 70 s"), "{told}");
+        let [text] = clean(&mut wild).try_into().expect("one sentence");
+        assert!(text.contains("1 row") && text.contains("-327°") && text.contains("t = 70 s"), "{text}");
         assert_eq!((wild.time.len(), wild.channels[&Channel::Heading].len()), (2999, 2999));
         // All of a record in degrees under a name of radians is no reading that is off.
         let mut degrees = with(Channel::Rudder, |row, values| values[row].to_degrees());
@@ -367,8 +363,8 @@ mod tests {
         for phase in [0, 3] {
             let mut stale =
                 with(Channel::Rudder, |row, values| values[((row + 10 - phase) / 10 * 10 + phase).saturating_sub(10)]);
-            let [told] = clean(&mut stale).try_into().expect("one sentence");
-            assert!(told.contains("every 10th row"), "{told}");
+            let [text] = clean(&mut stale).try_into().expect("one sentence");
+            assert!(text.contains("every 10th row"), "{text}");
             let truth = &columns().channels[&Channel::Rudder];
             let far = stale.channels[&Channel::Rudder].iter().zip(truth).map(|(one, other)| (one - other).abs());
             assert!(far.fold(0.0, f64::max).to_degrees() < 0.7);
@@ -387,8 +383,8 @@ mod tests {
                 let value = [frozen(row, values)];
                 rounded(degrees)(0, &value)
             });
-            let [told] = clean(&mut stuck).try_into().expect("one sentence");
-            assert!(told.contains("s to 129.9 s"), "{told}");
+            let [text] = clean(&mut stuck).try_into().expect("one sentence");
+            assert!(text.contains("s to 129.9 s"), "{text}");
             let missing = stuck.channels[&Channel::Heading].iter().filter(|psi| psi.is_nan()).count();
             assert!((299..=315).contains(&missing), "{missing}");
         }

@@ -197,9 +197,7 @@ impl Conditions {
         if ends.zip(self.draught).is_some_and(|([low, high], mean)| !(low..=high).contains(&mean)) {
             return Some(("draught-m", "a mean draught between those fore and aft of [trial], or nothing"));
         }
-        let broken = rules
-            .into_iter()
-            .find(|(_, value, limit, _)| value.zip(*limit).is_some_and(|(value, limit)| value >= limit));
+        let broken = rules.into_iter().find(|(_, x, limit, _)| x.zip(*limit).is_some_and(|(x, limit)| x >= limit));
         broken.map(|(key, .., expected)| (key, expected))
     }
 
@@ -210,10 +208,8 @@ impl Conditions {
 
     /// Loading condition: as declared, else from the draughts with a tolerance of 5 %.
     pub fn loading(&self) -> Option<Loading> {
-        let by_draught = |share: f64| match (share - 1.0).abs() <= DRAUGHT_TOLERANCE {
-            true => Loading::Full,
-            false => Loading::Partial,
-        };
+        let is_full = |share: f64| (share - 1.0).abs() <= DRAUGHT_TOLERANCE;
+        let by_draught = |share: f64| if is_full(share) { Loading::Full } else { Loading::Partial };
         self.declared_loading.or_else(|| self.draught_share().map(by_draught))
     }
 

@@ -1,5 +1,5 @@
-//! Files that a user names: scenarios, sidecars and records are opened here. Only files and pipes are opened, and reading
-//! stops at the maximum size of the kind of file, so that no name can fill the memory.
+//! Files that a user names: scenarios, sidecars and records are opened here. Only files and pipes are opened, and
+//! reading stops at the maximum size of the kind of file, so that no name can fill the memory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};

@@ -104,8 +104,8 @@ impl Criterion {
 /// 20/20. Other pairs, and a record that begins within the trial, have no values. Initial turning and first overshoot
 /// require a ship that goes straight until the first execute.
 ///
-/// The distance of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
-/// the latter is slightly long, because a ship loses speed as it begins to turn.
+/// The distance of the initial turning is the integral of the recorded speed, or V t_a where the speed was not
+/// recorded; the latter is slightly long, because a ship loses speed as it begins to turn.
 pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
     let is_straight = zigzag.straight_yaw_rate().is_some();

@@ -185,9 +185,7 @@ pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
         ColumnMeaning::Channel(channel, _) => {
             channel_unit(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
-        ColumnMeaning::OverGround(_) => {
-            channel_unit(Channel::Speed, unit).map(|unit| ColumnMeaning::OverGround(Some(unit)))
-        }
+        ColumnMeaning::OverGround(_) => channel_unit(Channel::Speed, unit).map(Some).map(ColumnMeaning::OverGround),
         ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
             (unit == Unit::Degree).then_some(meaning)
         }

@@ -13,8 +13,8 @@ pub struct NoiseModel {
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
     pub moment: MomentKind,
-    /// Size q of the moment as yaw acceleration: (rad/s²)√s for white noise, the stationary standard deviation in rad/s²
-    /// for an Ornstein–Uhlenbeck process, (rad/s²)/√s for a random walk.
+    /// Size q of the moment as yaw acceleration: (rad/s²)√s for white noise, the stationary standard deviation in
+    /// rad/s² for an Ornstein–Uhlenbeck process, (rad/s²)/√s for a random walk.
     pub moment_level: f64,
     /// Correlation time τ of an Ornstein–Uhlenbeck moment, s.
     pub moment_correlation: f64,

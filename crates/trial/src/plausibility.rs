@@ -132,8 +132,8 @@ pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
 /// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more.
 const MAX_REVERSALS: usize = 24;
 
-/// Maximum range of a heading outside a turning circle, deg. In a circle the integrals of heading and rudder grow alike,
-/// and a regression cannot separate them.
+/// Maximum range of a heading outside a turning circle, deg. In a circle the integrals of heading and rudder grow
+/// alike, and a regression cannot separate them.
 const MAX_SWING_DEG: f64 = 360.0;
 
 /// Share of the heading that a flipped rudder has to explain for an error. The zig-zags of KVLCC2 and Esso Osaka reach
@@ -298,7 +298,7 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
 }
 
 /// Maximum interval between two headings without a missing heading, usual intervals.
-const MAX_HEADING_INTERVAL: f64 = 1.5;
+const MAX_INTERVAL: f64 = 1.5;
 
 /// Warning of missing headings with their longest gap; rejected readings have another warning.
 fn missing_headings(trial: &Trial) -> Option<Warning> {
@@ -307,10 +307,8 @@ fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (mut count, mut longest) = (0, (0.0, 0.0));
     for (from, to) in read.windows(2).map(|rows| (rows[0], rows[1])) {
         let (begin, gap) = (time[from], time[to] - time[from]);
-        let is_in_gap = |reading: &RejectedReading| {
-            reading.channel == Channel::Heading && (begin..time[to]).contains(&reading.time)
-        };
-        if to > from + 1 && gap > MAX_HEADING_INTERVAL * usual && !trial.rejected().iter().any(is_in_gap) {
+        let is_in_gap = |x: &RejectedReading| x.channel == Channel::Heading && (begin..time[to]).contains(&x.time);
+        if to > from + 1 && gap > MAX_INTERVAL * usual && !trial.rejected().iter().any(is_in_gap) {
             count += (gap / usual).round() as usize - 1;
             longest = if gap > longest.1 { (begin, gap) } else { longest };
         }

@@ -1,8 +1,8 @@
 //! Sidecar: a small TOML file that describes a table whose columns are not named `quantity_unit`. The table is read in
 //! [`crate::reader`].
 //!
-//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar has to be named.
-//! [`keys`] lists its keys; none is required.
+//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar has to be
+//! named. [`keys`] lists its keys; none is required.
 
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -99,8 +99,8 @@ impl Sidecar {
 
     /// Checks the text of a sidecar; `file` is its name in messages.
     ///
-    /// Fails on text that is not TOML, unknown keys and quantities, and numbers outside their range; the error points to
-    /// the line.
+    /// Fails on text that is not TOML, unknown keys and quantities, and numbers outside their range; the error points
+    /// to the line.
     pub fn parse(text: &str, file: &Path) -> Result<Self, SidecarError> {
         resolve(text, file).map_err(|(span, problem)| SidecarError {
             file: file.to_path_buf(),

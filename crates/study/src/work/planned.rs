@@ -15,7 +15,7 @@ const EXECUTES: usize = 5;
 const GEAR_RATES_DEG_S: [f64; 2] = [1.0, 20.0];
 
 /// Maximum duration of a planned trial, in durations of the longest record.
-const MAX_LENGTH: f64 = 3.0;
+const MAX_DURATIONS: f64 = 3.0;
 
 /// Every manoeuvre that the fitted ship can be steered through, with the sampling and the rudder rate of the records.
 pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
@@ -48,9 +48,9 @@ fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Optio
     let mut simulation = Simulation::new(Vessel::from_response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
     simulation.recording.period = records[0].sampling_period();
-    simulation.longest_wait = MAX_LENGTH * longest;
+    simulation.longest_wait = MAX_DURATIONS * longest;
     let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
-    let is_manoeuvre = trial.duration() <= MAX_LENGTH * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
+    let is_manoeuvre = trial.duration() <= MAX_DURATIONS * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
     is_manoeuvre.then_some(trial)
 }
 

@@ -114,7 +114,7 @@ fn a_prediction_takes_a_prior() {
     assert!(desk.text("p/report.md").contains("prior: f/fit.json"));
     assert!((weighed - refitted).abs() < 0.25 * narrow, "{weighed} {refitted} {alone}");
     assert!(found < 0.9 * wide && (found / narrow - 1.0).abs() < 0.3, "{found} {narrow} {wide}");
-    let counted = ["first.csv is in this model and in both/fit.json, and a record counts only once"];
+    let counted = ["first.csv is in this model and in both/fit.json, but a record counts only once"];
     desk.run(&["predict", "both/fit.json", "--prior", "f/fit.json"]).is_refused(2, &counted);
     let replayed = desk.run(&["predict", "g/fit.json", "--prior", "f/fit.json", "--replay", "first.csv", "--out", "p"]);
     assert!(replayed.is_done().err.contains("is fitted to it; the error on it validates nothing"), "{}", replayed.err);
@@ -135,7 +135,7 @@ fn another_ship_is_a_conflict() {
     let run = desk.run(&[&fit[..], &["--length-m", "160.9", "--speed-kn", "15"]].concat());
     let warning = "--prior f/fit.json: the records contradict it";
     assert_eq!(run.is_done().err.matches(warning).count(), 1, "{}", run.err);
-    assert!(run.err.contains(" sd") && run.err.contains("make sure that it is the same ship"), "{}", run.err);
+    assert!(run.err.contains(" standard deviations") && run.err.contains("make sure that it is the same ship"), "{}", run.err);
     assert_eq!(desk.json("g/fit.json")["earlier_trials"]["conflict"], true);
 }
 
@@ -160,7 +160,7 @@ fn a_prior_that_cannot_be_used_is_refused() {
     }
     let twice = [&["--prior", "f/fit.json"][..], &KVLCC2].concat();
     fit("f/fit.json", &twice)
-        .is_refused(2, &["f/fit.json: first.csv is in this model and in f/fit.json, and a record counts only once"]);
+        .is_refused(2, &["f/fit.json: first.csv is in this model and in f/fit.json, but a record counts only once"]);
     desk.file("ms.csv", with_column(&desk.text("next.csv"), "t_s", |_, t| (1e3 * t).to_string()));
     let clock = ["ms has a row every 99.625 L/U over", "expected at most 2 L/U and 1000 L/U; check the clock"];
     desk.run(&[&["fit", "ms.csv", "--prior", "f/fit.json"], &KVLCC2[..]].concat()).is_refused(2, &clock);

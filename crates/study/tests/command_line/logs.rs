@@ -58,7 +58,7 @@ fn a_log_is_inspected_before_anything_is_fitted() {
     desk.run(&["fit", "run.csv"]).is_refused(2, &["sign looks flipped"]);
     let run = desk.run(&["inspect", "run.csv"]);
     assert!(
-        run.is_done().err.contains("it cannot be used as one record: the rudder sign looks flipped"),
+        run.is_done().err.contains("not usable as one record: the rudder sign looks flipped"),
         "{}",
         run.err
     );

@@ -125,7 +125,7 @@ fn a_path_that_is_no_record_is_refused() {
     let refused = |arguments: &[&str], parts: &[&str]| desk.run(&[&["fit"], arguments].concat()).is_refused(2, parts);
     refused(&["missing.csv"], &["missing.csv: there is no such file"]);
     refused(&["folder"], &["folder: this folder holds no record", ".csv"]);
-    refused(&["scenario.toml"], &["scenario.toml: this is a TOML file and no record", "study scenario.toml"]);
+    refused(&["scenario.toml"], &["scenario.toml: this is a TOML file, not a record", "study scenario.toml"]);
     refused(&["other.trial.toml"], &["other.trial.toml", "name the table"]);
     refused(&["good.csv", "--method", "magic"], &["--method magic", "output-error"]);
     refused(&["good.csv", "--validate", "missing.csv"], &["missing.csv: there is no such file"]);

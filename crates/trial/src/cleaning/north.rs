@@ -24,7 +24,7 @@ const MIN_EXCURSION: f64 = 0.52;
 const RETURN_TOLERANCE: f64 = 0.05;
 
 /// Minimum mean rate up to the excursion over the usual rate.
-const MIN_EXCURSION_RATE_RATIO: f64 = 3.0;
+const MIN_MEAN_RATIO: f64 = 3.0;
 
 /// Maximum distance between beginning and end of a sweep as a share of its excursion.
 const RETURN_SHARE: f64 = 0.3;
@@ -33,7 +33,7 @@ const RETURN_SHARE: f64 = 0.3;
 const MAX_SWEEP: (f64, usize) = (60.0, 600);
 
 /// Settling time of a filter after a sweep, in lengths of the sweep.
-const SETTLING_LENGTHS: usize = 2;
+const SETTLING: usize = 2;
 
 /// Maximum share of headings in sweeps.
 const MAX_SWEPT_SHARE: f64 = 0.6;
@@ -57,8 +57,7 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
         at = swept.as_ref().map_or(at + 1, |swept| swept.end);
         sweeps.extend(swept);
     }
-    let places =
-        sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + SETTLING_LENGTHS * swept.len()).min(read.len()));
+    let places = sweeps.iter().flat_map(|swept| swept.start + 1..(swept.end + SETTLING * swept.len()).min(read.len()));
     let mut rows: Vec<usize> = places.map(|place| read[place]).collect();
     rows.dedup();
     if rows.is_empty() || rows.len() as f64 > MAX_SWEPT_SHARE * read.len() as f64 {
@@ -88,9 +87,7 @@ fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -
         let elapsed = time[read[end]] - time[read[at]];
         let apart = ((heading[read[end]] - begin + PI).rem_euclid(TAU) - PI).abs();
         farthest = farthest.max(apart);
-        if elapsed > MAX_SWEEP.0
-            || (farthest <= MIN_EXCURSION && elapsed * MIN_EXCURSION_RATE_RATIO * usual > MIN_EXCURSION)
-        {
+        if elapsed > MAX_SWEEP.0 || (farthest <= MIN_EXCURSION && elapsed * MIN_MEAN_RATIO * usual > MIN_EXCURSION) {
             return None;
         }
         if farthest > MIN_EXCURSION && apart < (RETURN_TOLERANCE + 2.0 * usual * elapsed).min(RETURN_SHARE * farthest) {

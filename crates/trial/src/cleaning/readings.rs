@@ -30,8 +30,8 @@ const LOST_POLLS: (usize, f64) = (3, 0.4);
 /// Minimum share of the lost value among the readings far from both neighbours: a noisy sensor has many values.
 const MIN_LOST_SHARE: f64 = 0.8;
 
-/// Resolution of a repeated value, parts of a radian.
-const VALUE_STEPS_PER_RAD: f64 = 1e9;
+/// Number of parts of a radian to which a repeated value is compared.
+const PER_RAD: f64 = 1e9;
 
 /// Minimum distance of a lost poll from its neighbours over the distance between them.
 const MIN_LOST_RATIO: f64 = 2.0;
@@ -90,10 +90,8 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         let alone: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
         // Whole turns of a heading are nothing.
         let value = |row: usize| match channel {
-            Channel::Heading => (values[row].rem_euclid(TAU) * VALUE_STEPS_PER_RAD)
-                .round()
-                .rem_euclid((TAU * VALUE_STEPS_PER_RAD).round()),
-            _ => (values[row] * VALUE_STEPS_PER_RAD).round(),
+            Channel::Heading => (values[row].rem_euclid(TAU) * PER_RAD).round().rem_euclid((TAU * PER_RAD).round()),
+            _ => (values[row] * PER_RAD).round(),
         };
         let mut by_value: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
         alone.iter().for_each(|&row| by_value.entry(value(row) as i64).or_default().push(row));
@@ -108,11 +106,7 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         warnings.push(WarningCode::RejectedReadings.warning(format!(
             "{} of exactly {} far from both neighbours taken as missing (polls without an answer), {times}",
             counted(lost.len(), channel.label()),
-            if written == 0 {
-                "zero".to_owned()
-            } else {
-                format!("{:.2}°", (written as f64 / VALUE_STEPS_PER_RAD).to_degrees())
-            },
+            if written == 0 { "zero".to_owned() } else { format!("{:.2}°", (written as f64 / PER_RAD).to_degrees()) },
         )));
     }
     warnings
@@ -174,8 +168,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
     let rows: Vec<usize> = jumps.iter().map(|&(row, _)| row).collect();
     let times = reject(Channel::Heading, time, heading, &rows, rejected);
     Some(WarningCode::HeadingJump.warning(format!(
-        "the heading jumps (by up to {:.1}°) faster than a ship turns, {times}; it is not changed, because either side \
-         of a jump may be right",
+        "the heading jumps (by up to {:.1}°) faster than a ship turns, {times}; it is unchanged: either side may be right",
         largest.to_degrees(),
     )))
 }
@@ -207,8 +200,7 @@ pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     reject(Channel::YawRate, &columns.time, rate, &at_end, rejected);
     at_end.iter().for_each(|&row| rate[row] = f64::NAN);
     Some(WarningCode::RejectedReadings.warning(format!(
-        "the yaw rate is clipped at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as \
-         missing",
+        "the yaw rate is clipped at {:.2}°/s: the heading turns faster; {} rows at the end of its scale taken as missing",
         end.to_degrees(),
         at_end.len()
     )))
@@ -223,16 +215,16 @@ mod tests {
     fn a_spike_is_left_out_and_a_jump_is_told() {
         let spike = |row: usize, values: &[f64]| values[row] + if row == 900 { 0.1 } else { 0.0 };
         let mut spiked = with(Channel::Heading, spike);
-        let [told] = clean(&mut spiked).try_into().expect("one sentence");
+        let [text] = clean(&mut spiked).try_into().expect("one sentence");
         assert!(
-            told.starts_with("1 heading far from both neighbours (by up to 5.7°)") && told.ends_with("t = 90 s"),
-            "{told}"
+            text.starts_with("1 heading far from both neighbours (by up to 5.7°)") && text.ends_with("t = 90 s"),
+            "{text}"
         );
         assert!(spiked.channels[&Channel::Heading][900].is_nan());
         let jump = |row: usize, values: &[f64]| values[row] + if (900..950).contains(&row) { 0.1 } else { 0.0 };
         let mut jumped = with(Channel::Heading, jump);
-        let [told] = clean(&mut jumped).try_into().expect("one sentence");
-        assert!(told.contains("jumps (by up to 5.8°)") && told.contains("t = 90, 95 s"), "{told}");
+        let [text] = clean(&mut jumped).try_into().expect("one sentence");
+        assert!(text.contains("jumps (by up to 5.8°)") && text.contains("t = 90, 95 s"), "{text}");
     }
 
     #[test]
@@ -240,11 +232,11 @@ mod tests {
         for every in [3, 7] {
             let lost = |row: usize, values: &[f64]| if row.is_multiple_of(every) { 0.0 } else { values[row] };
             let mut polled = with(Channel::Rudder, lost);
-            let told = clean(&mut polled).remove(0);
-            assert!(told.contains("of exactly zero far from both neighbours"), "{told}");
+            let text = clean(&mut polled).remove(0);
+            assert!(text.contains("of exactly zero far from both neighbours"), "{text}");
             let calibrated = |row: usize, values: &[f64]| lost(row, values) + 0.04;
-            let told = clean(&mut with(Channel::Rudder, calibrated)).remove(0);
-            assert!(told.contains("of exactly 2.29° far"), "{told}");
+            let text = clean(&mut with(Channel::Rudder, calibrated)).remove(0);
+            assert!(text.contains("of exactly 2.29° far"), "{text}");
             let rudder = &polled.channels[&Channel::Rudder];
             assert!(rudder.iter().filter(|delta| delta.is_nan()).count() > rudder.len() / every / 2);
         }
@@ -255,8 +247,8 @@ mod tests {
     fn a_heading_of_north_that_was_not_read_is_missing() {
         let lost = |row: usize, values: &[f64]| if row.is_multiple_of(7) { TAU } else { values[row] - 0.4 };
         let mut polled = with(Channel::Heading, lost);
-        let told = clean(&mut polled).remove(0);
-        assert!(told.contains("of exactly zero far from both neighbours") && told.contains("at t = 0, "), "{told}");
+        let text = clean(&mut polled).remove(0);
+        assert!(text.contains("of exactly zero far from both neighbours") && text.contains("at t = 0, "), "{text}");
         assert!(polled.channels[&Channel::Heading].iter().step_by(7).all(|psi| psi.is_nan()));
     }
 
@@ -267,8 +259,8 @@ mod tests {
         let rate = |row: usize| (heading[(row + 1).min(2999)] - heading[row.saturating_sub(1)]) / 0.2;
         let largest = 0.7 * (0..3000).map(rate).fold(0.0, f64::max);
         clipped.channels.insert(Channel::YawRate, (0..3000).map(|row| rate(row).clamp(-largest, largest)).collect());
-        let [told] = clean(&mut clipped).try_into().expect("one sentence");
-        assert!(told.contains("end of its scale"), "{told}");
+        let [text] = clean(&mut clipped).try_into().expect("one sentence");
+        assert!(text.contains("end of its scale"), "{text}");
         let mut sound = columns();
         sound.channels.insert(Channel::YawRate, (0..3000).map(rate).collect());
         assert_eq!(clean(&mut sound), [] as [String; 0]);

@@ -16,7 +16,7 @@ const MAX_STARBOARD: f64 = 1.05;
 const MIN_DEAD_BAND: (f64, f64) = (0.007, 4.0);
 
 /// Minimum share of changes after a repeated heading, and minimum number of changes, of a heading written on change.
-const MIN_AFTER_REST: (f64, usize) = (0.5, 12);
+const ON_CHANGE: (f64, usize) = (0.5, 12);
 
 /// Takes 360° from rudder angles to port where they are written as angles up to 360°.
 pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
@@ -48,9 +48,7 @@ pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
         read.windows(2).filter(is_new).map(|pair| (heading[pair[1]] - heading[pair[0]]).abs()).collect();
     let after_rest = read.windows(3).filter(|rows| heading[rows[0]] == heading[rows[1]] && is_new(&&rows[1..])).count();
     let few = changes.len() / 20;
-    if changes.len() < MIN_AFTER_REST.1.max(Trial::MIN_ROWS)
-        || (after_rest as f64) < MIN_AFTER_REST.0 * changes.len() as f64
-    {
+    if changes.len() < ON_CHANGE.1.max(Trial::MIN_ROWS) || (after_rest as f64) < ON_CHANGE.0 * changes.len() as f64 {
         return None;
     }
     let least = *changes.select_nth_unstable_by(few, f64::total_cmp).1;

@@ -8,7 +8,7 @@ use super::rudder::{Hold, usual};
 use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
-use crate::zigzag::holds::{self, LAID};
+use crate::zigzag::holds::{self, LAID_SHARE};
 
 /// Tolerances of the rudder in a steady approach, as shares of the rudder of the manoeuvre: about its median, and of
 /// its median about amidships.
@@ -100,8 +100,8 @@ fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale` seconds
-/// before the hold or, where the rudder is slow, somewhat earlier.
+/// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale`
+/// seconds before the hold or, where the rudder is slow, somewhat earlier.
 pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(MAX_TIMING_HOLDS)];
@@ -123,12 +123,10 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
     let angle = &record.rudder.angle[window..=end];
     let laid = |&row: &usize| {
         let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
-        before < after && before >= LAID * hold.level.abs()
+        before < after && before >= LAID_SHARE * hold.level.abs()
     };
     local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
-    if let ([_], Some(row)) =
-        (local.as_slice(), single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise))
-    {
+    if let ([_], Some(row)) = (&local[..], single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise)) {
         return window + row;
     }
     let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise));
@@ -152,7 +150,7 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
     // The second half of the movement shows the scatter about the line: rounding and uneven times.
     let ramp: Vec<usize> =
-        (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID * hold.level.abs()).collect();
+        (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID_SHARE * hold.level.abs()).collect();
     if ramp.len() < MIN_RAMP_ROWS {
         return 0;
     }

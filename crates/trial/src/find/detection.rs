@@ -110,8 +110,8 @@ pub struct DetectedManoeuvre {
 }
 
 impl DetectedManoeuvre {
-    /// Name in lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out", "spiral",
-    /// "straight".
+    /// Name in lists, with conventional angles: "zig-zag 10/10", "turning circle 35 to starboard", "pull-out",
+    /// "spiral", "straight".
     pub fn name(&self) -> String {
         let Some(manoeuvre) = &self.manoeuvre else { return String::from("straight") };
         let rudder = conventional(manoeuvre.rudder(), 0.08, 0.08);

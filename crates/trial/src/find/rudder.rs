@@ -22,13 +22,13 @@ const RESOLUTION: f64 = 0.05_f64.to_radians();
 const MAX_NEUTRAL: f64 = 2.5_f64.to_radians();
 
 /// Maximum difference between the levels of merged holds, as a share of the larger level.
-const MAX_LEVEL_DIFFERENCE: f64 = 0.15;
+const LEVEL_TOLERANCE: f64 = 0.15;
 
 /// Maximum pause between merged holds as a share of their total duration.
 const MAX_PAUSE_SHARE: f64 = 0.5;
 
 /// Minimum duration of a hold as a share of its neighbours.
-const MIN_DURATION_SHARE: f64 = 0.2;
+const SHORT_SHARE: f64 = 0.2;
 
 /// Maximum number of rows off the level within a hold.
 const MAX_STRAY_ROWS: usize = 2;
@@ -140,7 +140,7 @@ impl RudderHolds {
             // A rest much shorter than both neighbours is a pause or the end of a movement. Beside hours on a straight
             // course every rest is short.
             if let [.., before, between] = merged.as_slice()
-                && between.duration() < MIN_DURATION_SHARE * before.duration().min(next.duration())
+                && between.duration() < SHORT_SHARE * before.duration().min(next.duration())
                 && !self.is_amidships(before)
                 && is_same(before, &next, self.floor)
             {
@@ -194,11 +194,8 @@ impl RudderHolds {
 fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
     // The end of a movement is near the level, too.
-    let tolerance = if shorter < MIN_DURATION_SHARE * longer {
-        0.5 * floor
-    } else {
-        floor.max(MAX_LEVEL_DIFFERENCE * a.level.abs().max(b.level.abs()))
-    };
+    let size = a.level.abs().max(b.level.abs());
+    let tolerance = if shorter < SHORT_SHARE * longer { 0.5 * floor } else { floor.max(LEVEL_TOLERANCE * size) };
     (a.level - b.level).abs() <= tolerance && b.from - a.until <= MAX_PAUSE_SHARE * (a.duration() + b.duration())
 }
 

@@ -38,8 +38,7 @@ const MAX_RATE_REVERSAL: f64 = 0.15;
 pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
     let all = &record.rudder.holds;
     let is_pause = |index: usize| {
-        let shorter =
-            |neighbour: Option<&Hold>| neighbour.is_some_and(|x| all[index].duration() < PAUSE_SHARE * x.duration());
+        let shorter = |x: Option<&Hold>| x.is_some_and(|x| all[index].duration() < PAUSE_SHARE * x.duration());
         index > 0 && shorter(all.get(index - 1)) && shorter(all.get(index + 1))
     };
     let holds: Vec<Hold> = (0..all.len()).filter(|&index| !is_pause(index)).map(|index| all[index]).collect();
@@ -88,9 +87,8 @@ fn sweeps(holds: &[Hold]) -> Vec<&[Hold]> {
 fn is_from_side_to_side(sweep: &[Hold]) -> bool {
     let (first, last) = (sweep[0].level, sweep[sweep.len() - 1].level);
     let (port, starboard) = (-first.min(last), first.max(last));
-    sweep.len() >= MIN_HOLDS
-        && port.min(starboard) >= MIN_AMPLITUDE
-        && port.max(starboard) <= MAX_SIDE_RATIO * port.min(starboard)
+    let (smaller, larger) = (port.min(starboard), port.max(starboard));
+    sweep.len() >= MIN_HOLDS && smaller >= MIN_AMPLITUDE && larger <= MAX_SIDE_RATIO * smaller
 }
 
 /// `true` where the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.

@@ -93,7 +93,7 @@ impl Chain {
         for (index, &hold) in all.iter().enumerate().skip(start + 1) {
             let count = holds.len();
             let last = holds[count - 1];
-            let gap = hold.from - last.until;
+            let (gap, pause) = (hold.from - last.until, PAUSE_SHARE * last.duration());
             let (shorter, longer) = (last.duration().min(hold.duration()), last.duration().max(hold.duration()));
             let same_side = count.checked_sub(2).map(|index| holds[index].level);
             if is_opposed(last.level, hold.level, neutral)
@@ -102,10 +102,7 @@ impl Chain {
             {
                 holds.push(hold);
                 next = index;
-            } else if is_level(last.level, hold.level)
-                && gap <= 0.5 * shorter
-                && hold.duration() >= PAUSE_SHARE * last.duration()
-            {
+            } else if is_level(last.level, hold.level) && gap <= 0.5 * shorter && hold.duration() >= pause {
                 holds[count - 1] = last.joined(hold);
                 next = index;
             } else if last.level * hold.level > 0.0
@@ -116,9 +113,7 @@ impl Chain {
                 // The rudder paused on its way to this hold.
                 holds[count - 1] = hold;
                 next = index;
-            } else if hold.duration() < PAUSE_SHARE * last.duration()
-                && hold.until - last.until <= MAX_PAUSE_REACH * last.duration()
-            {
+            } else if hold.duration() < pause && hold.until - last.until <= MAX_PAUSE_REACH * last.duration() {
                 continue;
             } else {
                 break;
@@ -244,12 +239,11 @@ fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, 
     }
     let time = APPROACH_SHARE * holds[0].duration();
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
-    let [first, second] = [holds[0].level, holds[1].level];
+    let [a, b] = [holds[0].level, holds[1].level];
     let rudder = middle(&record.rudder.angle[rows[0]..rows[1]]);
     let heading = record.course.near(from - time, 0.1 * time, 0.5 * time);
-    rudder.is_none_or(|rudder| {
-        (rudder - 0.5 * (first + second)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (first - second).abs()
-    }) && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
+    rudder.is_none_or(|rudder| (rudder - 0.5 * (a + b)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (a - b).abs())
+        && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
 }
 
 /// `true` where the rudder is held for a sufficient share of the time and no gap of the log hides a hold.

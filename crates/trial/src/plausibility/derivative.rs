@@ -37,9 +37,8 @@ fn repeats(slopes: &[f64], rates: &[f64], rows: usize) -> bool {
         slopes.iter().zip(&rates).zip(later).map(|((slope, rate), next)| [*slope, *rate, *next]).collect();
     let finite: Vec<[f64; 3]> = both.into_iter().filter(|triple| triple.iter().all(|x| x.is_finite())).collect();
     let sum = |first: usize, second: usize| finite.iter().map(|triple| triple[first] * triple[second]).sum::<f64>();
-    finite.len() >= MIN_CHANGES
-        && sum(0, 1) > MIN_CORRELATION * (sum(0, 0) * sum(1, 1)).sqrt()
-        && sum(0, 2) < MAX_AUTOCORRELATION * sum(0, 0)
+    let is_correlated = sum(0, 1) > MIN_CORRELATION * (sum(0, 0) * sum(1, 1)).sqrt();
+    finite.len() >= MIN_CHANGES && is_correlated && sum(0, 2) < MAX_AUTOCORRELATION * sum(0, 0)
 }
 
 #[cfg(test)]

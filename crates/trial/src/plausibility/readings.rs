@@ -17,8 +17,8 @@ const MIN_STILL_ROWS: usize = 20;
 /// Maximum probability that noise repeats a value over as many rows somewhere in the record.
 const MAX_CHANCE: f64 = 1e-6;
 
-/// Minimum share and number of rows of a noisy channel that turn back at once and by more than a digit. A helmsman turns
-/// back later, and a channel between two digits turns back by a digit.
+/// Minimum share and number of rows of a noisy channel that turn back at once and by more than a digit. A helmsman
+/// turns back later, and a channel between two digits turns back by a digit.
 const MIN_NOISY: (f64, usize) = (0.08, 10);
 
 /// Minimum noise of a noisy channel, deg.
@@ -141,8 +141,7 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
         && pauses as f64 >= MIN_PAUSES.1 * changes.len() as f64;
     (is_scale && next as f64 >= MIN_NEXT.1 * changes.len() as f64).then(|| {
         format!(
-            "{spoken} comes in steps of {}°: it is rounded, and each reading may be wrong by half a step; log it with a \
-             decimal",
+            "{spoken} comes in steps of {}°: it is rounded, and a reading may be wrong by half a step; record a decimal",
             instant(step_deg)
         )
     })

@@ -83,8 +83,8 @@ pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterato
     rows.step_by(every)
 }
 
-/// Partial slope of the last column on the last but one, with all other columns taken out of both (Frisch & Waugh 1933):
-/// the last corner of R in the QR decomposition of the columns.
+/// Partial slope of the last column on the last but one, with all other columns taken out of both (Frisch & Waugh
+/// 1933): the last corner of R in the QR decomposition of the columns.
 pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();

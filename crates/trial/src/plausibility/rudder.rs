@@ -105,7 +105,7 @@ struct RudderStroke {
     duration_s: f64,
     rows: usize,
     largest_deg: f64,
-    largest_duration_s: f64,
+    largest_s: f64,
 }
 
 /// Strokes of the rudder of at least [`MIN_STROKE_DEG`].
@@ -118,14 +118,8 @@ fn strokes(time: &[f64], rudder: &[f64]) -> Vec<RudderStroke> {
         let length_deg = to_deg((rudder[first] - rudder[from]).abs());
         let largest = (from..first).max_by(|a, b| changes[*a].abs().total_cmp(&changes[*b].abs()));
         let row = largest.unwrap_or(from);
-        let (largest_deg, largest_duration_s) = (to_deg(changes[row].abs()), time[row + 1] - time[row]);
-        RudderStroke {
-            length_deg,
-            duration_s: time[first] - time[from],
-            rows: run.len(),
-            largest_deg,
-            largest_duration_s,
-        }
+        let (largest_deg, largest_s) = (to_deg(changes[row].abs()), time[row + 1] - time[row]);
+        RudderStroke { length_deg, duration_s: time[first] - time[from], rows: run.len(), largest_deg, largest_s }
     });
     runs.filter(|stroke| stroke.length_deg >= MIN_STROKE_DEG).collect()
 }
@@ -141,11 +135,10 @@ fn steps(strokes: &[RudderStroke], noise_deg: f64) -> Option<Warning> {
     let is_step = |stroke: &&RudderStroke| {
         let beside_deg = stroke.length_deg - stroke.largest_deg;
         beside_deg <= (MAX_BESIDE_STEP.0 * noise_deg).min(MAX_BESIDE_STEP.1 * stroke.length_deg)
-            && stroke.largest_deg > MAX_RUDDER_RATE_DEG_S * stroke.largest_duration_s
+            && stroke.largest_deg > MAX_RUDDER_RATE_DEG_S * stroke.largest_s
     };
     let steps: Vec<&RudderStroke> = strokes.iter().filter(is_step).collect();
-    let slowest_deg_s =
-        steps.iter().map(|step| step.largest_deg / step.largest_duration_s).fold(f64::INFINITY, f64::min);
+    let slowest_deg_s = steps.iter().map(|step| step.largest_deg / step.largest_s).fold(f64::INFINITY, f64::min);
     (steps.len() >= 2 && steps.len() as f64 >= MIN_STEP_SHARE * strokes.len() as f64).then(|| {
         WarningCode::RudderOrder.warning(format!(
             "the rudder jumps within a row in {} of {} movements, at {slowest_deg_s:.0}°/s or more, while steering gears move \

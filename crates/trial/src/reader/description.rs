@@ -59,8 +59,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
         return Ok(text + END);
     };
     for (index, name) in head.names.iter().enumerate() {
-        let named = meaning(name);
-        let meaning = named.map(|named| head.unit(index).and_then(|unit| with_unit(named, unit)).unwrap_or(named));
+        let meaning = meaning(name).map(|m| head.unit(index).and_then(|unit| with_unit(m, unit)).unwrap_or(m));
         let quoted = toml::Value::from(name.as_str());
         let (remark, is) = description(name, &quoted.to_string(), meaning);
         text.push_str(&format!("\n# {}\n# {remark}\n", summary(&texts, index, separator)));

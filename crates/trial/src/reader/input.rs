@@ -53,11 +53,10 @@ pub(super) fn stem(path: &Path) -> String {
 /// Opens a file and recognises its content; with its size in bytes where that is the length of its text.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD)?;
-    let size = file.size;
-    let content = recognise(Box::new(file))?;
+    let (size, content) = (file.size, recognise(Box::new(file))?);
     let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
-    let is_plain = text.on_disk.is_none();
-    Ok((content, size.filter(|_| is_plain)))
+    let size = size.filter(|_| text.on_disk.is_none());
+    Ok((content, size))
 }
 
 /// The first bytes of an input, and all its bytes.

@@ -16,7 +16,7 @@ use crate::sidecar::{Sidecar, SidecarProblem, Which};
 use crate::wording::shortened;
 
 /// Content of a column.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) enum Content {
     /// Time; the factor to seconds.
     Time(f64),
@@ -31,6 +31,7 @@ pub(super) enum Content {
     /// Longitude, rad.
     Longitude,
     /// An unknown quantity, carried unchanged.
+    #[default]
     Unknown,
     /// A column that is left out.
     Ignored,
@@ -57,7 +58,7 @@ enum Rank {
 }
 
 /// A column of a table: its content, statistics of its cells, and its values in the rows kept.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct RawColumn {
     pub name: String,
     pub content: Content,
@@ -86,22 +87,7 @@ pub(super) struct RawColumn {
 
 impl RawColumn {
     fn new(name: &str, claim: Option<(ColumnMeaning, Rank)>) -> Self {
-        Self {
-            name: name.to_owned(),
-            content: Content::Unknown,
-            open: false,
-            claim,
-            scale: 1.0,
-            zero: 0.0,
-            last: None,
-            largest: 0.0,
-            largest_step: 0.0,
-            is_whole: true,
-            sides: 0,
-            sentinels: (0, 0.0),
-            text: 0,
-            values: Vec::new(),
-        }
+        Self { name: name.to_owned(), claim, scale: 1.0, is_whole: true, ..Self::default() }
     }
 
     /// Updates the statistics with a number as in the file.
@@ -351,8 +337,7 @@ impl Layout {
         match stamp(index).filter(|_| !is_number(index)) {
             Some(first) => {
                 self.settle(index, rank, unit, |_| Content::Stamp);
-                let is_date = |column: &RawColumn| column.claims(|meaning| meaning == ColumnMeaning::Date);
-                let dates = self.columns.iter().position(is_date);
+                let dates = self.columns.iter().position(|column| column.claims(|kind| kind == ColumnMeaning::Date));
                 if let Some(date) = dates.filter(|&date| !first.has_date() && date != index && stamp(date).is_some()) {
                     self.columns[date].content = Content::Date;
                 }

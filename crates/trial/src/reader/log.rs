@@ -106,6 +106,15 @@ impl Log {
         Ok(log)
     }
 
+    /// Readings of every channel before other files are joined, on the clock of this log.
+    fn take_readings(&mut self) -> Vec<(Series, f64)> {
+        if let Readings::Series(series) = std::mem::take(&mut self.readings) {
+            return series;
+        }
+        let named = |read: Series| (Series { source: self.column_name(read.channel), ..read }, 0.0);
+        series(self.columns.clone(), 0.0).into_iter().map(named).collect()
+    }
+
     pub(super) fn fault(&self, problem: impl Into<Problem>) -> ReadError {
         ReadError::table(&self.path, problem.into())
     }
@@ -122,11 +131,12 @@ impl Log {
             }
         };
         let with_file = |warning: Warning| warning.code.warning(format!("{}: {}", file.display(), warning.text));
-        let (mut readings, further) = (self.take_readings(), joined.take_readings());
-        let is_new =
-            |(series, _): &(Series, f64)| readings.iter().all(|(earlier, _)| earlier.channel != series.channel);
-        let further: Vec<(Series, f64)> = further.into_iter().filter(is_new).collect();
-        readings.extend(further.into_iter().map(|(series, shift)| (series, shift + offset)));
+        let mut readings = self.take_readings();
+        for (series, _) in joined.take_readings() {
+            if readings.iter().all(|(earlier, _)| earlier.channel != series.channel) {
+                readings.push((series, offset));
+            }
+        }
         self.readings = Readings::Series(readings);
         self.warnings.extend(joined.warnings.into_iter().map(with_file));
         let shifted = |reading: RejectedReading| RejectedReading { time: reading.time + offset, ..reading };
@@ -180,7 +190,7 @@ impl Log {
         let has = |channel: Channel| self.columns.channels.contains_key(&channel);
         let has_speed = has(Channel::Speed) || !has(Channel::Surge) || !has(Channel::Sway);
         let has_rudder = self.channel(Channel::Rudder).is_some_and(|rudder| rudder.iter().all(|x| x.is_finite()));
-        has_speed && has_rudder && late_s.is_none() && order_rate_deg_s.is_none()
+        has_speed && has_rudder && late_s.or(order_rate_deg_s).is_none()
     }
 
     /// Time of every row, s.
@@ -332,9 +342,10 @@ pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
 
 /// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` uses the header only.
 ///
-/// Fails with [`ReadError`] when the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format, when
-/// a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`] or more
-/// than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible ([`plausibility`]).
+/// Fails with [`ReadError`] when the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format,
+/// when a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
+/// or more than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible
+/// ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
     Log::open(path, sidecar, &[])?.into_trial(None)
 }

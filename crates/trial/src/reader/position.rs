@@ -12,8 +12,8 @@ const A: f64 = 6_378_137.0;
 /// First eccentricity squared (same, table 3.3).
 const E2: f64 = 6.694_379_990_14e-3;
 
-/// Metres north and east of the first position, from latitude and longitude (rad); NaN for a row without a position, and
-/// `None` without any position.
+/// Metres north and east of the first position, from latitude and longitude (rad); NaN for a row without a position,
+/// and `None` without any position.
 ///
 /// north = M (φ − φ₀) and east = N cos φₘ (λ − λ₀), with the radii of curvature M of the meridian and N of the prime
 /// vertical and the cosine at the mean latitude φₘ. Over 10 miles the error is below a few decimetres away from the

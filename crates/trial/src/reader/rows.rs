@@ -1,5 +1,5 @@
-//! Rows of a table: cells to SI units, part and thinning, rows that are left out, and the limit of memory. Only the rows
-//! kept are held; [`super::table`] makes columns of them.
+//! Rows of a table: cells to SI units, part and thinning, rows that are left out, and the limit of memory. Only the
+//! rows kept are held; [`super::table`] makes columns of them.
 
 use std::ops::{Range, RangeInclusive};
 

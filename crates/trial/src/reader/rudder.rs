@@ -23,11 +23,10 @@ const MAX_HELD_READINGS: f64 = 1000.0;
 /// Holds the value of a rudder written on change between two readings, at the usual interval. `None` for a rudder that
 /// is not written on change.
 ///
-/// In a rudder written on change no reading repeats the reading before, and over a long rest the rudder moves no further
-/// than between two rows of a movement.
+/// In a rudder written on change no reading repeats the reading before, and over a long rest the rudder moves no
+/// further than between two rows of a movement.
 pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
-    let is_recorded = |channel: &Channel| columns.channels.contains_key(channel);
-    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(is_recorded)?;
+    let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|x| columns.channels.contains_key(x))?;
     let values = &columns.channels[&channel];
     let read: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
     if read.len() < ON_CHANGE.0 {

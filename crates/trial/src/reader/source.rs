@@ -112,11 +112,10 @@ impl ChannelReadings {
 impl Series {
     /// The series within a part of its log, s, both ends included.
     pub(super) fn within(mut self, part: &RangeInclusive<f64>) -> Self {
-        let end = self.time.partition_point(|t| t <= part.end());
-        let begin = self.time.partition_point(|t| t < part.start()).min(end);
+        let rows = self.time.partition_point(|t| t < part.start())..self.time.partition_point(|t| t <= part.end());
         for column in [&mut self.time, &mut self.values] {
-            column.truncate(end);
-            column.drain(..begin);
+            column.truncate(rows.end);
+            column.drain(..rows.start);
         }
         self
     }
@@ -129,30 +128,20 @@ impl Log {
             Readings::InColumns => &self.columns,
             Readings::Columns(columns) => columns,
             Readings::Series(all) => {
-                let statistics = |(series, shift): &(Series, f64)| {
-                    ChannelReadings::new(series.channel, series.source.clone(), &series.time, &series.values, *shift)
-                };
-                return all.iter().map(statistics).collect();
+                let all = all.iter().map(|(Series { channel, time, values, source }, shift)| {
+                    ChannelReadings::new(*channel, source.clone(), time, values, *shift)
+                });
+                return all.collect();
             }
         };
-        let statistics = |(channel, values): (&Channel, &Vec<f64>)| {
+        let all = columns.channels.iter().map(|(channel, values)| {
             ChannelReadings::new(*channel, self.column_name(*channel), &columns.time, values, 0.0)
-        };
-        columns.channels.iter().map(statistics).collect()
+        });
+        all.collect()
     }
 
-    /// Readings of every channel as series, on the clock of this log.
-    pub(super) fn take_readings(&mut self) -> Vec<(Series, f64)> {
-        let columns = match std::mem::take(&mut self.readings) {
-            Readings::InColumns => self.columns.clone(),
-            Readings::Columns(columns) => columns,
-            Readings::Series(series) => return series,
-        };
-        let named = |series: Series| Series { source: self.column_name(series.channel), ..series };
-        super::assemble::series(columns, 0.0).into_iter().map(|series| (named(series), 0.0)).collect()
-    }
-
-    fn column_name(&self, channel: Channel) -> Option<String> {
+    /// Name of the column of a channel.
+    pub(super) fn column_name(&self, channel: Channel) -> Option<String> {
         self.names.iter().find(|(named, _)| *named == channel).map(|(_, name)| name.clone())
     }
 }

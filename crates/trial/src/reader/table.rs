@@ -189,8 +189,7 @@ impl Rows<'_> {
         let short = "with fewer cells than the header; their last columns are taken as missing";
         count(counts.short, WarningCode::MissingValues, short);
         let first = instant(counts.astray.first().copied().unwrap_or_default());
-        let astray =
-            format!("left out, because the time does not fit the neighbouring rows; the first is at {first} s");
+        let astray = format!("left out, because the time does not fit its neighbours; the first is at {first} s");
         count(counts.astray.len(), WarningCode::LeftOut, &astray);
         if counts.decimal_commas > 0 {
             let text = format!("{} read with a decimal comma", counted(counts.decimal_commas, "number"));

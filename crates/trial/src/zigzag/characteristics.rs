@@ -141,7 +141,8 @@ fn check_direction(reversals: &[Execute]) -> Result<(), ZigZagError> {
     Ok(())
 }
 
-/// Middle course: midway between the mean headings at the executes to starboard and to port, so that a late helm cancels.
+/// Middle course: midway between the mean headings at the executes to starboard and to port, so that a late helm
+/// cancels.
 fn middle_course(reversals: &[Execute]) -> Quantity {
     let mean = |side: Side| {
         let headings: Vec<Quantity> =
@@ -151,8 +152,8 @@ fn middle_course(reversals: &[Execute]) -> Quantity {
     Quantity::mean(&[mean(Side::Port), mean(Side::Starboard)]).expect("there are two sides")
 }
 
-/// `true` where the ship runs straight on the middle course when the rudder moves into its first hold: this is the first
-/// execute of the trial. Otherwise the record begins within a reversal.
+/// `true` where the ship runs straight on the middle course when the rudder moves into its first hold: this is the
+/// first execute of the trial. Otherwise the record begins within a reversal.
 fn starts_straight(
     start: f64,
     heading: &Heading,
@@ -211,8 +212,8 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
 
 /// Nominal pair from the held rudder and the headings at the reversals; the helm is late rather than early.
 ///
-/// Headings count from the middle course: it is less noisy than the first heading of a record, and it is valid where the
-/// approach was not on the course of the trial.
+/// Headings count from the middle course: it is less noisy than the first heading of a record, and it is valid where
+/// the approach was not on the course of the trial.
 fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();

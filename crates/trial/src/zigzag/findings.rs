@@ -152,8 +152,8 @@ pub struct Overshoot {
 
 /// Characteristics of a zig-zag trial. Angles in rad, times in s; `None` or empty where a record does not show them.
 ///
-/// A record that begins within the trial has no first execute, and all that counts from it is `None`. Times from a first
-/// execute are `None` where the record begins within its movement.
+/// A record that begins within the trial has no first execute, and all that counts from it is `None`. Times from a
+/// first execute are `None` where the record begins within its movement.
 ///
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,7 @@ use estimation::statistics::median;
 
 /// Minimum share of the level of a side at which the rudder counts as laid to that side. It is high because manual
 /// steering before a first execute can use more than half the rudder of the trial.
-pub const LAID: f64 = 0.85;
+pub const LAID_SHARE: f64 = 0.85;
 
 /// Minimum rudder angle of a zig-zag, degrees.
 const MIN_RUDDER_DEG: f64 = 0.5;
@@ -22,7 +22,7 @@ const MIN_HELD_SHARE: f64 = 0.3;
 pub struct Hold {
     /// +1 starboard, −1 port.
     pub side: f64,
-    /// First row beyond [`LAID`] of the level.
+    /// First row beyond [`LAID_SHARE`] of the level.
     pub first: usize,
     /// Last such row.
     pub last: usize,
@@ -44,7 +44,7 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     let side_of = |delta: f64| {
         [(1.0, starboard), (-1.0, port)]
             .into_iter()
-            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID * level)
+            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID_SHARE * level)
             .map(|(side, _)| side)
     };
     let mut holds: Vec<Hold> = Vec::new();
@@ -95,8 +95,8 @@ fn level(rudder: &[f64], side: f64) -> f64 {
 /// Conventional trial angle near a measured angle, degrees: 1, 2, 3 or a multiple of 5 within the tolerance, else a
 /// whole degree.
 ///
-/// `below` and `above` are tolerances of the measured angle as shares of the conventional angle; `slack_deg` is added for
-/// the noise of the measurement.
+/// `below` and `above` are tolerances of the measured angle as shares of the conventional angle; `slack_deg` is added
+/// for the noise of the measurement.
 pub fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
     const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
     // Small angles have an absolute error (a rudder offset, a late helm), hence a minimum tolerance.

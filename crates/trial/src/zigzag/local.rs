@@ -115,8 +115,8 @@ impl<const N: usize> Local<N> {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
-    /// The time near the centre at which the polynomial has the value `level`; `None` where Newton's iteration leaves the
-    /// window.
+    /// The time near the centre at which the polynomial has the value `level`; `None` where Newton's iteration leaves
+    /// the window.
     pub fn crossing(&self, level: f64) -> Option<f64> {
         let mut t = self.centre;
         for _ in 0..20 {

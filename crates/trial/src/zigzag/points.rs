@@ -8,7 +8,8 @@
 use super::local::{Cubic, Parabola};
 use estimation::statistics::median;
 
-/// Minimum size of an extremum as a share of the largest |heading|; smaller extrema are ripples or the initial transient.
+/// Minimum size of an extremum as a share of the largest |heading|; smaller extrema are ripples or the initial
+/// transient.
 const MIN_EXTREMUM_SHARE: f64 = 0.35;
 
 /// Extrema of a heading (rad, measured from the base course) at increasing times (s): time (s) and heading (rad) of the

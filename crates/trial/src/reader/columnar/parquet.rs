@@ -193,7 +193,7 @@ impl Rows {
     fn chunk(&mut self) -> Result<Option<String>, Problem> {
         let mut text = String::new();
         if !std::mem::replace(&mut self.headed, true) {
-            text::line(&mut text, self.columns.len(), |text, number| text::cell(text, &self.columns[number].name));
+            text::line(&mut text, self.columns.len(), |text, at| text::cell(text, &self.columns[at].name));
             return Ok(Some(text));
         }
         while self.left == 0 {
@@ -213,9 +213,7 @@ impl Rows {
         }
         self.left -= length;
         for row in 0..length {
-            text::line(&mut text, self.columns.len(), |text, number| {
-                text.push_str(self.columns[number].cells.get(row))
-            });
+            text::line(&mut text, self.columns.len(), |text, at| text.push_str(self.columns[at].cells.get(row)));
         }
         Ok(Some(text))
     }

@@ -197,8 +197,6 @@ fn stamp(text: &mut String, days: f64, is_1904: bool, timed: bool, is_duration: 
     let day = ticks.div_euclid(TICKS_PER_DAY) + DAY_0[usize::from(is_1904)] + early;
     match ticks.rem_euclid(TICKS_PER_DAY) {
         0 if !timed => text::day(text, day),
-        ticks_of_day => {
-            text::stamp(text, day * 86_400 + ticks_of_day / TICKS, nanoseconds(ticks_of_day % TICKS), false)
-        }
+        ticks => text::stamp(text, day * 86_400 + ticks / TICKS, nanoseconds(ticks % TICKS), false),
     }
 }

@@ -38,8 +38,7 @@ impl LongTable {
     /// The table with this header; `None` for a table of another kind.
     pub fn of(header: &str) -> Option<Self> {
         let is_name = |cell: &str, column: usize| COLUMNS[column].contains(&cell.to_lowercase().as_str());
-        let count_names =
-            |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|column| is_name(cell, column))).count();
+        let count_names = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|k| is_name(cell, k))).count();
         let separator = recognise(header, count_names);
         let mut ranges = Vec::new();
         separator.split(header, &mut ranges);

@@ -37,7 +37,7 @@ impl<'a> Offer<'a> {
     }
 
     /// Candidate with another quantity of the same instrument.
-    fn with_quantity(self, column: usize) -> Self {
+    fn sibling(self, column: usize) -> Self {
         Self { column, readings: self.instrument.readings(column), ..self }
     }
 
@@ -80,8 +80,7 @@ impl<'a> Choice<'a> {
     fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&NmeaInstrument) -> bool) -> Vec<Offer<'a>> {
         let mut offers = Vec::new();
         for &(slot, class) in slots {
-            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, instrument)| wanted(instrument))
-            {
+            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, x)| wanted(x)) {
                 let Some(column) = instrument.column(slot) else { continue };
                 let readings = instrument.readings(column);
                 if readings > 0 {
@@ -165,7 +164,7 @@ impl<'a> Choice<'a> {
     /// Adds the heading: true before magnetic; a magnetic heading with variation counts as true.
     fn heading(&mut self) {
         let variation =
-            |offer: &Offer<'a>| offer.instrument.column(Slot::Variation).map(|column| offer.with_quantity(column));
+            |offer: &Offer<'a>| offer.instrument.column(Slot::Variation).map(|column| offer.sibling(column));
         let variation = |offer: &Offer<'a>| variation(offer).filter(|variation| variation.readings > 0);
         let mut offers = self.offers(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
         for offer in offers.iter_mut().filter(|offer| offer.class == 1) {
@@ -198,30 +197,25 @@ impl<'a> Choice<'a> {
         if !chosen.instrument.sends(b"RSA") {
             return self.push_column(Channel::Rudder, chosen);
         }
-        let [starboard, port] = [0, 1].map(|column| chosen.with_quantity(column).values());
+        let [starboard, port] = [0, 1].map(|column| chosen.sibling(column).values());
         let pairs = || starboard.iter().zip(port).filter(|(a, b)| a.is_finite() && b.is_finite());
         let number = pairs().count();
         let side = ["starboard", "port"][chosen.column];
         // A second rudder with few readings is not averaged.
         if 2 * number < chosen.readings {
-            let second = chosen.with_quantity(1 - chosen.column).readings;
+            let second = chosen.sibling(1 - chosen.column).readings;
             if chosen.column == 1 || second > 0 {
-                self.warn(
-                    WarningCode::Instrument,
-                    format!(
-                        "the rudder angle is that of the {side} rudder; the other rudder has {}",
-                        counted(second, "reading")
-                    ),
-                );
+                let readings = counted(second, "reading");
+                let text = format!("the rudder angle is that of the {side} rudder; the other rudder has {readings}");
+                self.warn(WarningCode::Instrument, text);
             }
             return self.push_column(Channel::Rudder, chosen);
         }
         let rms_deg = to_deg((pairs().map(|(a, b)| (a - b).powi(2)).sum::<f64>() / number as f64).sqrt());
         if rms_deg > MAX_RUDDER_DIFFERENCE_DEG {
-            self.warn(
-                WarningCode::RuddersApart,
-                format!("the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"),
-            );
+            let text =
+                format!("the rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder");
+            self.warn(WarningCode::RuddersApart, text);
             return self.push_column(Channel::Rudder, chosen);
         }
         self.warn(
@@ -245,7 +239,7 @@ impl<'a> Choice<'a> {
         }
         // A log with one axis gives no sway.
         let speed = |(u, v): (&f64, &f64)| if v.is_finite() { u.hypot(*v) } else { u.abs() };
-        let across = chosen.with_quantity(chosen.column + 1).values();
+        let across = chosen.sibling(chosen.column + 1).values();
         self.push(Channel::Speed, chosen, chosen.values().iter().zip(across).map(speed));
     }
 
@@ -257,7 +251,7 @@ impl<'a> Choice<'a> {
             self.warn(WarningCode::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
         }
         self.push_column(Channel::Surge, surge);
-        let sway = surge.with_quantity(surge.column + 1);
+        let sway = surge.sibling(surge.column + 1);
         if sway.readings > 0 {
             self.warn_of_invalid("sway velocity", sway);
             self.push_column(Channel::Sway, sway);
@@ -268,7 +262,7 @@ impl<'a> Choice<'a> {
         let offers = self.offers(&[(Slot::Latitude, 0)], |_| true);
         let Some(chosen) = self.pick("position", offers, false) else { return };
         for (channel, values) in
-            plane(chosen.values(), chosen.with_quantity(chosen.column + 1).values()).into_iter().flatten()
+            plane(chosen.values(), chosen.sibling(chosen.column + 1).values()).into_iter().flatten()
         {
             self.push(channel, chosen, values);
         }
@@ -304,13 +298,8 @@ impl<'a> Choice<'a> {
         }
         let counter: Vec<&str> = offers.iter().filter(is_counter).map(Offer::name).collect();
         if !counter.is_empty() {
-            self.warn(
-                WarningCode::TurnedSign,
-                format!(
-                    "{} turns counter-clockwise (negative) in most readings; its rate is taken as positive",
-                    counter.join(" and ")
-                ),
-            );
+            let text = "turns counter-clockwise (negative) in most readings; its rate is taken as positive";
+            self.warn(WarningCode::TurnedSign, format!("{} {text}", counter.join(" and ")));
         }
         self.push(Channel::PropellerRate, chosen, values);
     }
@@ -319,32 +308,27 @@ impl<'a> Choice<'a> {
         let reference = |letter: u8| move |mwv: &NmeaInstrument| mwv.sends(b"MWV") && mwv.part[0] == letter;
         let relative = self.offers(&[(Slot::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
-            self.push_column(Channel::WindRelativeSpeed, chosen.with_quantity(0));
+            self.push_column(Channel::WindRelativeSpeed, chosen.sibling(0));
             self.push_column(Channel::WindRelativeFrom, chosen);
         }
         let mut real = self.offers(&[(Slot::WindFrom, 0)], |instrument| instrument.sends(b"MWD"));
         real.extend(self.offers(&[(Slot::WindFrom, 1)], reference(b'T')));
         let Some(chosen) = self.pick("true wind", real, false) else { return };
-        self.push_column(Channel::WindTrueSpeed, chosen.with_quantity(0));
+        self.push_column(Channel::WindTrueSpeed, chosen.sibling(0));
         if chosen.instrument.sends(b"MWD") {
             return self.push_column(Channel::WindTrueFrom, chosen);
         }
         let from_bow = chosen.name();
         let Some(heading) = self.series.iter().find(|series| series.channel == Channel::Heading) else {
-            self.warn(
-                WarningCode::LeftOut,
-                format!("{from_bow} gives the true wind from the bow; without a heading its direction is left out"),
-            );
-            return;
+            let text = "gives the true wind from the bow; without a heading its direction is left out";
+            return self.warn(WarningCode::LeftOut, format!("{from_bow} {text}"));
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
         let readings = chosen.instrument.at.iter().zip(chosen.values());
         let values: Vec<f64> = readings.map(|(&time, from)| turned(from + near.at(time))).collect();
         self.push(Channel::WindTrueFrom, chosen, values);
-        self.warn(
-            WarningCode::Instrument,
-            format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"),
-        );
+        let text = "gives the direction of the true wind from the bow; the heading is added to it";
+        self.warn(WarningCode::Instrument, format!("{from_bow} {text}"));
     }
 }
 
@@ -352,7 +336,7 @@ impl<'a> Choice<'a> {
 struct Nearest<'a> {
     time: &'a [f64],
     values: &'a [f64],
-    column: usize,
+    index: usize,
     /// Maximum distance in time, s.
     reach: f64,
 }
@@ -360,16 +344,16 @@ struct Nearest<'a> {
 impl<'a> Nearest<'a> {
     fn new(time: &'a [f64], values: &'a [f64]) -> Self {
         let usual = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(f64::INFINITY);
-        Self { time, values, column: 0, reach: 3.0 * usual }
+        Self { time, values, index: 0, reach: 3.0 * usual }
     }
 
     fn at(&mut self, time: f64) -> f64 {
-        let distance = |column: usize| (self.time[column] - time).abs();
-        while self.column + 1 < self.time.len() && distance(self.column + 1) <= distance(self.column) {
-            self.column += 1;
+        let distance = |index: usize| (self.time[index] - time).abs();
+        while self.index + 1 < self.time.len() && distance(self.index + 1) <= distance(self.index) {
+            self.index += 1;
         }
-        match self.values.get(self.column) {
-            Some(&value) if (self.time[self.column] - time).abs() <= self.reach => value,
+        match self.values.get(self.index) {
+            Some(&value) if (self.time[self.index] - time).abs() <= self.reach => value,
             _ => f64::NAN,
         }
     }

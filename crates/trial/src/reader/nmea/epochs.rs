@@ -1,6 +1,6 @@
-//! Instants of sentences. Epochs begin at sentences with UTC, or at the stamps before sentences; several sentences of an
-//! instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the others is filled
-//! at the usual pace, and its end stays empty.
+//! Instants of sentences. Epochs begin at sentences with UTC, or at the stamps before sentences; several sentences of
+//! an instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the others is
+//! filled at the usual pace, and its end stays empty.
 
 use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
@@ -91,9 +91,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 /// Fails without at least two different times, and where they go back for more than one sentence.
 pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     let times = |clock: &NmeaInstrument| clock.column(Slot::Second).map_or(0, |column| clock.readings(column));
-    let rank = |clock: &NmeaInstrument| {
-        [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|formatter| clock.sends(formatter))
-    };
+    let rank = |clock: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|code| clock.sends(code));
     let clocks = log.instruments.iter().filter(|instrument| times(instrument) > 0);
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
     let driver = clocks.min_by_key(|clock| (std::cmp::Reverse(times(clock)), rank(clock))).ok_or_else(|| none(0))?;

@@ -176,7 +176,5 @@ pub(super) fn number(field: &[u8]) -> Number {
     }
     let is_plain = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
     let text = std::str::from_utf8(field).ok().filter(|_| field.iter().all(is_plain));
-    text.and_then(|text| text.parse().ok())
-        .filter(|value: &f64| value.is_finite())
-        .map_or(Number::Invalid, Number::Value)
+    text.and_then(|text| text.parse().ok()).filter(|x: &f64| x.is_finite()).map_or(Number::Invalid, Number::Value)
 }

@@ -74,7 +74,7 @@ pub(super) struct Counts {
 }
 
 /// Content of a log so far.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct NmeaLog {
     pub instruments: Vec<NmeaInstrument>,
     /// Keys of the instruments, in the same order; kept apart from the tables because every sentence searches them.
@@ -94,17 +94,7 @@ pub(super) struct NmeaLog {
 impl NmeaLog {
     /// An empty log; `stamped` for stamps before the sentences.
     pub fn new(stamped: bool) -> Self {
-        Self {
-            instruments: Vec::new(),
-            keys: Vec::new(),
-            counts: Counts::default(),
-            leading: Leading::default(),
-            stamps: Stamps::default(),
-            stamped,
-            latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0),
-            late: None,
-            numbers: 0,
-        }
+        Self { stamped, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
     }
 
     /// Adds a line.
@@ -168,8 +158,8 @@ impl NmeaLog {
 
     /// Adds the readings of a sentence to the table of its instrument.
     ///
-    /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, perhaps with a
-    /// digit.
+    /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, perhaps with
+    /// a digit.
     fn add(&mut self, slots: &'static [Slot], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
         let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);

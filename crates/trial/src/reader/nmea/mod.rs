@@ -1,8 +1,8 @@
 //! Reader of NMEA 0183 logs: every channel becomes a [`Series`] at the instants of its instrument. Headings, rudder
-//! angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and proprietary sentences are skipped.
-//! Time comes from stamps before the sentences, or from the sentences of a GPS or clock. Damaged lines are left out and
-//! counted; a course over ground is never used as a heading. Heading and rudder may be in two files, so their presence
-//! is checked later.
+//! angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and proprietary sentences are
+//! skipped. Time comes from stamps before the sentences, or from the sentences of a GPS or clock. Damaged lines are
+//! left out and counted; a course over ground is never used as a heading. Heading and rudder may be in two files, so
+//! their presence is checked later.
 //!
 //! Source: NMEA 0183 version 4.11, IEC 61162-1.
 

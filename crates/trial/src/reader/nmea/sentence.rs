@@ -125,7 +125,7 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"ZDA", &[Second, Day], |row, fields| {
             row.take_second(0, fields.at(1));
-            row.values[1] = day([2, 3, 4].map(|slot| fields.number(slot))).unwrap_or(f64::NAN);
+            row.values[1] = day([2, 3, 4].map(|field| fields.number(field))).unwrap_or(f64::NAN);
         }),
         (b"RPM", &[Revolutions], |row, fields| {
             let shaft = fields.at(2).first().copied().unwrap_or(b'0');
@@ -192,12 +192,12 @@ impl Row {
         &mut self,
         fields: &Fields,
         status: usize,
-        places: &[(usize, usize)],
+        entries: &[(usize, usize)],
         bounds: RangeInclusive<f64>,
         factor: f64,
     ) {
         if fields.is(status, b'A') {
-            places.iter().for_each(|&(slot, field)| self.take(slot, fields.number(field), bounds.clone(), factor));
+            entries.iter().for_each(|&(slot, field)| self.take(slot, fields.number(field), bounds.clone(), factor));
         }
     }
 
