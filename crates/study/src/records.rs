@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use document::{Source, TrialParticularsEntry, Warning, WarningCode, Warnings};
+use document::{TrialParticularsEntry, Warning, WarningCode, WarningSource, Warnings};
 use estimation::statistics::upper_median;
 use report::number::fixed;
 use ship::angle::KNOT;

@@ -142,7 +142,7 @@ pub fn fit(
     warnings.extend(no_track(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
-    warnings.extend(answers.iter().flat_map(of_answer));
+    warnings.extend(answers.iter().flat_map(answer_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };

@@ -135,7 +135,11 @@ fn another_ship_is_a_conflict() {
     let run = desk.run(&[&fit[..], &["--length-m", "160.9", "--speed-kn", "15"]].concat());
     let warning = "--prior f/fit.json: the records contradict it";
     assert_eq!(run.is_done().err.matches(warning).count(), 1, "{}", run.err);
-    assert!(run.err.contains(" standard deviations") && run.err.contains("make sure that it is the same ship"), "{}", run.err);
+    assert!(
+        run.err.contains(" standard deviations") && run.err.contains("make sure that it is the same ship"),
+        "{}",
+        run.err
+    );
     assert_eq!(desk.json("g/fit.json")["earlier_trials"]["conflict"], true);
 }
 

@@ -138,7 +138,10 @@ fn a_loading_that_cannot_be_taken_is_refused() {
     let desk = with_trial();
     let refused = |words: &str, part: &str| desk.run(&self::words(words)).is_refused(2, &[part]);
     for (text, part) in [
-        ("[form]\ndraught-m = 6.6", "load.toml: this is not another loading of the ship of f/fit.json: all is within 2 %"),
+        (
+            "[form]\ndraught-m = 6.6",
+            "load.toml: this is not another loading of the ship of f/fit.json: all is within 2 %",
+        ),
         ("[form]\ndraught-m = 22", "load.toml: B/d (draught-m) is 1.091, expected 1.2 to 8"),
         (
             "[form]\ndraught-m = 3.5",

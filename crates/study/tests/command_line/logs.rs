@@ -57,11 +57,7 @@ fn a_log_is_inspected_before_anything_is_fitted() {
     desk.file("run.csv", zig_zag_csv().lines().map(row).collect::<String>());
     desk.run(&["fit", "run.csv"]).is_refused(2, &["sign looks flipped"]);
     let run = desk.run(&["inspect", "run.csv"]);
-    assert!(
-        run.is_done().err.contains("not usable as one record: the rudder sign looks flipped"),
-        "{}",
-        run.err
-    );
+    assert!(run.is_done().err.contains("not usable as one record: the rudder sign looks flipped"), "{}", run.err);
     let rudder = run.out.lines().find(|line| line.starts_with("rudder angle")).expect("a row");
     assert!(rudder.contains("Ruder (Grad)") && rudder.contains("  port"), "{rudder}");
     let table = desk.run(&["inspect", "run.csv", "--format", "csv", "--quiet"]);
