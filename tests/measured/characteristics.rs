@@ -76,5 +76,5 @@ fn check_peaks(file: &str, trial: &Trial, zigzag: &ZigZag) {
 #[test]
 fn a_turning_circle_is_refused() {
     let Some(trial) = measured("kvlcc2_marin/turning_35.csv") else { return };
-    assert_eq!(ZigZag::of(&trial), Err(ZigZagError::TooFewReversals { found: 0, needed: 2 }));
+    assert_eq!(ZigZag::of(&trial), Err(ZigZagError::TooFewReversals { reversals: 0, needed: 2 }));
 }

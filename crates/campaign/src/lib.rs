@@ -11,7 +11,7 @@
 //! | stored files | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | writing to disk | [`files`], [`folder`], [`disk`] |
 //! | summaries and their statistics | [`summary`], [`statistics`] |
-//! | plot data and document entries | [`curves`], [`stored_figures`], [`answer`] |
+//! | plot data and document entries | [`curves`], [`stored_figures`] |
 //! | the identified ship, for predictions | [`identified_ship`] |
 //! | comparison of methods on measured and simulated records | [`benchmark`] |
 
