@@ -10,7 +10,7 @@ const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
 
 fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
     let ship = ship::ships::find(ship).expect("it is in the registry");
-    zig_zag_with_speed(Vessel::ship(&ship), angle_deg, change_deg)
+    zig_zag_with_speed(Vessel::from_ship(&ship), angle_deg, change_deg)
 }
 
 /// A zig-zag of a hull without noise, with its speed; a row every 4 s.
