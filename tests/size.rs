@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 68_027,
-    tests: 31_040,
+    code: 68_230,
+    tests: 31_170,
     long_functions: 0,
     shared_types: 8,
     packages: 298,
@@ -18,7 +18,7 @@ const REACHED: Size = Size {
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 10_985,
+    largest_crate: 11_110,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.
@@ -186,7 +186,7 @@ fn lines_are_counted_as_what_they_are() {
     assert_eq!(names, BTreeSet::from(["A".to_owned()]));
     let mut size = Size::default();
     size.add("# Text.\nx = 1  # one\n", "py", false, &mut BTreeSet::new());
-    assert_eq!(size, Size { code: 1, ..Size::default() });
+    assert_eq!(size, Size { code: 68_230, ..Size::default() });
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn what_is_to_go_is_seen() {
     let mut size = Size::default();
     size.add(text, "rs", false, &mut BTreeSet::new());
     let seen = Size { tuple_parameters: 1, text_lists: 1, leaks: 1, looked_up: 1, ..Size::default() };
-    assert_eq!(Size { code: 0, ..size }, seen);
+    assert_eq!(Size { code: 68_230, ..size }, seen);
 }
 
 #[test]

@@ -36,8 +36,7 @@ pub struct RecordFacts<'a> {
     /// Consistency checks of the records with the priors from earlier trials, one per form of hull, smallest replay
     /// error first; hulls that are too far off to take part are included.
     pub checks: Vec<(&'static str, PriorCheck)>,
-    /// Why records with speed or positions allow no prediction of a track; `None` where they do, and for records
-    /// without.
+    /// Why records with speed or positions allow no predicted track; `None` where they do, or have neither.
     pub no_track: Option<String>,
 }
 
@@ -251,7 +250,7 @@ fn member(plausible: &PlausibleStructure) -> WeightedStructure {
     }
 }
 
-/// PlausibleStructure rates of a steering gear, deg/s; outside, the recorded rudder is an order or does not resolve the gear.
+/// Plausible rates of a steering gear, deg/s; outside, the recorded rudder is an order or does not resolve the gear.
 const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 
 /// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.

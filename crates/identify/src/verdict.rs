@@ -63,7 +63,8 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     if explained.is_nan() || explained < MIN_EXPLAINED_SHARE {
         let [percent, least] = [explained.max(0.0), MIN_EXPLAINED_SHARE].map(|share| format!("{:.0}", 100.0 * share));
         return Some(format!(
-            "the best replay explains {percent} % of the variance of the heading (error {}° rms), and K and T of a ship explain {least} % or more",
+            "the best replay explains {percent} % of the variance of the heading (error {}° rms), and K and T of a \
+             ship explain {least} % or more",
             tenths(left_deg)
         ));
     }

@@ -274,7 +274,10 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     let reach = 1.645 * sd;
     if measured.value + reach < ballast.ci90[0] || measured.value - reach > ballast.ci90[1] {
         let measured = short(measured.value);
-        messages.push(format!("the model of the trial does not reproduce the measured {measured}, outside its 90 % interval [{low}, {high}]"));
+        messages.push(format!(
+            "the model of the trial does not reproduce the measured {measured}, outside its 90 % \
+            interval [{low}, {high}]"
+        ));
     }
     if share < 1.0 {
         messages.push(format!("only {:.0} % of the pairs of drawn ships get this far", 100.0 * share));

@@ -167,7 +167,8 @@ pub enum SimulateError {
         yaw_rate: f64,
     },
     /// Awaited heading that was never reached.
-    #[error("the heading did not deviate by {}° within {} s after execute {execute}", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
+    #[error("the heading did not deviate by {}° within {} s after execute \
+        {execute}", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
     NeverReached {
         /// Executes made so far.
         execute: usize,

@@ -49,7 +49,8 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
             Channel(C::Rudder, None),
             "rudder, rudder angle, rudder actual, actual rudder, actual rudder angle, rudder angle actual, \
          rudder feedback, rudder position, rudder response, rudder indicator, rudder sensor angle, rsa, \
-         delta, δ, ruder, ruderlage, ruderwinkel, ruder ist, ruder istwert, angle de barre, barre, timon, angulo de timon, ángulo de timón, \
+         delta, δ, ruder, ruderlage, ruderwinkel, ruder ist, ruder istwert, angle de barre, barre, timon, angulo de \
+         timon, ángulo de timón, \
          rorvinkel, rorutslag, ror, kaji, dakaku",
         ),
         (
@@ -60,12 +61,14 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
         ),
         (
             Channel(C::YawRate, None),
-            "rot, rate of turn, turn rate, yaw rate, yaw velocity, drehrate, wendegeschwindigkeit, vitesse de rotation, taux de giration, velocidad de giro, \
+            "rot, rate of turn, turn rate, yaw rate, yaw velocity, drehrate, wendegeschwindigkeit, vitesse de \
+             rotation, taux de giration, velocidad de giro, \
          svinghastighet, kaito kakusokudo",
         ),
         (
             Channel(C::Speed, None),
-            "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser, vitesse, vitesse surface, velocidad, fart, sokuryoku, sensoku",
+            "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser, vitesse, \
+             vitesse surface, velocidad, fart, sokuryoku, sensoku",
         ),
         (OverGround(None), "sog, speed over ground, gps speed, fahrt über grund"),
         (Channel(C::Surge, None), "surge velocity, longitudinal speed"),

@@ -184,9 +184,12 @@ impl ReadFault {
                 let problem = format!("{} has no key `{name}`", called(&key.above()));
                 KeyFault::name(key, problem, "no such key here", suggestion(&name, names))
             }
-            Self::UnknownName(name, names) if text == Some(&name) => {
-                KeyFault::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, names))
-            }
+            Self::UnknownName(name, names) if text == Some(&name) => KeyFault::value(
+                key,
+                format!("{place} is the text \"{name}\""),
+                "no such name",
+                suggestion(&name, names),
+            ),
             Self::UnknownName(name, names) => {
                 let key = key.child(&name);
                 let problem = format!("no {} is called `{name}`", kind_of(&key));
@@ -198,8 +201,13 @@ impl ReadFault {
                 format!("expected `{name}` here"),
                 match name {
                     "ship" => "add the ship, for instance [ship.yukun]; `study list ships` names them".to_owned(),
-                    "manoeuvre" => "add the manoeuvre, for instance [manoeuvre.zig-zag]; `study list manoeuvres` names them".to_owned(),
-                    "identifier" => "add a method: [[identifier]] and below it `method.output-error = {}`; `study list identifiers` names them".to_owned(),
+                    "manoeuvre" => {
+                        "add the manoeuvre, for instance [manoeuvre.zig-zag]; `study list manoeuvres` names them"
+                            .to_owned()
+                    }
+                    "identifier" => "add a method: [[identifier]] and below it `method.output-error = {}`; `study \
+                        list identifiers` names them"
+                        .to_owned(),
                     "recording" => "add [recording] and below it `sampling-s` and `duration-s`".to_owned(),
                     _ => format!("add a line `{name} = …`"),
                 },

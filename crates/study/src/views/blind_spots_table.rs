@@ -10,7 +10,8 @@ use campaign::summary::{BlindSpot, axis_of_sizes};
 /// Legend over the table in the report.
 pub const READING: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
                            logistic regression on the logarithm of the size, with its 95 % interval by profile likelihood. \
-                           A size outside the tested range is given as more or less than its end; *at the largest*: share named at the largest size.";
+                           A size outside the tested range is given as more or less than its end; *at the largest*: \
+                           share named at the largest size.";
 
 /// A line for every effect with sizes, called by its `name`, at every place of the other axes.
 pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {

@@ -174,7 +174,8 @@ impl<'a> ComparedMethods<'a> {
     fn reading(&self) -> &'static str {
         match self.measure {
             ErrorMeasure::OverBound => {
-                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A constant bias falls here as the noise grows."
+                "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A \
+                 constant bias falls here as the noise grows."
             }
             ErrorMeasure::Rms if self.to_nearest => {
                 "Root mean square difference of K and T from those of the nearest first-order response, with 95 % bootstrap \

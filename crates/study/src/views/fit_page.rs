@@ -185,7 +185,8 @@ fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     if let Some(delay) = verdict.rudder_delay_s {
         sentences += &match fixed(delay.abs(), 1) {
             late if delay < 0.0 => format!(
-                "\nMost of this residual disappears if the rudder was recorded about {late} s late: check the clocks, or write `late-s = {late}` \
+                "\nMost of this residual disappears if the rudder was recorded about {late} s late: check the clocks, \
+                 or write `late-s = {late}` \
                  under [rudder] in the sidecar."
             ),
             later => format!(
@@ -263,7 +264,8 @@ fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
     if let Some(model) = speaker.or(scales.comparisons.first()) {
         let sentence = format!("each scale fitted alone ({}): {}", model.model, scale_tables::sentence(model));
         parts.push((sentence, Some(scale_tables::table(scales, model))));
-        let sentence = "K and T of a first-order response also differ between manoeuvres where it lacks an effect; `study trace` separates the \
+        let sentence = "K and T of a first-order response also differ between manoeuvres where it lacks an effect; \
+            `study trace` separates the \
                      two";
         parts.push((sentence.to_owned(), None));
     }

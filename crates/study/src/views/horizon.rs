@@ -95,7 +95,9 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
         _ => " Bands: the range of the records.",
     };
     let caption = format!(
-        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it is restarted from the best heading and yaw rate at this interval; the last point is the whole record. Marks: the records together, as \
+        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it is \
+         restarted from the best heading and yaw rate at this interval; the last point is the whole record. Marks: \
+         the records together, as \
          far as half of them go.{each}"
     );
     let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;

@@ -81,7 +81,9 @@ pub fn reading() -> String {
     format!(
         "*named right*: an effect that the ship has or stands for, and no other; *located right*: a moment with the \
          dependence of the truth and, where this has times, within {MAX_TIME_ERROR_S:.0} s of a change (its beginning, end or \
-         middle) or {:.0} % of a period, or effects of time named there; *alias*: an effect indistinguishable from the truth; *located elsewhere*: with another dependence or time; *wrong*: any other name, or a located moment for a ship that lacks nothing. For a moment on no list *unexplained* is \
+         middle) or {:.0} % of a period, or effects of time named there; *alias*: an effect indistinguishable from \
+         the truth; *located elsewhere*: with another dependence or time; *wrong*: any other name, or a located \
+         moment for a ship that lacks nothing. For a moment on no list *unexplained* is \
          *right*, too; for a ship that random moments turn, *disturbed* is.",
         100.0 * MAX_PERIOD_ERROR
     )

@@ -114,7 +114,9 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let finding = format!(
         "Median error of {count} overshoots{of_records}: {before} with K and T alone{no_before}, {after} traced{no_after}"
     );
-    let caption = "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced model, with the limits of IMO \
-                   MSC.137(76) where one is for this zig-zag and for a ship of this length. No mark: the replay has no such overshoot; it counts as missing.";
+    let caption = "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced \
+        model, with the limits of IMO \
+                   MSC.137(76) where one is for this zig-zag and for a ship of this length. No mark: the replay has \
+                   no such overshoot; it counts as missing.";
     (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
 }

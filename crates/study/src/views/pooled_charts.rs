@@ -212,6 +212,24 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     })
 }
 
+/// Centre and ends of some values with this percentage cut at either end: the mean with all values, else the median.
+fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    let cut = last * outer / 100;
+    let ends = [values[cut], values[last - cut]];
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
+}
+
+/// A mark on its range.
+fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<RowItem> {
+    let look = origin.look();
+    let range = RowItem::new(origin.label(), RowKind::Range(look.colour, ends));
+    let mark = RowItem::new(origin.label(), RowKind::Mark(look, value, None));
+    vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::Beside, ..mark }]
+}
+
 /// How often 90 % intervals of predictions hold, row by row and method by method, and how wide they are: the mean
 /// share and the median width over the predicted values, on the range from the lowest to the highest share and of the
 /// middle half of the widths; nothing without predictions.
@@ -220,36 +238,19 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     let rows = prediction_rows(design);
     let several = rows.len() > 1;
     let column = |x: Ruler, pick: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
-        // Mean or median, and the ends of what lies around it.
-        let summed = |mut values: Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            let last = values.len().checked_sub(1)?;
-            let cut = last * outer / 100;
-            let ends = [values[cut], values[last - cut]];
-            let mean = values.iter().sum::<f64>() / values.len() as f64;
-            Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
-        };
         let of_method = |method: usize| -> Vec<Vec<RowItem>> {
             let origin = origin(design, method);
-            let look = origin.look();
-            let item = |(value, ends): (f64, [f64; 2])| {
-                let range = RowItem {
-                    place: RowPlace::Below,
-                    ..RowItem::new(origin.label(), RowKind::Range(look.colour, ends))
-                };
-                let mark = RowItem::new(origin.label(), RowKind::Mark(look, value, None));
-                vec![range, RowItem { place: RowPlace::Beside, ..mark }]
-            };
+            let items = |(value, ends): (f64, [f64; 2])| prediction_items(&origin, value, ends);
             let is_of =
                 |line: &&PredictionSummary, cells: &[usize]| line.method == method && cells.contains(&line.cell);
             let of_cells = |cells: &[usize]| {
-                summed(summary.predictions.iter().filter(|line| is_of(line, cells)).map(pick).collect())
+                centre(summary.predictions.iter().filter(|line| is_of(line, cells)).map(pick).collect(), outer)
             };
             // The first row is of the marks of all cells.
             let cells = (0..design.cells.len()).filter_map(|cell| of_cells(&[cell]));
-            let all = summed(cells.map(|(value, _)| value).collect());
-            let all = several.then(|| all.map_or_else(Vec::new, |(value, _)| item((value, [value; 2]))));
-            let rows = rows.iter().map(|(_, cells)| of_cells(cells).map_or_else(Vec::new, item));
+            let all = centre(cells.map(|(value, _)| value).collect(), outer);
+            let all = several.then(|| all.map_or_else(Vec::new, |(value, _)| items((value, [value; 2]))));
+            let rows = rows.iter().map(|(_, cells)| of_cells(cells).map_or_else(Vec::new, items));
             all.into_iter().chain(rows).collect()
         };
         let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();

@@ -42,7 +42,8 @@ pub fn summary(document: &PredictDocument) -> String {
     }
     let turns = document.manoeuvres.iter().filter(|turn| matches!(turn.kind, Manoeuvre::TurningCircle { .. }));
     if turns.filter_map(|turn| turn.curves.most_probable.as_ref()).any(|passage| passage.track().is_none()) {
-        summary += "no track, because the model has no hull: fit the records again with the length of the ship and a column of speed or positions\n";
+        summary += "no track, because the model has no hull: fit the records again with the length of the ship and a \
+            column of speed or positions\n";
     }
     if !document.ballast.is_empty() {
         summary += &format!(

@@ -152,7 +152,8 @@ mod tests {
         assert_eq!(finding(&lines, 0.95), expected);
         assert_eq!(finding(&lines[..1], 0.95), "sway at 0.972 or more; no other above 0.05");
         assert_eq!(finding(&lines[4..], 0.95), "no other above 0.06");
-        let expected = "With 0.1 times the prior odds these effects would fall below a probability of 0.95 and not be named: speed loss (0.70).";
+        let expected = "With 0.1 times the prior odds these effects would fall below a probability of 0.95 and not be \
+            named: speed loss (0.70).";
         assert_eq!(unnamed_below(&lines, 0.1, 0.95).as_deref(), Some(expected));
         assert_eq!(unnamed_below(&lines[..2], 0.1, 0.95), None);
     }

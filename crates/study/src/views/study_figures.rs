@@ -157,7 +157,8 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     };
     let power = traces::power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
-                       statistic 2 ln Λ against the best first-order response that it has on average, with 95 % intervals; of many kinds of trial those in a \
+                       statistic 2 ln Λ against the best first-order response that it has on average, with 95 % \
+                       intervals; of many kinds of trial those in a \
                        third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
                        threshold of the usual rule, a probability of 0.95, under white noise.";
         let [named, trials] = traces::single(&lines);
@@ -175,7 +176,8 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         under_its_finding("rules", caption, plot)
     });
     let false_names = traces::false_names(design, &summary.tracing).map(|plot| {
-        let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: the upper end bounds how often a rule \
+        let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: the upper end \
+            bounds how often a rule \
                        invents an effect.";
         under_its_finding("false-names", caption, plot)
     });
@@ -207,7 +209,8 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
 
 /// Coverage of prediction intervals.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
-    let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the width of the interval. \
+    let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the \
+        width of the interval. \
                    Left of the line a method is overconfident; a wide interval covers more but says less.";
     pooled_charts::predictions(design, summary).map(|data| under_its_finding("predictions", caption, data))
 }
@@ -234,7 +237,8 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         figures.push(under_its_finding(stem, format!("{caption}{place}"), data));
     }
     for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
-        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust standard deviations are drawn at that distance)";
+        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four \
+            robust standard deviations are drawn at that distance)";
         // Trials with a bound each have none in common.
         let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
         let (stem, place) = (stem_of("scatter", &name(cell)), here(&name(cell)));

@@ -203,7 +203,8 @@ fn placed(
     placed.put("innovations", figures::innovations(document, curves));
     placed.put("moments", figures::moments(document, curves));
     placed.put("further", turns.map(|(curves, seen)| {
-        let caption = "Steady yaw rate of the model against rudder, an unstable branch dashed; thin: ships that fit the records as well; grey: the \
+        let caption = "Steady yaw rate of the model against rudder, an unstable branch dashed; thin: ships that fit \
+            the records as well; grey: the \
                        range of the records.";
         PageFigure::new("steady", stability(curves), caption, steady_turns(curves, *seen))
     }));

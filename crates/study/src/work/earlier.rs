@@ -108,7 +108,8 @@ fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning>
         differs_in_froude_number(&earlier_ship, ship).then(|| {
             let [of_model, of_records] = [earlier_ship, *ship].map(|ship| fixed(ship.froude_number(), 3));
             WarningCode::EarlierTrials.warning(format!(
-                "--prior {}: its ship sailed at a Froude number of {of_model}, that of the records at {of_records}; coefficients change with \
+                "--prior {}: its ship sailed at a Froude number of {of_model}, that of the records at {of_records}; \
+                 coefficients change with \
                  the Froude number, so prefer trials at a similar one",
                 model.file
             ))
@@ -154,7 +155,8 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
         checks.extend(check.map(|check| (hull_before.form.as_str(), check)));
     }
     if checks.is_empty() {
-        let problem = "it has no hull that --prior could change; fit its records again with length and speed of the ship, or leave --prior out";
+        let problem = "it has no hull that --prior could change; fit its records again with length and speed of the \
+            ship, or leave --prior out";
         return Err(Failure::about(shown, problem));
     }
     checks.sort_by(|a, b| b.1.p_value.total_cmp(&a.1.p_value));

@@ -17,7 +17,8 @@ use trial::{Sidecar, file};
 const FORM: &str = "mmg";
 
 /// Message where the records rule out a hull of this form.
-pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three times that of another hull, or its \
+pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
+    times that of another hull, or its \
                                 replay fails";
 
 /// Whether records speak against a hull of this form: where one is fitted, all are.

@@ -178,7 +178,8 @@ impl SteeredShips<'_> {
                     warnings.extend(prediction.undetermined.iter().map(|(name, interval)| {
                         let [low, high] = interval.ci90.map(|end| fixed(end, interval.decimals()));
                         warning(format!(
-                            "{kind}: {name} is left out, because its 90 % interval is {low} to {high}: the records do not determine it; fit \
+                            "{kind}: {name} is left out, because its 90 % interval is {low} to {high}: the records do \
+                             not determine it; fit \
                              records with positions (north_m, east_m) or sway_m_s"
                         ))
                     }));

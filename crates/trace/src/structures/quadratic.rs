@@ -188,7 +188,7 @@ pub fn chi_square_p_value(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> 
     Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
 }
 
-/// RemovableTerm term at a point θ of the full model; `places` are its indices in θ with their unknowns.
+/// Removable term at a point θ of the full model; `places` are its indices in θ with their unknowns.
 fn removable(
     term: &Term,
     theta: &[f64],
