@@ -23,7 +23,7 @@ const FLOORS: [&str; 13] = [
     "python",
 ];
 
-/// Longest file, lines, unless its first line says why.
+/// Maximum file, lines, unless its first line says why.
 const LONGEST_FILE: usize = 450;
 
 /// Words in the first line of a longer file.

@@ -37,7 +37,7 @@ fn name(effect: &Arc<dyn Effect>) -> String {
     format!("{} ({})", effect.id(), effect.form())
 }
 
-/// Largest distance of two headings, deg.
+/// Maximum distance of two headings, deg.
 fn apart_deg(left: &[f64], right: &[f64]) -> f64 {
     assert_eq!(left.len(), right.len());
     left.iter().zip(right).map(|(left, right)| to_deg((left - right).abs())).fold(0.0, f64::max)

@@ -37,7 +37,7 @@ fn identify(method: &dyn Identifier, trials: &[Trial]) -> Estimate {
     method.identify(trials).unwrap_or_else(|error| panic!("{}: {error}", method.id()))
 }
 
-/// Largest errors that a method itself makes in zig-zags read every second without noise, from every row and with every
+/// Maximum errors that a method itself makes in zig-zags read every second without noise, from every row and with every
 /// seventh row and fifteen in a piece lost: of K and T as shares, of δ_r in deg. A method that has no line here takes
 /// the corners of the rudder from where the record has them and makes none.
 fn allowed(id: &str) -> [[f64; 3]; 2] {
@@ -61,7 +61,7 @@ fn allowed(id: &str) -> [[f64; 3]; 2] {
     }
 }
 
-/// Whether K, T and δ_r of `found` are those of the truth within what the method promises.
+/// `true` if K, T and δ_r of `found` are those of the truth within what the method promises.
 fn check_accuracy(id: &str, allowed: [f64; 3], found: &FirstOrder, when: &str) {
     let [k_error, t_error] = [found.K() / truth().K() - 1.0, found.T() / truth().T() - 1.0];
     let bias_error = to_deg(found.rudder_bias - truth().rudder_bias);
@@ -71,7 +71,7 @@ fn check_accuracy(id: &str, allowed: [f64; 3], found: &FirstOrder, when: &str) {
     assert!(bias_error.abs() <= allowed[2], "{why} δ_r off by {bias_error:+.5} deg");
 }
 
-/// Whether two responses are the same within a share of K and T, and of a degree of δ_r.
+/// `true` if two responses are the same within a share of K and T, and of a degree of δ_r.
 fn assert_same(id: &str, left: &FirstOrder, right: &FirstOrder, share: f64) {
     assert!((left.K() / right.K() - 1.0).abs() <= share, "{id}: K {} and {}", left.K(), right.K());
     assert!((left.T() / right.T() - 1.0).abs() <= share, "{id}: T {} and {}", left.T(), right.T());
@@ -196,7 +196,7 @@ fn a_ship_that_is_not_steered_is_refused() {
     }
 }
 
-/// Whether a method gave ships of different T the same one, which is where its search ends, and does not say so; or
+/// `true` if a method gave ships of different T the same one, which is where its search ends, and does not say so; or
 /// says so without a word to the reader.
 fn ends_in_silence(answers: &[Estimate]) -> bool {
     let said = |found: &Estimate| found.stop == StopReason::RangeLimit;

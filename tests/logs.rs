@@ -125,7 +125,7 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     Ok(([own.k_per_s, own.t_s], words))
 }
 
-/// Whether a quantity is farther from the truth than 3 % and three standard deviations.
+/// `true` if a quantity is farther from the truth than 3 % and three standard deviations.
 fn is_wrong(found: &Quantity, truth: f64) -> bool {
     let error = (found.value - truth).abs();
     error > 0.03 * truth && found.sd.is_none_or(|sd| error > 3.0 * sd)

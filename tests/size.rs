@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::architecture::{ending, files, read, root};
 
-/// Longest function, lines.
+/// Maximum function, lines.
 const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
@@ -63,7 +63,7 @@ struct OpenFunction {
     head: String,
 }
 
-/// Whether a file below the root holds tests alone.
+/// `true` if a file below the root holds tests alone.
 fn is_of_tests(file: &str) -> bool {
     let product = file.strip_prefix("tests/src/").and_then(|inside| inside.split_once('/'));
     let is_test = file.starts_with("tests/")
@@ -86,7 +86,7 @@ fn declared_type(line: &str) -> Option<&str> {
     rest.split(|c: char| !c.is_alphanumeric() && c != '_').next()
 }
 
-/// Whether a line begins a function.
+/// `true` if a line begins a function.
 fn begins_function(line: &str) -> bool {
     let before = line.split_once("fn ").map(|(before, _)| before.trim());
     before.is_some_and(|before| before.split(' ').all(|word| ["", "const"].contains(&word) || word.starts_with("pub")))

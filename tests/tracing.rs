@@ -1,5 +1,5 @@
 //! Tracing, with the simulator in the loop: every effect that is put into a ship and not declared is named from the CSV
-//! alone, and nothing is named where there is none. How often is a matter of `scenarios/undeclared.toml`; here single
+//! alone, and nothing is named if there is none. How often is a matter of `scenarios/undeclared.toml`; here single
 //! trials are held to it.
 
 use std::io::Write as _;
@@ -58,7 +58,7 @@ fn names(analysis: &Analysis) -> Vec<&str> {
     analysis.document.effects.iter().map(|effect| effect.id.as_str()).collect()
 }
 
-/// Whether an effect is named, itself or in a group.
+/// `true` if an effect is named, itself or in a group.
 fn is_named(analysis: &Analysis, id: &str) -> bool {
     let holds = |effect: &EffectEntry| effect.id == id || effect.aliases.iter().any(|alias| alias == id);
     analysis.document.effects.iter().any(holds)

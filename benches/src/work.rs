@@ -23,7 +23,7 @@ pub struct Work {
     pub cores: Cores,
     /// Units of work in one go, so that a time can be quoted per unit.
     pub units: f64,
-    /// Whether one go takes so long that few of them have to do.
+    /// `true` if one go takes so long that few of them have to do.
     pub is_slow: bool,
     /// Share by which the answer may differ from the ship, for work that has an answer.
     pub tolerance: Option<f64>,
@@ -94,9 +94,9 @@ fn one_core() -> &'static ThreadPool {
 /// What is to be reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// Largest time, relative to that of the reference.
+    /// Maximum time, relative to that of the reference.
     Ratio(f64),
-    /// Smallest throughput of all cores, relative to the number of cores times that of a single core, the reference.
+    /// Minimum throughput of all cores, relative to the number of cores times that of a single core, the reference.
     Scaling(f64),
 }
 

@@ -31,7 +31,7 @@ pub struct Number {
     /// What is made of several rows.
     #[serde(default)]
     take: Take,
-    /// The column that says how much a row counts: each the same where there is none.
+    /// The column that says how much a row counts: each the same if there is none.
     weight: Option<String>,
     /// What the stored figure is multiplied with: −1 for what is "too low".
     #[serde(default = "one")]

@@ -14,7 +14,7 @@ fn digits(written: &str) -> usize {
     written.split_once('.').map_or(0, |(_, digits)| digits.len())
 }
 
-/// Whether a number that is written is the stored one, rounded.
+/// `true` if a number that is written is the stored one, rounded.
 pub fn is_rounded(written: &str, stored: f64) -> bool {
     let Some(value) = parsed(written) else { return false };
     // Half of the last digit, and a hair for what stands exactly between two.

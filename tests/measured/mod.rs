@@ -58,7 +58,7 @@ fn response(time: &[f64], input: &[f64], a: f64) -> Vec<f64> {
 }
 
 /// Least heading rms, deg, of all first-order responses with this 1/T: linear least squares on the initial state, K/T
-/// and K δ_r/T. A negative 1/T is a positive one in reversed time. `None` where the rudder would turn the ship the
+/// and K δ_r/T. A negative 1/T is a positive one in reversed time. `None` if the rudder would turn the ship the
 /// wrong way.
 fn least_rms_deg(trial: &Trial, inverse_time: f64) -> Option<f64> {
     let rows = trial.len();

@@ -13,7 +13,7 @@ fn measured_sidecar(stem: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured").join(format!("{stem}.trial.toml"))
 }
 
-/// Largest difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were
+/// Maximum difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were
 /// compared.
 fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> (f64, usize) {
     let (mut largest, mut compared) = (0.0_f64, 0);
@@ -33,8 +33,8 @@ fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> 
     (largest, compared)
 }
 
-/// Whether the reader says of a record what is to be said: two antennas, as on the Esso Osaka, sometimes give the same
-/// heading ten times and then another one, or jump; and there the order of the rudder was recorded for its angle.
+/// `true` if the reader says of a record what is to be said: two antennas, as on the Esso Osaka, sometimes give the
+/// same heading ten times and then another one, or jump; and there the order of the rudder was recorded for its angle.
 fn are_expected(warnings: &[Warning], of_antennas: bool) -> bool {
     let of_esso = ["the heading is frozen", "the heading jumps", "the rudder jumps within a row"];
     warnings.iter().all(|warning| of_antennas && of_esso.iter().any(|begin| warning.text.starts_with(begin)))

@@ -28,7 +28,7 @@ fn indices(theta: &[f64]) -> [f64; 2] {
 }
 
 /// SRIVC of K/(s (1 + T s)) from heading and rudder, `period` s apart: order one and one integrator, rudder linear
-/// between samples; the search starts from `bandwidth`, rad/s. `None` when it gives no answer.
+/// between samples; the search starts from `bandwidth`, rad/s. `None` if it gives no answer.
 pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f64) -> Option<[f64; 2]> {
     let prefilter = Prefilter::new(1, CUTOFF).ok()?;
     let start = Initialization::StateVariableFilter(bandwidth);

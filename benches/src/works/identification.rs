@@ -15,7 +15,7 @@ const RIVAL: &str = "dsmc SRIVC, heading";
 const TRIPLES: usize = 200;
 const MANY_TRIPLES: &str = "fourier-published, 200 triples";
 
-/// Largest accepted relative error of K and T. The published Fourier method is 14 to 20 % low in T even without noise.
+/// Maximum accepted relative error of K and T. The published Fourier method is 14 to 20 % low in T even without noise.
 fn tolerance(method: &str) -> f64 {
     match method {
         "fourier-published" => 0.6,
@@ -24,7 +24,7 @@ fn tolerance(method: &str) -> f64 {
     }
 }
 
-/// Largest time, relative to that of the rival.
+/// Maximum time, relative to that of the rival.
 fn reach(method: &str) -> Option<Reach> {
     let share = match method {
         "output-error" => 0.5,

@@ -20,7 +20,7 @@ const HSVA: [&str; 8] = [
     "zigzag_05_01",
 ];
 
-/// Largest time for all eight records, each left out in turn, relative to that of a single record.
+/// Maximum time for all eight records, each left out in turn, relative to that of a single record.
 const MAX_TIME_OF_EIGHT: f64 = 13.0;
 
 /// How many of them are fitted together while the others are held out.

@@ -72,10 +72,10 @@ const TABLE: Kind = Kind { name: "a table of answers", max_bytes: 1 << 30 };
 const COLUMNS: &str =
     "method record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
-/// Largest number of columns that a message names.
+/// Maximum number of columns that a message names.
 const MAX_NAMED_COLUMNS: usize = 20;
 
-/// Largest number of faulty lines that a message names.
+/// Maximum number of faulty lines that a message names.
 const MAX_NAMED_LINES: usize = 10;
 
 /// Answers from a table, by method in the order of first lines; `None` is the method of a table without that column.
@@ -84,7 +84,7 @@ const MAX_NAMED_LINES: usize = 10;
 /// estimates are `K_per_s` and `T_s`; optional are `delta_r_deg`, the standard deviations `K_sd_per_s`, `T_sd_s` and
 /// `delta_r_sd_deg`, and `failed`, the reason for a missing answer. Warns of unanswered trials and unused columns.
 ///
-/// Fails when a column is missing; one message lists the lines that match no trial or hold no numbers.
+/// Fails if a column is missing; one message lists the lines that match no trial or hold no numbers.
 pub fn read(
     path: &Path,
     scenario: &Scenario,
@@ -231,7 +231,7 @@ impl AnswerColumns {
         Ok(Self { places, ignored })
     }
 
-    /// Text of a row in a column; `None` where it is empty.
+    /// Text of a row in a column; `None` if it is empty.
     fn text<'a>(&self, row: &'a StringRecord, name: &str) -> Option<&'a str> {
         row.get(*self.places.get(name)?).filter(|text| !text.is_empty())
     }

@@ -20,7 +20,7 @@ use crate::observer::Observer;
 use crate::rows::{BlockLabel, Damage, RowLayout, StudyRow, decode, encode};
 use crate::timings::Timings;
 
-/// Largest file of a block, bytes.
+/// Maximum size of a file of a block, bytes.
 const MAX_BLOCK_BYTES: u64 = 1 << 30;
 
 /// The blocks of one study in a folder.
@@ -59,7 +59,7 @@ impl<'a> BlockStore<'a> {
     /// Rows of a block, of complete trials from its first on; empty without a file. The inner error describes a damaged
     /// file.
     ///
-    /// Fails when the file cannot be read, and when it is a block of another study, seed or program.
+    /// Fails if the file cannot be read, and when it is a block of another study, seed or program.
     pub fn read(&self, block: Block) -> Result<Result<Vec<StudyRow>, String>, Failure> {
         let path = self.path(block);
         let Some(bytes) = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)? else { return Ok(Ok(Vec::new())) };
@@ -96,7 +96,7 @@ impl<'a> BlockStore<'a> {
     /// Number of stored trials of each requested block. Warns of a damaged block and counts it as missing; `becomes`
     /// says what happens to its trials.
     ///
-    /// Fails when a file cannot be read, and when one is a block of another study, seed or program.
+    /// Fails if a file cannot be read, and when one is a block of another study, seed or program.
     pub fn survey(
         &self,
         is_asked: impl Fn(Block) -> bool + Sync,
@@ -124,7 +124,7 @@ impl<'a> BlockStore<'a> {
         results.subfolder(ROWS)?.write(&rows_name(block), bytes)
     }
 
-    /// Timings of a block; empty where they are missing or damaged. Fails when the file cannot be read.
+    /// Timings of a block; empty if they are missing or damaged. Fails if the file cannot be read.
     pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
         let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
         let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
@@ -140,7 +140,7 @@ impl<'a> BlockStore<'a> {
         })
     }
 
-    /// Passes every row of the design to `take`, in order. Fails when a block is missing, incomplete or damaged.
+    /// Passes every row of the design to `take`, in order. Fails if a block is missing, incomplete or damaged.
     pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         let blocks: Vec<(Block, u64)> = self.of_design().collect();
         let whole = |&(block, trials): &(Block, u64)| {

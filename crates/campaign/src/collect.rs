@@ -32,12 +32,12 @@ use crate::writer::BlockWriter;
 /// Target duration of a batch: long against the wait for its last trial, short against a second.
 const BATCH_TIME: Duration = Duration::from_millis(250);
 
-/// Largest number of trials in a batch, all of which are held in memory.
+/// Maximum number of trials in a batch, all of which are held in memory.
 const MAX_BATCH: usize = 2048;
 
 /// Runs a scenario into a folder, except for trials that are stored there; returns the stored study.
 ///
-/// Fails when the folder holds another study, when stored rows come from another version of the program and some are
+/// Fails if the folder holds another study, when stored rows come from another version of the program and some are
 /// missing, and on interruption; stored rows are kept.
 pub fn collect(
     scenario: &Scenario,
@@ -71,7 +71,7 @@ pub fn collect_shard(
 
 /// Completes a study whose blocks are all in a folder, wherever they were computed; a finished study is read.
 ///
-/// Fails where blocks are missing; the message names the first.
+/// Fails if blocks are missing; the message names the first.
 pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
     let manifest = store::expected_in(folder.path())?;
     if manifest.is_finished() {
@@ -275,7 +275,7 @@ fn run_all(
     })
 }
 
-/// Longest wait for running trials after a request to stop.
+/// Maximum wait for running trials after a request to stop.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Interval at which a request to stop is polled.

@@ -13,7 +13,7 @@ use crate::scenario::MethodName;
 use crate::stored_figures::ReplayCurves;
 
 /// Plot origin of a method: the method itself where its label is its id, otherwise a numbered variant.
-pub fn origin(names: &[MethodName], label: &str) -> CurveOrigin {
+pub fn curve_origin(names: &[MethodName], label: &str) -> CurveOrigin {
     match names.iter().find(|name| name.label == label) {
         Some(method) if method.id != label => {
             let mut variants = names.iter().filter(|name| name.id == method.id && name.label != name.id);
@@ -49,7 +49,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     };
     let check_yaw = |peak: &Overshoot| from(zigzag.executes.get(peak.execute), Some(peak.time_to_check_yaw));
     // The cycle from the second execute on contains the starting transient: drawn only if there is no later one.
-    let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
+    let settled = if zigzag.lacks_first_execute() { 0 } else { 2 };
     let cycle_start = match zigzag.executes.len() > settled + 2 {
         true => zigzag.executes.get(settled),
         false => zigzag.executes.get(1),

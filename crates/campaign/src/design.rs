@@ -18,7 +18,7 @@ pub struct Design {
     pub methods: Vec<MethodName>,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
-    /// Whether manoeuvres are predicted from every answer.
+    /// `true` if manoeuvres are predicted from every answer.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub predicts: bool,
     /// The cells, in their order.
@@ -43,11 +43,11 @@ pub struct CellFacts {
     /// The physics that the first-order base lacks, in a study whose ships state it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub physics: Option<MissingPhysics>,
-    /// Whether the ship has a K and T of its own beside those of the first-order response nearest to it: a response
+    /// `true` if the ship has a K and T of its own beside those of the first-order response nearest to it: a response
     /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub has_own_indices: bool,
-    /// Whether K and T are compared with those of the first-order response nearest to a ship that is not first order.
+    /// `true` if K and T are compared with those of the first-order response nearest to a ship that is not first order.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_nearest: bool,
     /// L/V, s, on which IMO limits depend; where manoeuvres are predicted and neither length nor speed is drawn.
@@ -56,8 +56,8 @@ pub struct CellFacts {
     /// Fitted records and validation record of each trial, in a study of measured records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<JudgedRecord>,
-    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
-    /// bound of its own, and where there is none.
+    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` if every trial has a
+    /// bound of its own, and if there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
 }
 
@@ -67,7 +67,7 @@ pub struct CellFacts {
 pub struct JudgedRecord {
     /// Names of the records that were fitted together, joined by commas.
     pub fitted: String,
-    /// Name of the validation record; none where there is none.
+    /// Name of the validation record; none if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judge: Option<String>,
 }
@@ -118,7 +118,7 @@ impl Design {
 
     /// Design from the text of a `cells.json`.
     ///
-    /// Fails when the text is no design or is inconsistent; the message says where.
+    /// Fails if the text is no design or is inconsistent; the message says where.
     pub fn of_text(text: &[u8]) -> Result<Self, String> {
         let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         design.check().map(|()| design)
@@ -150,7 +150,7 @@ impl Design {
         Ok(())
     }
 
-    /// Whether the trials are measured records.
+    /// `true` if the trials are measured records.
     pub fn is_measured(&self) -> bool {
         self.cells.iter().any(|cell| !cell.records.is_empty())
     }

@@ -36,7 +36,7 @@ impl File {
         Self::of(path, || regular(path).and_then(|_| fs::File::open(path)))
     }
 
-    /// Creates a new file; links are not followed. Fails where the name is taken.
+    /// Creates a new file; links are not followed. Fails if the name is taken.
     pub fn create_new(path: &Path) -> io::Result<Self> {
         Self::of(path, || fs::File::create_new(path))
     }
@@ -80,7 +80,7 @@ fn if_present<T>(result: io::Result<T>) -> io::Result<Option<T>> {
     }
 }
 
-/// `true` if anything has this path, a dangling link included. Unlike `Path::exists`, fails where that cannot be
+/// `true` if anything has this path, a dangling link included. Unlike `Path::exists`, fails if that cannot be
 /// determined.
 pub fn is_there(path: &Path) -> io::Result<bool> {
     at(path, || Ok(if_present(fs::symlink_metadata(path))?.is_some()))
@@ -91,7 +91,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
     Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
 
-/// Reads a file of at most `largest` bytes; `None` when there is none.
+/// Reads a file of at most `largest` bytes; `None` if there is none.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
     let Some(mut file) = if_present(File::open(path))? else { return Ok(None) };
@@ -131,7 +131,7 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Time since a file was last written; `None` where the system does not provide it.
+/// Time since a file was last written; `None` if the system does not provide it.
 pub fn age(path: &Path) -> Option<Duration> {
     fs::metadata(path).ok()?.modified().ok()?.elapsed().ok()
 }

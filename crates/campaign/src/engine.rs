@@ -65,7 +65,7 @@ pub struct Truths {
     pub base: Option<FirstOrder>,
 }
 
-/// True responses of one trial. Fails when its drawn values define no ship.
+/// True responses of one trial. Fails if its drawn values define no ship.
 pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     let key = key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
@@ -79,11 +79,11 @@ pub struct TrialRunner<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
     references: Vec<OnceLock<TrialReference>>,
-    /// Prepared simulations of cells whose trials differ by noise alone; empty where preparation does not pay.
+    /// Prepared simulations of cells whose trials differ by noise alone; empty if preparation does not pay.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
-/// Largest number of cells with prepared simulations: with more, each cell has few trials, and a record of 1000 rows
+/// Maximum number of cells with prepared simulations: with more, each cell has few trials, and a record of 1000 rows
 /// takes 0.1 MB.
 const MAX_PREPARED_CELLS: usize = 64;
 
@@ -333,7 +333,7 @@ pub(crate) fn failure(error: &TraceError) -> &'static str {
     }
 }
 
-/// Smallest probability that is stored.
+/// Minimum probability that is stored.
 const MIN_PROBABILITY: f64 = 0.005;
 
 /// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
@@ -366,8 +366,8 @@ fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
     }
 }
 
-/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` where the bound varies between trials,
-/// and where there is none.
+/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` if the bound varies between trials,
+/// and if there is none.
 pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
     let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).bound;
     scenario.cells[cell].is_fixed().then(bound).flatten().map(|(_, percent2)| percent2)

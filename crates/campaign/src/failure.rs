@@ -115,7 +115,7 @@ impl Failure {
     }
 }
 
-/// Largest length of a sentence in a message, characters; it may quote a key of any length.
+/// Maximum length of a sentence in a message, characters; it may quote a key of any length.
 const MAX_SENTENCE_CHARACTERS: usize = 1000;
 
 /// A sentence, with `…` for its middle where it is too long.

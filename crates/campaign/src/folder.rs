@@ -26,7 +26,7 @@ pub struct ResultFolder {
 impl ResultFolder {
     /// Result folder at a path, created if it is missing.
     ///
-    /// Fails when it cannot be created.
+    /// Fails if it cannot be created.
     pub fn make(path: &Path) -> Result<Self, Failure> {
         disk::create_folder(path).map_err(|error| {
             Failure::work(format!("failed to make the folder {}: {error}; give another one with --out", path.display()))
@@ -36,7 +36,7 @@ impl ResultFolder {
 
     /// Subfolder, created if it is missing.
     ///
-    /// Fails where the name is that of a link, whose target does not belong to the study.
+    /// Fails if the name is that of a link, whose target does not belong to the study.
     pub fn subfolder(&self, name: &str) -> Result<Self, Failure> {
         let path = self.place(name)?;
         if disk::is_link(&path).on("look for", &path)? {

@@ -36,7 +36,7 @@ pub struct RecordFacts<'a> {
     /// Consistency checks of the records with the priors from earlier trials, one per form of hull, smallest replay
     /// error first; hulls that are too far off to take part are included.
     pub checks: Vec<(&'static str, PriorCheck)>,
-    /// Why records with speed or positions allow no predicted track; `None` where they do, or have neither.
+    /// Why records with speed or positions allow no predicted track; `None` if they do, or have neither.
     pub no_track: Option<String>,
 }
 
@@ -164,7 +164,7 @@ impl<'a> RecordFacts<'a> {
     }
 }
 
-/// Largest absolute value.
+/// Maximum absolute value.
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
@@ -224,7 +224,7 @@ fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedS
     ship
 }
 
-/// Root mean square standard deviation of the heading readings, rad, independent of a model; `None` where a record does
+/// Root mean square standard deviation of the heading readings, rad, independent of a model; `None` if a record does
 /// not show it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
@@ -256,13 +256,13 @@ const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 /// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.
 const BETWEEN_ROWS: f64 = 0.29;
 
-/// Smallest ratio of neighbouring steps to a step at full rate.
+/// Minimum ratio of neighbouring steps to a step at full rate.
 const FULL: f64 = 0.7;
 
-/// Smallest number of full-rate steps from which the rate is estimated.
+/// Minimum number of full-rate steps from which the rate is estimated.
 const MIN_STEPS: usize = 4;
 
-/// Rate of the steering gear from the reversals of zig-zags; `None` where no record resolves them.
+/// Rate of the steering gear from the reversals of zig-zags; `None` if no record resolves them.
 ///
 /// The rate is the mean over steps inside movements, with the standard error of that mean. Where movements are about as
 /// long as a sampling interval, the error is that of a duration whose ends lie between two rows.

@@ -29,7 +29,7 @@ pub struct Manifest {
     pub version: String,
     /// The last git revision in which the program's source changed, where it was built in a repository.
     pub git_revision: Option<String>,
-    /// Whether that source had been changed since.
+    /// `true` if that source had been changed since.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub git_dirty: bool,
     /// The machine. No row depends on it.
@@ -66,7 +66,7 @@ pub fn version() -> String {
     format!("{number} (revision {}{changed})", &revision[..10])
 }
 
-/// Largest manifest, bytes: a scenario and a few lines.
+/// Maximum size of a manifest, bytes: a scenario and a few lines.
 const MAX_MANIFEST_BYTES: u64 = 1 << 22;
 
 /// First line of the file.

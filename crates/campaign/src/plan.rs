@@ -44,7 +44,7 @@ pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
     cells.start * of_cell..cells.end * of_cell
 }
 
-/// Largest number of trials in a range of blocks.
+/// Maximum number of trials in a range of blocks.
 pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     let of_cell = Block::of_cell(scenario.replicates);
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
@@ -80,7 +80,7 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// The next trial without issuing it; `None` when the shard is done.
+    /// The next trial without issuing it; `None` if the shard is done.
     pub fn peek(&mut self) -> Result<Option<Task>, Failure> {
         let is_left = !self.open.is_empty() || self.begin()?;
         Ok(is_left.then_some(Task { cell: self.cell, replicate: self.open.start }))

@@ -13,7 +13,7 @@ use crate::scenario::Predictions;
 /// True manoeuvres of the ship of a trial, with the facts of its records.
 pub struct PredictionCheck<'a> {
     asked: &'a Predictions,
-    /// True figures by name, per manoeuvre; `None` where the ship does not complete it.
+    /// True figures by name, per manoeuvre; `None` if the ship does not complete it.
     true_manoeuvres: Vec<Option<figures::Figures>>,
     facts: RecordFacts<'a>,
 }
@@ -41,7 +41,7 @@ impl<'a> PredictionCheck<'a> {
                 ..simulation.clone()
             };
             let passage = SimulatedManoeuvre::of(calm, &other, timescale).ok()?;
-            let all = figures::of(kind, &passage, None);
+            let all = figures::characteristics(kind, &passage, None);
             let is_counted = |name: &str| !is_in_lengths(name, |lengths| all.contains_key(lengths));
             Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())
         };

@@ -55,7 +55,7 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
 /// Fit of a method to the records of a unit.
 struct RecordFit {
     answer: FitAnswer,
-    /// Identified ship for predictions; none where nothing is predicted, and where the answer has no covariance.
+    /// Identified ship for predictions; none if nothing is predicted, and where the answer has no covariance.
     ship: Option<IdentifiedShip>,
 }
 
@@ -132,7 +132,7 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// Validation record of a trial; `None` where its ship length differs from that of the fitted records, since
+    /// Validation record of a trial; `None` if its ship length differs from that of the fitted records, since
     /// responses of another scale are not replayed.
     fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);

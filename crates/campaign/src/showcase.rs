@@ -11,7 +11,7 @@ use ship::FirstOrder;
 use simulate::Truth;
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::curves::{curve, origin, replay_curves, zigzag_figure};
+use crate::curves::{curve, curve_origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 use crate::stored_figures::{
@@ -51,7 +51,7 @@ pub struct ShowcaseAnswer {
 /// Points of a fitted curve between two rows of the record.
 const POINTS_PER_ROW: usize = 4;
 
-/// Showcase of a cell; `None` when its first trial cannot be simulated.
+/// Showcase of a cell; `None` if its first trial cannot be simulated.
 pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = Task { cell: index, replicate: 0 };
@@ -84,7 +84,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         replays: Replays {
             record: curve(trial.time(), trial.heading()),
             truth: None,
-            replays: replay_curves(trial, &answers, |label| origin(&names, label)),
+            replays: replay_curves(trial, &answers, |label| curve_origin(&names, label)),
         },
         intervals: intervals(&answers, &names, truth_of_ship.as_ref(), &scenario.published),
         methods: answers.into_iter().map(shown).collect(),
@@ -101,7 +101,7 @@ fn intervals(
         quantity.value.is_finite().then_some(PointEstimate { value: quantity.value, interval: quantity.ci95 })
     };
     let estimate = |(entry, _): &(MethodEntry, Option<Estimate>)| MethodEstimate {
-        origin: origin(names, &entry.method),
+        origin: curve_origin(names, &entry.method),
         k_per_s: entry.parameters.and_then(|parameters| point(parameters.k_per_s)),
         t_s: entry.parameters.and_then(|parameters| point(parameters.t_s)),
     };
@@ -148,7 +148,7 @@ impl<'a> FourierCurve<'a> {
                 _ => return None,
             };
             seen.push(method.procedure.id());
-            Some(Self { origin: origin(names, &method.label), trial, curve, window })
+            Some(Self { origin: curve_origin(names, &method.label), trial, curve, window })
         };
         cell.methods.iter().filter_map(fit).collect()
     }

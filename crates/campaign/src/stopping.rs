@@ -9,7 +9,7 @@ use crate::statistics::Moments;
 #[derive(Clone)]
 pub struct StopCheck {
     rule: StopRule,
-    /// Index of the method of the rule; `None` where all methods have to meet it.
+    /// Index of the method of the rule; `None` if all methods have to meet it.
     method: Option<usize>,
     cell: u64,
     methods: Vec<FigureSums>,

@@ -19,7 +19,7 @@ use crate::scenario::hex;
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 
-/// Largest stored text, bytes.
+/// Maximum size of a stored text, bytes.
 const MAX_TEXT_BYTES: u64 = 1 << 29;
 
 /// A finished study without its rows, which are read block by block.
@@ -85,7 +85,7 @@ impl StoredStudy {
         Ok(Self { design: Design { prose: manifest.prose(), ..design }, manifest, ..self })
     }
 
-    /// Passes every row to `take`, in order. Fails when one is missing or belongs to another study.
+    /// Passes every row to `take`, in order. Fails if one is missing or belongs to another study.
     pub fn rows(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         BlockStore::new(&self.folder, &self.manifest, &self.design).rows(take)
     }

@@ -119,7 +119,7 @@ pub struct Replays {
     pub replays: Vec<ReplayCurves>,
 }
 
-/// Largest excursion of a replay beyond the range of the record, as a share of that range; beyond it is cut.
+/// Maximum excursion of a replay beyond the range of the record, as a share of that range; beyond it is cut.
 const HEADING_ROOM: f64 = 0.25;
 /// Limit of a residual in multiples of the median of all sizes; beyond it is cut.
 const RESIDUAL_ROOM: f64 = 10.0;
@@ -172,7 +172,7 @@ pub struct PointEstimate {
     pub interval: Option<[f64; 2]>,
 }
 
-/// Estimates of one method; `None` where it has none.
+/// Estimates of one method; `None` if it has none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEstimate {
     /// The method; decides how its row looks.

@@ -18,7 +18,7 @@ pub struct TrialTiming {
     pub cell: u64,
     /// Of the simulation.
     pub simulation: Duration,
-    /// Of every method, in the order of the scenario; empty where the trial could not be simulated.
+    /// Of every method, in the order of the scenario; empty if the trial could not be simulated.
     pub methods: Vec<Duration>,
 }
 

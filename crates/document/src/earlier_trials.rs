@@ -11,10 +11,10 @@ use ship::vessel::prior::HullParticulars;
 pub struct EarlierTrials {
     /// Models of earlier trials.
     pub models: Vec<PriorModelEntry>,
-    /// Check of every hull of the models, the nearest to the records first; empty where none can be replayed over the
+    /// Check of every hull of the models, the nearest to the records first; empty if none can be replayed over the
     /// records.
     pub hulls: Vec<PriorCheckEntry>,
-    /// Whether the records contradict the models: they contradict the nearest hull, or there is none.
+    /// `true` if the records contradict the models: they contradict the nearest hull, or there is none.
     pub conflict: bool,
 }
 
@@ -51,7 +51,7 @@ pub struct PriorCheckEntry {
     pub p_value: f64,
     /// Coefficients by their keys with their shift in prior standard deviations, the largest first.
     pub moved: Vec<(String, f64)>,
-    /// Whether the hull is a member of the result.
+    /// `true` if the hull is a member of the result.
     pub takes_part: bool,
 }
 

@@ -69,7 +69,7 @@ pub struct PredictedCircleEntry {
     pub side: String,
     /// Held rudder angle, deg.
     pub rudder_deg: f64,
-    /// Whether rudder or yaw rate are beyond those of the records.
+    /// `true` if rudder or yaw rate are beyond those of the records.
     pub extrapolated: bool,
     /// Number of drawn ships.
     pub draws: usize,
@@ -97,7 +97,7 @@ pub struct CriterionEntry {
     pub criterion: String,
     /// Measured value.
     pub measured: Option<f64>,
-    /// Largest allowed value.
+    /// Maximum allowed value.
     pub limit: f64,
     /// Unit of value and limit.
     pub unit: String,
@@ -195,13 +195,13 @@ impl FitDocument {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
-    /// Method drawn in the figures; `None` where none has an estimate.
+    /// Method drawn in the figures; `None` if none has an estimate.
     pub fn drawn_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
         answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// Whether a channel has faulty readings, or is an order in place of an angle.
+    /// `true` if a channel has faulty readings, or is an order in place of an angle.
     pub fn has_faulty_readings(&self) -> bool {
         self.warnings
             .iter()
@@ -225,7 +225,7 @@ impl FitDocument {
 }
 
 impl VerdictEntry {
-    /// Whether additional terms of a hull reduce the residual of output error to less than two thirds.
+    /// `true` if additional terms of a hull reduce the residual of output error to less than two thirds.
     pub fn falls_with_ship_terms(&self) -> bool {
         self.residual_deg.zip(self.with_ship_terms_deg).is_none_or(|(before, after)| after < before * 2.0 / 3.0)
     }
@@ -257,7 +257,7 @@ pub enum ResidualKind {
     Random,
 }
 
-/// Whether K and T of the records can be used.
+/// `true` if K and T of the records can be used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Belief {
@@ -271,7 +271,7 @@ pub enum Belief {
 /// Recommended estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct VerdictEntry {
-    /// Whether K and T can be used.
+    /// `true` if K and T can be used.
     #[serde(default)]
     pub believe: Belief,
     /// Reason why they cannot.

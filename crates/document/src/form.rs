@@ -27,9 +27,9 @@ pub struct ImoFormEntry {
     pub ci90: Option<[f64; 2]>,
     /// Unit of value and limit.
     pub unit: String,
-    /// Largest allowed value.
+    /// Maximum allowed value.
     pub limit: Option<f64>,
-    /// Whether a predicted manoeuvre is outside the range of the records.
+    /// `true` if a predicted manoeuvre is outside the range of the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolated: Option<bool>,
     /// Share of the drawn ships of a prediction that meet the limit.

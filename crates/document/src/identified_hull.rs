@@ -178,7 +178,7 @@ impl IdentifiedHull {
         }
     }
 
-    /// Whether this hull was derived from another one, at any scale.
+    /// `true` if this hull was derived from another one, at any scale.
     pub fn is_from(&self, other: &Self) -> bool {
         let is_same = |hull: &Self| hull.coefficients == other.coefficients && hull.covariance == other.covariance;
         self.from.as_ref().is_some_and(|from| is_same(&from.hull))

@@ -35,7 +35,7 @@ pub struct WeightedStructure {
     pub parameters: Vec<f64>,
     /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
-    /// Covariance of the fitted parameters, by rows; empty where it is singular.
+    /// Covariance of the fitted parameters, by rows; empty if it is singular.
     pub covariance: Vec<Vec<f64>>,
     /// Degrees of freedom of the covariance (Student t); `null` for a normal distribution.
     pub degrees_of_freedom: Option<f64>,
@@ -53,9 +53,9 @@ pub struct IdentifiedGear {
 /// Range of the records; a prediction outside it is an extrapolation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ValidityRange {
-    /// Largest rudder angle, rad.
+    /// Maximum rudder angle, rad.
     pub rudder_rad: f64,
-    /// Largest yaw rate, rad/s.
+    /// Maximum yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
 }
 
@@ -124,7 +124,7 @@ impl WeightedStructure {
 /// Relative tolerance of equal lengths.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// Whether two lengths are equal within [`LENGTH_TOLERANCE`].
+/// `true` if two lengths are equal within [`LENGTH_TOLERANCE`].
 pub fn is_same_length(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() < LENGTH_TOLERANCE
 }
@@ -139,7 +139,7 @@ impl IdentifiedShip {
     /// L₂/L₁, and dimensionless numbers (K′, T′ and all others) stay. With U ~ √L, the default, this is the scaling of
     /// Froude (1868).
     ///
-    /// Noise scales with the ship, as if the sea were scaled. Fails where length or speed of the ship is unknown, or a
+    /// Noise scales with the ship, as if the sea were scaled. Fails if length or speed of the ship is unknown, or a
     /// constant has no unit.
     pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, IdentifiedShipError> {
         let ship = self.particulars().ok_or(IdentifiedShipError::NoParticulars)?;

@@ -60,7 +60,7 @@ pub struct MethodEntry {
     /// K' and T', where length and speed of the ship are known; otherwise left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeIndices>,
-    /// Whether 1/T < 0 (course-unstable).
+    /// `true` if 1/T < 0 (course-unstable).
     pub course_unstable: bool,
     /// Root mean square heading error of the replay on the fitted records, deg.
     pub heading_rmse_deg: Option<f64>,

@@ -91,7 +91,7 @@ impl RandomMoment {
         }
     }
 
-    /// Whether there is no random moment.
+    /// `true` if there is no random moment.
     pub fn is_none(self) -> bool {
         self == Self::None
     }

@@ -5,7 +5,7 @@ use ship::Particulars;
 
 use crate::quantity::Quantity;
 
-/// Whether a dimensionless term is the same at every scale.
+/// `true` if a dimensionless term is the same at every scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub enum Scaling {
     /// Same, and a difference of a quarter would have been significant.
@@ -30,7 +30,7 @@ pub struct ComparedTerm {
     pub joint: Quantity,
     /// Estimates from the records of every scale alone; `null` where they do not determine it.
     pub own: Vec<Option<Quantity>>,
-    /// Largest difference between two scales in units of its standard deviation.
+    /// Maximum difference between two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,
     /// `scales`, `does not scale` or `cannot be told`.
     pub verdict: Scaling,

@@ -11,8 +11,8 @@ pub struct SingleRecords {
     pub method: String,
     /// Identified zig-zags.
     pub records: Vec<SingleRecord>,
-    /// Whether K and T of all records agree within their standard deviations (χ² at 5 %); `null` where a record has no
-    /// standard deviation.
+    /// `true` if K and T of all records agree within their standard deviations (χ² at 5 %); `null` where a record has
+    /// no standard deviation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub agree: Option<bool>,
 }

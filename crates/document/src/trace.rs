@@ -101,7 +101,7 @@ pub struct EffectEntry {
     pub equation: String,
     /// Record in which it acts; `null` for all.
     pub only: Option<String>,
-    /// Whether it is included on request; left out where it is not.
+    /// `true` if it is included on request; left out where it is not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub asked: bool,
     /// Other effects of the group, of which one is present.
@@ -132,7 +132,7 @@ pub struct CandidateEntry {
     pub outcome: Outcome,
     /// Probability that it is present in any form and record.
     pub probability: f64,
-    /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`; empty where no
+    /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`; empty if no
     /// structure has it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probability_by_prior_odds: Vec<f64>,
@@ -177,7 +177,7 @@ pub struct StructureEntry {
     pub weight: f64,
     /// Parameters, base first.
     pub parameters: Vec<ParameterEntry>,
-    /// Whether it is a member of the average.
+    /// `true` if it is a member of the average.
     pub member: bool,
 }
 
@@ -190,7 +190,7 @@ pub struct PriorEntry {
     pub probability: f64,
     /// Prior probability of a moment that depends on time, in one record.
     pub probability_of_time: f64,
-    /// Smallest probability of a named effect.
+    /// Minimum probability of a named effect.
     pub named_from: f64,
     /// Factors of the prior odds of all effects together, ascending; one of them is 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -252,7 +252,7 @@ pub struct RecordNoiseEntry {
     pub waves_sd_deg: Option<f64>,
     /// Frequency of waves.
     pub waves_frequency_rad_s: Option<f64>,
-    /// Whether the noise law describes the residual: innovations white, of constant variance, without outliers.
+    /// `true` if the noise law describes the residual: innovations white, of constant variance, without outliers.
     pub describes_what_is_left: bool,
     /// Standard deviation of the measurement noise of the rudder, where there is any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -321,7 +321,7 @@ pub struct TraceDocument {
     pub records: Vec<RecordEntry>,
     /// Missing yaw moment of the base on every fitted record.
     pub missing_moment: Vec<MissingMomentEntry>,
-    /// Replay errors of the base and after each added effect of the most probable structure; empty where it has none.
+    /// Replay errors of the base and after each added effect of the most probable structure; empty if it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub staircase: Vec<StairEntry>,
     /// Amplitude of the fitted zig-zags, to which K and T of `base` belong; those of `model` belong to small motions.

@@ -129,7 +129,7 @@ pub fn sum(x: &[f64]) -> f64 {
     total(sums)
 }
 
-/// Smallest and largest value of a column. NaN is ignored; an empty column gives (∞, −∞).
+/// Minimum and largest value of a column. NaN is ignored; an empty column gives (∞, −∞).
 #[inline]
 pub fn extremes(x: &[f64]) -> (f64, f64) {
     let (blocks, tail) = x.as_chunks::<LANES>();

@@ -14,10 +14,10 @@ pub use matrix::{identity, product, sandwich, sum};
 
 use crate::lanes::{Kernel, run};
 
-/// Largest number of states of a [`Whitener`].
+/// Maximum number of states of a [`Whitener`].
 pub const MAX_STATES: usize = 5;
 
-/// Longest period of a repeating sequence of readings: two sensors in turn.
+/// Maximum period of a repeating sequence of readings: two sensors in turn.
 const MAX_PERIOD: usize = 2;
 
 /// Relative change below which a gain is stationary.
@@ -70,7 +70,7 @@ impl Sensor {
 /// One reading: the time step before it, and its sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reading {
-    /// Index of the time step before it; `None` when no time passes.
+    /// Index of the time step before it; `None` if no time passes.
     pub step: Option<usize>,
     /// Index of the sensor.
     pub sensor: usize,

@@ -21,7 +21,7 @@ pub enum LeastSquaresError {
     Singular {
         /// Condition number of the scaled columns.
         condition: f64,
-        /// Largest condition number accepted.
+        /// Maximum condition number accepted.
         limit: f64,
     },
 }

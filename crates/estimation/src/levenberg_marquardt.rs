@@ -40,7 +40,7 @@ pub struct SearchSettings {
     pub damping: f64,
     /// Factor on the damping after a step whose decrease of J is at least `trust_ratio` times the predicted decrease.
     pub shrink: f64,
-    /// Smallest ratio of actual to predicted decrease at which the damping shrinks.
+    /// Minimum ratio of actual to predicted decrease at which the damping shrinks.
     pub trust_ratio: f64,
     /// Factor on the damping after a step that does not lower J.
     pub grow: f64,
@@ -126,7 +126,7 @@ impl StepWorkspace {
         }
     }
 
-    /// Computes a damped step and returns the predicted decrease of J; `None` where the step is not finite.
+    /// Computes a damped step and returns the predicted decrease of J; `None` if the step is not finite.
     fn damped_step(&mut self, normal: &Normal, damping: f64) -> Option<f64> {
         let unknowns = self.right.len();
         for j in 0..unknowns {

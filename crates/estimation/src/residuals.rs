@@ -55,7 +55,7 @@ pub struct Whiteness {
     pub p_value: f64,
 }
 
-/// Largest lag of the whiteness test, in grid steps.
+/// Maximum lag of the whiteness test, in grid steps.
 const MAX_LAG: usize = 20;
 
 /// Number of lags of the whiteness test of `count` residuals.
@@ -134,7 +134,7 @@ pub struct SpectralLine {
     pub share: f64,
 }
 
-/// Largest number of grid points per value for which a spectrum is computed.
+/// Maximum number of grid points per value for which a spectrum is computed.
 const MAX_POINTS_PER_VALUE: usize = 16;
 
 /// Periodogram: the share of the mean square at every multiple of the lowest frequency.

@@ -27,7 +27,7 @@ pub struct RemovableTerm {
     pub log_odds: f64,
 }
 
-/// Largest number of terms whose subsets are all weighted.
+/// Maximum number of terms whose subsets are all weighted.
 pub const MAX_TERMS: usize = 12;
 
 /// Cholesky factor that grows row by row, with the solution of L z = Δ.

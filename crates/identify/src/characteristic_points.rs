@@ -57,11 +57,11 @@ pub struct Settings {
     pub half_width_s: Option<f64>,
     /// Base course, deg; without it the mean heading before the first execute.
     pub base_course_deg: Option<f64>,
-    /// Whether a start at rest counts as an instant with r = 0; true only if the ship kept a straight course.
+    /// `true` if a start at rest counts as an instant with r = 0; true only if the ship kept a straight course.
     pub start_at_rest: bool,
     /// Rudder bias δ_r, deg, where it is known; without it δ_r is identified.
     pub rudder_bias_deg: Option<f64>,
-    /// Largest accepted condition number of the equations.
+    /// Maximum accepted condition number of the equations.
     pub condition_limit: f64,
 }
 
@@ -81,7 +81,7 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     ///
-    /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
+    /// Fails if the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
         if let Some(width) = self.half_width_s {
             require(width > 0.0 && width.is_finite(), "half-width-s", ShortNumber(width), "a positive time")?;

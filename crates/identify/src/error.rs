@@ -34,7 +34,7 @@ pub enum IdentifyError {
         trial: String,
         /// Time from the first to the last heading, s.
         duration_s: f64,
-        /// Largest heading or rudder angle, rad.
+        /// Maximum heading or rudder angle, rad.
         angle_rad: f64,
     },
     /// Fewer samples than the method needs.
@@ -70,7 +70,7 @@ pub enum IdentifyError {
     Singular {
         /// Condition number of the scaled equations.
         condition: f64,
-        /// Largest accepted.
+        /// Maximum accepted.
         limit: f64,
     },
     /// An iteration did not settle.

@@ -45,7 +45,7 @@ impl StopReason {
 pub struct Covariance {
     /// The 3 × 3 matrix.
     pub matrix: Matrix3<f64>,
-    /// Degrees of freedom of the noise variance; `None` when the variance was known.
+    /// Degrees of freedom of the noise variance; `None` if the variance was known.
     pub degrees_of_freedom: Option<f64>,
 }
 
@@ -172,7 +172,7 @@ impl Covariance {
     /// bends where the uncertainty is large.
     ///
     /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and q = ν
-    /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` where the region of 1/T holds
+    /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` if the region of 1/T holds
     /// zero, so that T is unbounded, and without a covariance.
     pub fn outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
         const CORNERS: usize = 120;

@@ -21,7 +21,7 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, DrawnTriples, EquationInstant, MAX_TRIPLES, Selection, TripleEstimate};
+use crate::fourier::triples::{self, DrawnTriples, MAX_TRIPLES, RegressionPoint, Selection, TripleEstimate};
 use crate::fourier::{self, Fitted, Fundamental, MAX_HARMONICS};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
@@ -105,7 +105,7 @@ impl FourierPublished {
     }
 
     /// The instants of one trial that triples are drawn from.
-    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<EquationInstant> {
+    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<RegressionPoint> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
@@ -121,7 +121,7 @@ impl FourierPublished {
                         && range_about(trial.rudder_signal(), start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })
-            .map(|row| EquationInstant {
+            .map(|row| RegressionPoint {
                 rudder: samples.rudder[row],
                 yaw_rate: yaw_rate[row],
                 yaw_acceleration: yaw_acceleration[row],

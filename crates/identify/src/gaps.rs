@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Without a setting, a gap is an interval longer than this many mean intervals.
 const GAP_INTERVALS: f64 = 5.0;
 
-/// Longest interval, s, that is not a gap: the setting, or five mean intervals of the record.
+/// Maximum interval, s, that is not a gap: the setting, or five mean intervals of the record.
 pub fn longest_gap(setting_s: Option<f64>, time: &[f64]) -> f64 {
     setting_s.unwrap_or_else(|| match time {
         [first, .., last] => GAP_INTERVALS * (last - first) / (time.len() - 1) as f64,

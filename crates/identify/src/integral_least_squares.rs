@@ -35,9 +35,9 @@ const MIN_PIECE_ROWS: usize = 4;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.
+    /// Maximum interval between headings that is integrated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
-    /// Largest accepted condition number of the equations.
+    /// Maximum accepted condition number of the equations.
     pub condition_limit: f64,
 }
 
@@ -50,7 +50,7 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     ///
-    /// Fails when the gap is not positive or the condition limit is not above 1.
+    /// Fails if the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<IntegralLeastSquares, SettingsError> {
         check_longest_gap(self.longest_gap_s)?;
         check_condition_limit(self.condition_limit)?;

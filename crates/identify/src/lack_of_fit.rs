@@ -37,7 +37,7 @@ const MIN_DELAY_SHARE: f64 = 0.7;
 /// loss of speed as well.
 const MIN_REVERSALS: usize = 2;
 
-/// Largest delay that is reported, in T: a single term in δ' represents short delays only, and those of clocks,
+/// Maximum delay that is reported, in T: a single term in δ' represents short delays only, and those of clocks,
 /// steering gears and compasses are short.
 const MAX_DELAY_RATIO: f64 = 0.25;
 
@@ -57,13 +57,13 @@ pub struct LackOfFit {
     pub is_white: bool,
     /// Delay from the recorded to the acting rudder, s, from the term in δ' alone; negative for a rudder recorded late.
     pub delay: f64,
-    /// Root mean square of the residual with the term in δ', rad; `None` where the records do not identify a delay:
+    /// Root mean square of the residual with the term in δ', rad; `None` if the records do not identify a delay:
     /// fewer than two rudder reversals in each, or a delay above a quarter of T.
     pub with_delay: Option<f64>,
 }
 
 impl LackOfFit {
-    /// Lack of fit of a response to its records; `None` where a replay is not finite, and with too few headings to
+    /// Lack of fit of a response to its records; `None` if a replay is not finite, and with too few headings to
     /// estimate their noise.
     pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let (mut residual, mut pieces) = (Vec::new(), Vec::new());

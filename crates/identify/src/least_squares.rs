@@ -47,11 +47,11 @@ pub struct Settings {
     pub signal: Signal,
     /// Local polynomials that smooth before differentiating; without them central differences.
     pub smoothing: Option<SavitzkyGolay>,
-    /// Whether the same local polynomials smooth the rudder; without effect on central differences.
+    /// `true` if the same local polynomials smooth the rudder; without effect on central differences.
     pub smooth_rudder: bool,
-    /// Longest interval between rows that is differentiated across, s; without it five mean intervals of the record.
+    /// Maximum interval between rows that is differentiated across, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
-    /// Largest accepted condition number of the equations.
+    /// Maximum accepted condition number of the equations.
     pub condition_limit: f64,
 }
 
@@ -70,7 +70,7 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     ///
-    /// Fails when window and order do not go together, the gap is not positive or the condition limit is not above 1.
+    /// Fails if window and order do not go together, the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<MotionRegression, SettingsError> {
         if let Some(smoothing) = &self.smoothing {
             smoothing.check()?;

@@ -62,7 +62,7 @@ impl MaximumLikelihood {
         choice::PreparedRecords::new(&self.settings, trials)?.choose(&self.settings)
     }
 
-    /// Log of the largest likelihood of some records; `None` where the method gives no estimate.
+    /// Log of the largest likelihood of some records; `None` if the method gives no estimate.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
         let chosen = self.chosen(trials).ok()?;
         let log_likelihood = -0.5 * chosen.maxima[0].1.point.deviance;

@@ -31,9 +31,9 @@ use crate::settings::{SettingsError, check_iterations, require};
 pub struct Settings {
     /// Points of the scan per decade of |1/T|, for each sign.
     pub grid_per_decade: usize,
-    /// Smallest |T| searched, s; `None` is half a sampling period.
+    /// Minimum |T| searched, s; `None` is half a sampling period.
     pub smallest_time_constant_s: Option<f64>,
-    /// Largest number of steps when a minimum is polished.
+    /// Maximum number of steps when a minimum is polished.
     pub iterations: usize,
 }
 
@@ -69,7 +69,7 @@ const MAX_POINTS_PER_DECADE: usize = 1000;
 /// Time constants, s, that the setting accepts as the end of the scan.
 const TIME_CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
-/// Smallest |1/T| of the scan, in units of one over the length of the record: below it the response is
+/// Minimum |1/T| of the scan, in units of one over the length of the record: below it the response is
 /// indistinguishable from a neutrally stable response.
 const MIN_INVERSE_TIME_RECORDS: f64 = 0.02;
 
@@ -77,7 +77,7 @@ const MIN_INVERSE_TIME_RECORDS: f64 = 0.02;
 struct Goal {
     /// Step, relative to 1/T, at convergence.
     tolerance: f64,
-    /// Largest number of steps.
+    /// Maximum number of steps.
     iterations: usize,
     /// Sum of squares, rad², that a promising valley falls below.
     bar: f64,
@@ -93,7 +93,7 @@ const TOLERANCE: f64 = 1e-10;
 /// all rows, so more digits are useless; a valley that needs more steps has a large residual and is not the lowest.
 const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
 
-/// Largest sum of squares over a part of the rows, relative to the lowest, of a valley that is polished on all rows.
+/// Maximum sum of squares over a part of the rows, relative to the lowest, of a valley that is polished on all rows.
 const MAX_RSS_RATIO: f64 = 10.0;
 
 /// Steps before a valley may be dropped.
@@ -111,7 +111,7 @@ const MAX_HALVINGS: usize = 12;
 /// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
 const SHARED: usize = 3;
 
-/// Largest condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
+/// Maximum condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
 pub(crate) const CONDITION_LIMIT: f64 = 1e6;
 
 /// Headings that a trial needs.

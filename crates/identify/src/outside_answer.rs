@@ -36,7 +36,7 @@ pub enum OutsideErrors {
 const UNCORRELATED: &str = "errors of K and T are treated as independent, because no covariance was given; this \
                             affects predictions and the interval of K/T, not the intervals of K and T";
 
-/// Largest relative asymmetry of a covariance and excess of a correlation over 1: rounding.
+/// Maximum relative asymmetry of a covariance and excess of a correlation over 1: rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl OutsideFit {
@@ -82,7 +82,7 @@ impl OutsideFit {
         })
     }
 
-    /// The covariance of (K, T, δ_r), and a warning on it; `None` where K or T has no error, or the given matrix is not
+    /// The covariance of (K, T, δ_r), and a warning on it; `None` if K or T has no error, or the given matrix is not
     /// a covariance.
     fn covariance(&self) -> Option<(Matrix3<f64>, Option<Warning>)> {
         match self.errors {
@@ -97,8 +97,8 @@ impl OutsideFit {
     }
 }
 
-/// Whether a matrix is finite and symmetric, with non-negative variances and consistent correlations: no combination of
-/// K, T and δ_r may have a negative variance. A parameter without an error may have a variance of zero.
+/// `true` if a matrix is finite and symmetric, with non-negative variances and consistent correlations: no combination
+/// of K, T and δ_r may have a negative variance. A parameter without an error may have a variance of zero.
 fn is_covariance(matrix: &Matrix3<f64>) -> bool {
     let is_plausible = (0..3).all(|i| {
         (0..3).all(|j| {

@@ -17,7 +17,7 @@ const MAX_DEVIATIONS: f64 = 2.0;
 /// Relative tolerance of a rudder rate from a record.
 const RATE_TOLERANCE: f64 = 0.05;
 
-/// Largest ratio of the largest speed of a record and its approach speed: a current of two knots is a fifth of ten. A
+/// Maximum ratio of the largest speed of a record and its approach speed: a current of two knots is a fifth of ten. A
 /// ship that gathers way has most of her speed when she is steered.
 const MAX_SPEED_RATIO: f64 = 1.25;
 

@@ -68,7 +68,7 @@ impl Profile {
         Self { parts, steering: Vector2::zeros(), last: None, evaluations: 0 }
     }
 
-    /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` when the columns are dependent or b ≤ 0.
+    /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` if the columns are dependent or b ≤ 0.
     pub fn evaluate(&mut self, inverse_time: f64) -> Option<f64> {
         match self.last {
             Some((point, rss)) if point == inverse_time => rss,
@@ -228,7 +228,7 @@ pub(crate) fn invert(information: &Matrix3<f64>, limit: f64) -> Result<(Matrix3<
     Ok((scaled(&inverse), condition))
 }
 
-/// Solves a symmetric positive definite 2 × 2 system after scaling; `None` when it is singular to rounding.
+/// Solves a symmetric positive definite 2 × 2 system after scaling; `None` if it is singular to rounding.
 pub(crate) fn solve2(gram: &Matrix2<f64>, moment: &Vector2<f64>) -> Option<Vector2<f64>> {
     let scale = Vector2::new(gram[(0, 0)].sqrt().recip(), gram[(1, 1)].sqrt().recip());
     let cosine = gram[(0, 1)] * scale[0] * scale[1];

@@ -26,11 +26,11 @@ use crate::replay::pooled;
 use crate::settings::SettingsError;
 use crate::{maximum_likelihood, output_error};
 
-/// Smallest share of the residual, unexplained by ship terms, that counts as a random moment. The scenario
+/// Minimum share of the residual, unexplained by ship terms, that counts as a random moment. The scenario
 /// `recommended` shows the cost of the rule; METHODOLOGY documents the limit.
 const MIN_RANDOM: f64 = 0.33;
 
-/// Largest replay error of maximum likelihood, relative to that of output error, of a ship in a random moment: above it
+/// Maximum replay error of maximum likelihood, relative to that of output error, of a ship in a random moment: above it
 /// the moment would have to cancel the steering. In gusts the ratio is at most about five.
 const MAX_REPLAY_RATIO: f64 = 30.0;
 
@@ -41,7 +41,7 @@ pub struct Recommendation {
     pub reason: VerdictReason,
     /// Lack of fit of output error; `None` without its estimate or without a noise level.
     pub lack: Option<LackOfFit>,
-    /// Whether all records declare a calm, which excludes random moments.
+    /// `true` if all records declare a calm, which excludes random moments.
     pub is_calm: bool,
 }
 

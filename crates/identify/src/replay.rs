@@ -46,7 +46,7 @@ impl Replay {
 
 /// Replays the rudder of `trial` through `response` with the best initial state.
 ///
-/// `None` when the replay is not finite, as for a response with infinite or undefined parameters.
+/// `None` if the replay is not finite, as for a response with infinite or undefined parameters.
 pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
     let track = Track::new(trial);

@@ -9,14 +9,14 @@ use trial::{Corner, Trial};
 
 use crate::error::IdentifyError;
 
-/// Smallest range of rudder and heading, deg, that counts as steering.
+/// Minimum range of rudder and heading, deg, that counts as steering.
 const MIN_RANGE_DEG: f64 = 0.5;
 
 /// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth
 /// and number frequencies by its ratio to the interval, which have to stay in the range of floating point.
 const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
 
-/// Largest angle, rad: a heading that has turned 160 000 times.
+/// Maximum angle, rad: a heading that has turned 160 000 times.
 const MAX_ANGLE_RAD: f64 = 1e6;
 
 /// The observed rows of a trial. All columns have the same length; time starts at 0.

@@ -39,7 +39,7 @@ impl SavitzkyGolay {
     /// Three rows and a parabola: central differences.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
-    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or exceeds
+    /// Fails if the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or exceeds
     /// 10 001 rows.
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self { window_samples: rows, order } = *self;
@@ -49,7 +49,7 @@ impl SavitzkyGolay {
         require(rows <= MAX_WINDOW_ROWS, "window-samples", rows, "at most 10001")
     }
 
-    /// Rows of the window around row `k`; `None` when it does not fit into `len` rows.
+    /// Rows of the window around row `k`; `None` if it does not fit into `len` rows.
     pub fn window(&self, k: usize, len: usize) -> Option<Range<usize>> {
         let half = self.window_samples / 2;
         let window = k.checked_sub(half)?..(k + half + 1);
@@ -75,7 +75,7 @@ impl<'a> WindowWeights<'a> {
 
     /// Rows of the window around row `k` with their weights.
     ///
-    /// `None` when the window does not fit into the record or the fit is singular.
+    /// `None` if the window does not fit into the record or the fit is singular.
     pub fn at(&mut self, time: &[f64], k: usize) -> Option<(Range<usize>, &[[f64; 3]])> {
         let window = self.filter.window(k, time.len())?;
         let times = &time[window.clone()];
@@ -123,7 +123,7 @@ pub struct LocalFit<'a> {
     time: &'a [f64],
     centre: f64,
     order: usize,
-    /// Largest distance from `centre`, s, by which distances are scaled.
+    /// Maximum distance from `centre`, s, by which distances are scaled.
     reach: f64,
     normal: Cholesky<f64, Const<COEFFICIENTS>>,
 }

@@ -25,7 +25,7 @@ pub(crate) struct Fit {
     pub gain: f64,
 }
 
-/// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` where the columns are dependent.
+/// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` if the columns are dependent.
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
 /// [thinned](Track::thinned) tracks.

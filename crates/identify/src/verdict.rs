@@ -23,7 +23,7 @@ const MIN_EXPLAINED_SHARE: f64 = 0.9;
 /// Reference methods for contradictions.
 const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Verdict over the answers of some methods to some records; `None` where no method has an answer.
+/// Verdict over the answers of some methods to some records; `None` if no method has an answer.
 pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
@@ -38,7 +38,7 @@ pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)])
     Some(verdict)
 }
 
-/// Why no K and T can be taken from records whose headings have this scatter about straight lines, deg; `None` where
+/// Why no K and T can be taken from records whose headings have this scatter about straight lines, deg; `None` if
 /// they can.
 ///
 /// A random moment turns the ship, too, so it is the nearest replay that has to explain the headings. An unstable ship
@@ -117,7 +117,7 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     })
 }
 
-/// Whether the intervals of K or of T have nothing in common.
+/// `true` if the intervals of K or of T have nothing in common.
 fn are_apart(a: &MethodEntry, b: &MethodEntry) -> bool {
     let (Some(a), Some(b)) = (a.parameters, b.parameters) else { return false };
     [(a.k_per_s, b.k_per_s), (a.t_s, b.t_s)]

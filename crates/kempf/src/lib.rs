@@ -37,8 +37,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this package fit a CSV as `study fit` does, compare an answer with the truth, trace a record, and run a method of your
-//! own in a study.
+//! The examples of this package fit a CSV as `study fit` does, compare an answer with the truth, trace a record, and
+//! run a method of your own in a study.
 
 pub use campaign::scenario;
 pub use trial::find;

@@ -80,7 +80,7 @@ pub struct Correction {
     pub full: Vec<String>,
     /// Files of the models in the condition of the trial.
     pub ballast: Vec<String>,
-    /// Its figures by name; empty where the record is neither a zig-zag nor a turn.
+    /// Its figures by name; empty if the record is neither a zig-zag nor a turn.
     pub figures: IndexMap<String, Corrected>,
     /// Warnings on all figures.
     pub warnings: Vec<Warning>,
@@ -129,7 +129,7 @@ type Draws = Vec<Option<DrawResult>>;
 
 /// Manoeuvre of a record, simulated with both models.
 struct PairedManoeuvre {
-    /// Largest rudder, rad.
+    /// Maximum rudder, rad.
     rudder: f64,
     full: Draws,
     trial: Draws,
@@ -146,7 +146,7 @@ struct PairedManoeuvre {
 /// slower ship; figures at the end of a turn are taken at the end of the record. Figures that the record does not show
 /// are left out; a record that is neither a zig-zag nor a turn has none.
 ///
-/// Fails where less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
+/// Fails if less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
 pub fn correct(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -191,7 +191,7 @@ pub fn correct(
     Ok(Correction { file, name, figures, warnings, ..Correction::default() })
 }
 
-/// The zig-zag of a record, steered with both models; `None` where the record begins within the trial.
+/// The zig-zag of a record, steered with both models; `None` if the record begins within the trial.
 fn zig_zag(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -243,7 +243,7 @@ fn short(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-/// R = T F/B of one figure; `None` where less than half of the pairs of ships have it.
+/// R = T F/B of one figure; `None` if less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
     let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
@@ -323,7 +323,7 @@ mod tests {
             let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
             (ship.yaw_rate, ship.gear) = (0.0, ballast.draw(1000 + number, &UncertaintySource::ALL).gear);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, full.timescale()).expect("sails");
-            let truth = crate::figures::of(&kind, &passage, full.particulars());
+            let truth = crate::figures::characteristics(&kind, &passage, full.particulars());
             for name in names {
                 let Some(figure) = correction.figures.get(name) else { continue };
                 let truth = truth[name].expect("whole");

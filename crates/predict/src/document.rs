@@ -26,7 +26,7 @@ pub struct PredictDocument {
     pub models: Vec<ModelWeight>,
     /// Number of drawn ships.
     pub draws: usize,
-    /// Whether the weather of the records was left out.
+    /// `true` if the weather of the records was left out.
     pub calm: bool,
     /// Length of the ship.
     pub length_m: Option<f64>,
@@ -47,13 +47,13 @@ pub struct PredictDocument {
     /// Remarks on the form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form_remarks: Option<Vec<String>>,
-    /// Models in the condition of the records, used for the replays; empty where there are none.
+    /// Models in the condition of the records, used for the replays; empty if there are none.
     #[serde(default)]
     pub ballast: Vec<String>,
     /// Notes on the earlier trials that the hulls of every model were combined with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier_trials: Vec<String>,
-    /// Whether a hull takes the place of the yaw response.
+    /// `true` if a hull takes the place of the yaw response.
     #[serde(default)]
     pub hull: bool,
     /// The loading that the hulls are converted to; none for that of their records.
@@ -84,7 +84,7 @@ pub struct OtherLoading {
 }
 
 impl OtherLoading {
-    /// Name of the loading in messages and pages: full load where there is none.
+    /// Name of the loading in messages and pages: full load if there is none.
     pub fn name(load: Option<&Self>) -> String {
         load.map_or_else(|| FULL_LOAD.into(), |load| format!("the loading of {}", load.file))
     }

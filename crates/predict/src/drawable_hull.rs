@@ -11,7 +11,7 @@ use ship::vessel::scaled::ScaledHull;
 use crate::error::PredictError;
 use crate::root::root_of;
 
-/// Largest number of rejected draws, outside the ends of a coefficient or without a ship, before the stored values are
+/// Maximum number of rejected draws, outside the ends of a coefficient or without a ship, before the stored values are
 /// taken.
 const MAX_TRIES: usize = 100;
 

@@ -16,7 +16,7 @@ pub struct DrawnParameters {
     pub structure: String,
     /// Probability of this structure or hull among all of the mixture.
     pub weight: f64,
-    /// Rate of the rudder, rad/s; `None` where the rudder moves at once.
+    /// Rate of the rudder, rad/s; `None` if the rudder moves at once.
     pub gear_rate_rad_s: Option<f64>,
     /// Initial yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,

@@ -1,4 +1,4 @@
-//! Figures of merit of a manoeuvre; the unit is in the name. `None` where the ship did not get that far. Source of the
+//! Figures of merit of a manoeuvre; the unit is in the name. `None` if the ship did not get that far. Source of the
 //! definitions: MSC.137(76) and MSC/Circ.1053 (2002).
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -26,7 +26,7 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
 /// The distance of the initial turning is V times its time for a model without speed.
-pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
+pub fn characteristics(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
     let side = kind.side().sign();
     let last = passage.heading.last().copied();
     match *kind {
@@ -176,11 +176,11 @@ mod tests {
     #[test]
     fn overshoots_are_those_of_the_reference() {
         let kind: Manoeuvre = "zig-zag:10/10".parse().expect("known");
-        let ten = of(&kind, &yukun(&kind), None);
+        let ten = characteristics(&kind, &yukun(&kind), None);
         assert!((value(&ten, "first_overshoot_deg") - 6.35).abs() < 0.025, "{ten:?}");
         assert!((value(&ten, "second_overshoot_deg") - 8.07).abs() < 0.025, "{ten:?}");
         let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
-        let twenty = of(&kind, &yukun(&kind), None);
+        let twenty = characteristics(&kind, &yukun(&kind), None);
         assert!((value(&twenty, "first_overshoot_deg") - 18.8).abs() < 0.06, "{twenty:?}");
     }
 
@@ -188,12 +188,12 @@ mod tests {
     #[test]
     fn turns_settle_where_the_ship_does() {
         let kind: Manoeuvre = "turning-circle:-10".parse().expect("known");
-        let turn = of(&kind, &yukun(&kind), None);
+        let turn = characteristics(&kind, &yukun(&kind), None);
         assert!((value(&turn, "steady_rate_deg_s") - 1.0).abs() < 1e-3, "{turn:?}");
         // r = K δ (1 − e^(−t/T)) from a ramp of four seconds: T + 2 s late.
         assert!((value(&turn, "time_to_180_s") - (180.0 + 16.3 + 2.0)).abs() < 0.1, "{turn:?}");
         let kind: Manoeuvre = "pull-out:10".parse().expect("known");
-        let pull_out = of(&kind, &yukun(&kind), None);
+        let pull_out = characteristics(&kind, &yukun(&kind), None);
         assert!((value(&pull_out, "rate_before_deg_s") - 1.0).abs() < 1e-3, "{pull_out:?}");
         assert!(value(&pull_out, "residual_rate_deg_s").abs() < 1e-3, "{pull_out:?}");
     }
@@ -203,14 +203,14 @@ mod tests {
     fn sides_are_mirrored() {
         for [original, mirrored] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
             let [original, mirrored]: [Manoeuvre; 2] = [original, mirrored].map(|text| text.parse().expect("known"));
-            let (a, b) = (of(&original, &yukun(&original), None), of(&mirrored, &yukun(&mirrored), None));
+            let (a, b) = (characteristics(&original, &yukun(&original), None), characteristics(&mirrored, &yukun(&mirrored), None));
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 let (a, b) = (a.expect(name), b.expect(name));
                 assert!((a - b).abs() < 1e-9, "{name} {a} {b}");
             }
         }
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
-        let turning = of(&kind, &yukun(&kind), Some(Particulars { length: 75.0, speed: 6.0 }));
+        let turning = characteristics(&kind, &yukun(&kind), Some(Particulars { length: 75.0, speed: 6.0 }));
         let time = value(&turning, "initial_turning_time_s");
         assert!(time > 20.0 && time < 30.0, "{time}");
         assert!((value(&turning, "initial_turning_lengths") - time * 6.0 / 75.0).abs() < 1e-9);

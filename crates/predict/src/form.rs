@@ -31,7 +31,7 @@ pub const TRACK_REACH_LENGTHS: f64 = 15.0;
 /// Section of the stopping trial.
 pub const STOPPING: &str = "stopping";
 
-/// Largest number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
+/// Maximum number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
 pub const MAX_DECIMALS: usize = 2;
 
 /// The form.
@@ -368,7 +368,10 @@ mod tests {
             form.remarks.join("\n")
         };
         let circle = remarks("turning-circle:15");
-        assert!(circle.contains("15.0° of rudder") && circle.contains("here 75.00 m at 6.00 m/s"), "{circle}");
+        assert!(
+            circle.contains("15.0° of rudder") && circle.contains("those of a ship of 75.00 m at 6.00 m/s"),
+            "{circle}"
+        );
         assert!(remarks("zig-zag:10/20").contains("a zig-zag of 10/20"));
         let declared = Conditions { ship_type: Some("ferry".into()), ..Conditions::default() };
         let form = fill(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));

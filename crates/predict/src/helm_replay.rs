@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 0.05;
 pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Figures,
-    /// Largest |yaw rate|, rad/s.
+    /// Maximum |yaw rate|, rad/s.
     pub largest_rate: f64,
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct SteeredZigZag {
 
 impl SteeredZigZag {
     /// The zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of
-    /// the ship, rad/s. `None` where the record begins within the trial, or has a single execute.
+    /// the ship, rad/s. `None` if the record begins within the trial, or has a single execute.
     pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
         let side = measured.side?;
         let executes = &measured.executes;
@@ -79,7 +79,7 @@ impl SteeredZigZag {
             ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
-            let mut figures = figures::of(&self.kind, &passage, mixture.particulars());
+            let mut figures = figures::characteristics(&self.kind, &passage, mixture.particulars());
             let turned = passage.reached(self.turned, self.kind.side().sign());
             let shown = passage.executes.get(..self.executes).unwrap_or(&passage.executes);
             figures.insert("period_s", figures::period(shown));

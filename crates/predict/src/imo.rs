@@ -17,7 +17,7 @@ pub struct PredictedCriterion {
     pub criterion: String,
     /// The manoeuvre of the quantity.
     pub manoeuvre: String,
-    /// Largest value allowed.
+    /// Maximum value allowed.
     pub limit: f64,
     /// Unit of limit and interval.
     pub unit: String,
@@ -26,7 +26,7 @@ pub struct PredictedCriterion {
     pub interval: PredictionInterval,
     /// Share of the drawn ships within the limit; a ship without the figure counts as outside.
     pub probability_of_passing: f64,
-    /// Whether the manoeuvre is beyond the range of the records.
+    /// `true` if the manoeuvre is beyond the range of the records.
     pub extrapolated: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Limit {
     pub manoeuvre: FormManoeuvre,
     pub figure: &'static str,
     pub unit: Unit,
-    /// Largest value; `None` where it depends on an unknown L/V.
+    /// Maximum value; `None` if it depends on an unknown L/V.
     pub value: fn(Option<Particulars>) -> Option<f64>,
 }
 
@@ -113,7 +113,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
 ];
 
 impl Limit {
-    /// Whether a manoeuvre gives its figure, to either side: for the 10/10 also an initial turning with 10°.
+    /// `true` if a manoeuvre gives its figure, to either side: for the 10/10 also an initial turning with 10°.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
         let is_pair =
@@ -129,7 +129,7 @@ impl Limit {
 }
 
 /// The criterion that limits a figure of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit for a
-/// ship with this L/V, s; `None` where none does.
+/// ship with this L/V, s; `None` if none does.
 pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =

@@ -38,7 +38,7 @@ impl PredictionInterval {
         (decimals as usize).min(6)
     }
 
-    /// Whether a value lies within nine tenths of the draws.
+    /// `true` if a value lies within nine tenths of the draws.
     pub fn contains_90(&self, value: f64) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&value)
     }

@@ -48,7 +48,7 @@ impl UncertaintySource {
     }
 }
 
-/// Largest number of rejected draws, outside the range of a parameter, before its bound is taken.
+/// Maximum number of rejected draws, outside the range of a parameter, before its bound is taken.
 const MAX_TRIES: usize = 100;
 
 /// Correlation time of the process that approximates a white moment, in times of the ship.
@@ -78,9 +78,9 @@ pub struct ShipMixture {
     /// Probability of every file.
     shares: Vec<f64>,
     timescale: f64,
-    /// Whether its random numbers are independent of those of another mixture.
+    /// `true` if its random numbers are independent of those of another mixture.
     apart: bool,
-    /// Whether its hulls nevertheless follow those of the other mixture, each at another loading.
+    /// `true` if its hulls nevertheless follow those of the other mixture, each at another loading.
     follows: bool,
     /// Wind on the hulls; direction relative to the approach heading.
     pub(crate) wind: Option<Wind>,
@@ -243,7 +243,7 @@ impl ShipMixture {
 /// Golden ratio less one.
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Structure at a cumulative probability; `None` where rounding leaves a remainder.
+/// Structure at a cumulative probability; `None` if rounding leaves a remainder.
 pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&DrawableStructure> {
     parts.iter().find(|part| {
         share -= part.weight;

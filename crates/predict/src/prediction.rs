@@ -34,7 +34,7 @@ pub struct Predicted {
     /// Median and intervals of the draws that have it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Whether rudder or yaw rate of the manoeuvre are beyond those of the records.
+    /// `true` if rudder or yaw rate of the manoeuvre are beyond those of the records.
     pub extrapolated: bool,
     /// Share of the draws that have the figure.
     pub defined: f64,
@@ -112,7 +112,7 @@ struct DrawnSeries {
     heading: Vec<f64>,
     largest_rate: f64,
     track: Option<Vec<[f64; 2]>>,
-    /// Whether its track is one of those that are shown.
+    /// `true` if its track is one of those that are shown.
     is_shown: bool,
 }
 
@@ -123,7 +123,7 @@ impl DrawnSeries {
 }
 
 impl Prediction {
-    /// Whether rudder or yaw rate are beyond those of the records.
+    /// `true` if rudder or yaw rate are beyond those of the records.
     pub fn is_extrapolated(&self) -> bool {
         self.figures.values().any(|figure| figure.extrapolated)
     }
@@ -137,7 +137,7 @@ pub(crate) fn lost(what: impl ToString, made: usize, draws: usize) -> PredictErr
     PredictError::Lost { kind: what.to_string(), made, draws }
 }
 
-/// Fails where less than half of the drawn ships complete a manoeuvre.
+/// Fails if less than half of the drawn ships complete a manoeuvre.
 pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
     if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
 }
@@ -150,14 +150,14 @@ impl ShipMixture {
 
     /// Predicts a manoeuvre from so many draws; `shares` adds the share of every source of uncertainty.
     ///
-    /// Fails where less than half of the drawn ships complete it.
+    /// Fails if less than half of the drawn ships complete it.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
         let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
         };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
-            Some((figures::of(kind, &passage, self.particulars()), passage))
+            Some((figures::characteristics(kind, &passage, self.particulars()), passage))
         };
         let is_circle = matches!(kind, Manoeuvre::TurningCircle { .. });
         let series = |number: u64, passage: SimulatedManoeuvre| DrawnSeries {
@@ -213,7 +213,7 @@ impl ShipMixture {
         Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
     }
 
-    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond the range of the records.
+    /// `true` if a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond the range of the records.
     pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let end =

@@ -36,7 +36,7 @@ pub struct Compared {
     /// Predicted interval, with the error of the measured value where the record gives it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Whether the 90 % interval contains the measured value.
+    /// `true` if the 90 % interval contains the measured value.
     pub inside90: bool,
 }
 
@@ -107,7 +107,7 @@ impl ShipMixture {
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
     /// of a helm that reverses the rudder at the recorded headings, because a replayed rudder does not follow the
     /// heading. A hull is in the mean wind of the record, where it was measured. `current` is that removed from the
-    /// positions of the record ([`without_current`](turn::without_current)). `None` where the record has too few
+    /// positions of the record ([`without_current`](turn::without_current)). `None` if the record has too few
     /// headings at its beginning.
     pub fn replay(
         &self,

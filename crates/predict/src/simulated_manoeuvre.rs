@@ -110,7 +110,7 @@ impl SimulatedManoeuvre {
 
     /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
     ///
-    /// Fails where the ship does not reach a heading that the helm waits for, turns for ever, or exceeds the speeds for
+    /// Fails if the ship does not reach a heading that the helm waits for, turns for ever, or exceeds the speeds for
     /// which the equations of a hull are valid.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
@@ -181,7 +181,7 @@ impl SimulatedManoeuvre {
         cut
     }
 
-    /// Largest size of the yaw rate, rad/s.
+    /// Maximum size of the yaw rate, rad/s.
     pub fn largest_rate(&self) -> f64 {
         self.yaw_rate.iter().fold(0.0, |largest, rate| largest.max(rate.abs()))
     }
@@ -199,7 +199,7 @@ impl SimulatedManoeuvre {
         Some(self.time(before) + self.period * (angle - low) / (high - low))
     }
 
-    /// Largest heading to the side `side` (±1), rad, between two times, s: where the yaw rate changes its sign between
+    /// Maximum heading to the side `side` (±1), rad, between two times, s: where the yaw rate changes its sign between
     /// rows the peak of the parabola.
     pub fn peak(&self, side: f64, from: f64, until: f64) -> Option<f64> {
         let first = (from / self.period).floor() as usize;

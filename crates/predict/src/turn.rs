@@ -70,7 +70,7 @@ pub struct HeldTurn {
     pub until: f64,
     /// Side of the rudder, ±1.
     pub side: f64,
-    /// Largest rudder angle to that side, rad.
+    /// Maximum rudder angle to that side, rad.
     pub rudder: f64,
     /// Rudder angle before, rad.
     pub before: f64,
@@ -132,7 +132,7 @@ impl HeldTurn {
     }
 
     /// The track from the execute on, where the course is north: north and east in lengths of the ship, one and a half
-    /// circles at most. `None` where there is no track.
+    /// circles at most. `None` if there is no track.
     fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
         let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
         let first = self.first_row(passage);

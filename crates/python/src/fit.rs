@@ -36,7 +36,7 @@ impl PyFit {
         self.trials.get(place).cloned().map(PyRecord::plain)
     }
 
-    /// Replay of a record by the estimate of a method; `None` where the method has none.
+    /// Replay of a record by the estimate of a method; `None` if the method has none.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))

@@ -19,7 +19,7 @@ const STACK: usize = 8 << 20;
 pub struct Underway<T>(Receiver<Result<T, Failure>>);
 
 impl<T: Send + 'static> Underway<T> {
-    /// Starts work. Fails when no thread can be created.
+    /// Starts work. Fails if no thread can be created.
     pub fn start(work: impl FnOnce() -> Result<T, Failure> + Send + 'static) -> PyResult<Self> {
         let (send, receive) = channel();
         // The receiver is gone after the wait was given up.

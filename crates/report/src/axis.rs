@@ -16,12 +16,12 @@ use crate::number;
 const ZERO_SLOT: f64 = 0.21;
 const ZERO_AT: f64 = 0.08;
 const BREAK_AT: f64 = 0.155;
-/// Largest magnitude on a linear axis.
+/// Maximum magnitude on a linear axis.
 const MAX_MAGNITUDE: f64 = 1e100;
 /// Lengths of the axis beyond its ends where all that lies farther off is drawn: lines run the same way, and whole
 /// numbers would overflow.
 const FAR: f64 = 20.0;
-/// Largest number of intervals between ticks that an axis asks for.
+/// Maximum number of intervals between ticks that an axis asks for.
 pub(crate) const MAX_TICKS: usize = 10;
 /// Room for labels right of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
@@ -156,12 +156,12 @@ impl Axis {
         (self.lo, self.hi)
     }
 
-    /// Whether it is logarithmic.
+    /// `true` if it is logarithmic.
     pub(crate) fn is_logarithmic(&self) -> bool {
         matches!(self.scale, AxisScale::Log { .. })
     }
 
-    /// Whether it is a list of names.
+    /// `true` if it is a list of names.
     pub(crate) fn is_names(&self) -> bool {
         self.scale == AxisScale::Names
     }
@@ -171,7 +171,7 @@ impl Axis {
         (self.scale == AxisScale::Log { zero: true }).then_some(BREAK_AT)
     }
 
-    /// Whether a value has a place on the axis or beyond its ends: it is finite, and positive on a logarithmic scale.
+    /// `true` if a value has a place on the axis or beyond its ends: it is finite, and positive on a logarithmic scale.
     pub(crate) fn has_place(&self, value: f64) -> bool {
         let is_on_scale = match self.scale {
             AxisScale::Log { zero } => value > 0.0 || (zero && value == 0.0),
@@ -229,7 +229,7 @@ impl Axis {
         fewest
     }
 
-    /// Whether the labels under an axis of this width stand clear of each other, and of what is beside it.
+    /// `true` if the labels under an axis of this width stand clear of each other, and of what is beside it.
     pub(crate) fn fits(&self, width: f64, font: f64) -> bool {
         let place = |value: f64| f64::from(self.map(&value, (0, 1_000_000))) * 1e-6 * width;
         let half = |label: &str| text_width(label, font, false) / 2.0;
@@ -304,7 +304,7 @@ impl Ranged for Axis {
         LogCoord::from((self.lo..self.hi).log_scale()).map(&value, (part(if zero { ZERO_SLOT } else { 0.0 }), end))
     }
 
-    /// The ticks; between those of a logarithmic axis of few decades the other digits, where light lines are asked for.
+    /// The ticks; between those of a logarithmic axis of few decades the other digits, where light lines are requested.
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         if !hint.weight().allow_light_points() {
             return self.ticks.iter().map(|(value, _)| *value).collect();
@@ -342,7 +342,7 @@ fn linear_labels(ticks: &[f64]) -> Vec<String> {
     ticks.iter().map(label).collect()
 }
 
-/// Smallest and largest finite value.
+/// Minimum and largest finite value.
 pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.into_iter().filter(|v| v.is_finite()).map(|v| (v, v));
     finite.reduce(|(lo, hi), (v, _)| (lo.min(v), hi.max(v)))

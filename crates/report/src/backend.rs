@@ -28,7 +28,7 @@ pub(crate) const UNITS: f64 = 20.0;
 /// Height of the sheet that is drawn on, units; the page ends where the figure does.
 const TALLEST: u32 = 2_000_000;
 
-/// Largest number of repetitions of a dash pattern. A longer line goes to and fro until it is a band without visible
+/// Maximum number of repetitions of a dash pattern. A longer line goes to and fro until it is a band without visible
 /// dashes.
 const MAX_REPEATS: f64 = 5000.0;
 
@@ -50,7 +50,7 @@ pub(crate) type Bounds = [i32; 4];
 pub(crate) struct SvgGroup {
     /// Name that the key of the figure gives them; a page in a browser finds them by it.
     pub series: Option<String>,
-    /// Whether they are intervals of the values of that series, which are no values themselves.
+    /// `true` if they are intervals of the values of that series, which are no values themselves.
     pub is_interval: bool,
     /// Pattern of their lines in widths of the line, and that width in points.
     pub dash: Option<(Dash, f64)>,
@@ -70,7 +70,7 @@ struct OpenGroup {
     group: SvgGroup,
     /// Where its elements begin in the document.
     start: usize,
-    /// Whether one of them reaches beyond the rectangle that cuts them.
+    /// `true` if one of them reaches beyond the rectangle that cuts them.
     is_beyond: bool,
 }
 

@@ -35,7 +35,7 @@ impl Rect {
         self.y + self.h
     }
 
-    /// Whether a place lies in it or on its edge, to the width of a hair: places are rounded.
+    /// `true` if a place lies in it or on its edge, to the width of a hair: places are rounded.
     pub(crate) fn contains(&self, (x, y): PagePoint) -> bool {
         let slack = 0.1;
         x >= self.x - slack && x <= self.right() + slack && y >= self.y - slack && y <= self.bottom() + slack

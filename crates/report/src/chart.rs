@@ -36,7 +36,7 @@ pub(crate) struct Bar {
     /// Its height, a value of the vertical axis.
     pub y: f64,
     pub ends: [f64; 2],
-    /// Whether it has caps.
+    /// `true` if it has caps.
     pub is_capped: bool,
     pub stroke: Stroke,
 }

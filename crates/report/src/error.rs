@@ -11,17 +11,17 @@ pub enum ReportError {
     /// The width of a printed figure is outside what a page can carry.
     #[error("a figure {width_mm} mm wide cannot be drawn: the width must lie between {min_mm} and {max_mm} mm")]
     Width {
-        /// The width asked for, mm.
+        /// The width requested, mm.
         width_mm: f64,
-        /// Smallest width, mm.
+        /// Minimum width, mm.
         min_mm: f64,
-        /// Largest width, mm.
+        /// Maximum width, mm.
         max_mm: f64,
     },
     /// The resolution of a printed figure is outside the accepted range.
     #[error("{dpi} dots per inch is not usable: the resolution must lie between {min} and {max} dpi")]
     Resolution {
-        /// The resolution asked for, dots per inch.
+        /// The resolution requested, dots per inch.
         dpi: f64,
         /// Lowest resolution, dots per inch.
         min: f64,

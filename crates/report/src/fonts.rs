@@ -13,7 +13,7 @@ use crate::markup::is_markup;
 /// Name of the embedded family.
 pub(crate) const FAMILY: &str = "DejaVu Sans";
 
-/// What an SVG viewer is asked for. Verdana comes second because its widths are nearest to those of DejaVu Sans, with
+/// What an SVG viewer is requested. Verdana comes second because its widths are nearest to those of DejaVu Sans, with
 /// which the labels are measured.
 pub(crate) const FAMILY_WITH_FALLBACK: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 

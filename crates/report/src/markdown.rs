@@ -47,12 +47,12 @@ pub fn prose(text: &str) -> String {
     out
 }
 
-/// Whether a character that cannot be seen belongs into prose: a line break or a tab.
+/// `true` if a character that cannot be seen belongs into prose: a line break or a tab.
 pub fn is_layout(c: char) -> bool {
     matches!(c, '\n' | '\r' | '\t')
 }
 
-/// Whether `<` before this begins a tag, a comment or a link.
+/// `true` if `<` before this begins a tag, a comment or a link.
 fn opens_tag(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '/' | '!' | '?'))
 }

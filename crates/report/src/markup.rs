@@ -5,7 +5,7 @@ const ITALIC_ON: char = '\u{e000}';
 /// Ends italic type.
 const ITALIC_OFF: char = '\u{e001}';
 
-/// Whether a character is one of the two marks around italic type.
+/// `true` if a character is one of the two marks around italic type.
 pub(crate) fn is_markup(c: char) -> bool {
     c == ITALIC_ON || c == ITALIC_OFF
 }

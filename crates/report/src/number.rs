@@ -4,7 +4,7 @@
 /// What stands for a value that is not defined.
 pub const MISSING: &str = "–";
 
-/// Smallest and largest magnitude written without a power of ten.
+/// Minimum and largest magnitude written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
 
 /// More decimals than this say nothing about a double.

@@ -1,7 +1,7 @@
 //! A page: a template of Markdown that was filled in, and its figures in the places that the template gives them.
 //!
 //! A template is Markdown with two marks of its own: a paragraph `![stem]` is the figure of that stem, and a headline
-//! `##~ Title` begins a part that a browser shows when it is asked for.
+//! `##~ Title` begins a part that a browser shows when it is requested.
 
 use crate::figures::Plot;
 use crate::markdown::{prose, text};
@@ -50,7 +50,7 @@ impl<P: PartialEq> PlacedFigures<P> {
         self.0.extend(figures.into_iter().map(|figure| (place, figure)));
     }
 
-    /// Whether a place has a figure.
+    /// `true` if a place has a figure.
     pub fn has(&self, place: P) -> bool {
         self.0.iter().any(|(other, _)| *other == place)
     }
@@ -97,7 +97,7 @@ impl Page {
         Self { figures: placed.into_iter().map(|(_, figure)| figure).collect(), blocks, folded }
     }
 
-    /// Titles of the parts that a browser shows when it is asked for.
+    /// Titles of the parts that a browser shows when it is requested.
     pub fn folded(&self) -> Vec<&str> {
         self.folded.iter().map(String::as_str).collect()
     }

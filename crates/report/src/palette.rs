@@ -139,7 +139,7 @@ pub struct Look {
     pub marker: Marker,
     /// Pattern of the line.
     pub dash: Dash,
-    /// Whether the marker is an outline only.
+    /// `true` if the marker is an outline only.
     pub hollow: bool,
 }
 

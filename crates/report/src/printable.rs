@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-/// Whether a character is seen, sets an accent or is a blank. Line breaks and tabs are not.
+/// `true` if a character is seen, sets an accent or is a blank. Line breaks and tabs are not.
 pub fn is_printable(c: char) -> bool {
     match c {
         ' '..='~' => true,

@@ -19,7 +19,7 @@ use crate::lines::{LEADING, balanced, wrap};
 use crate::palette::{GRID, INK};
 use crate::theme::Theme;
 
-/// Largest share of the page for the names of rows; longer ones are broken into lines.
+/// Maximum share of the page for the names of rows; longer ones are broken into lines.
 pub(crate) const NAMES: f64 = 0.42;
 
 /// Density of the lines between ticks on a logarithmic axis.
@@ -71,7 +71,7 @@ struct GridColumn {
     /// Left edge and width of the panels, points.
     left: f64,
     width: f64,
-    /// Whether its names are turned, because their words are too long to stand side by side.
+    /// `true` if its names are turned, because their words are too long to stand side by side.
     is_turned: bool,
     /// Room below the last panel for labels and title, points.
     below: f64,
@@ -251,7 +251,7 @@ impl Sheet {
         Ok(charts)
     }
 
-    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last two where they are asked for: at the
+    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last two where they are requested: at the
     /// left, and below.
     fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> Plotted<Chart> {
         let theme = &self.theme;

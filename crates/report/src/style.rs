@@ -11,7 +11,7 @@ use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, 
 use crate::theme::Theme;
 use plotters::style::RGBColor;
 
-/// Sizes of type that can be asked for, points.
+/// Sizes of type that can be requested, points.
 const FONT: [f64; 2] = [4.0, 30.0];
 /// Widths of lines and radii of markers, points.
 const LINE: [f64; 2] = [0.1, 10.0];
@@ -108,7 +108,7 @@ fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
 impl Style {
     /// A theme with this style. `width-mm` and `dpi` are for who makes the theme, except the resolution of a screen.
     ///
-    /// Fails when a value is out of its range or names nothing.
+    /// Fails if a value is out of its range or names nothing.
     pub fn on(&self, theme: Theme) -> Result<Theme, StyleError> {
         let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
             Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),

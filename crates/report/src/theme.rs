@@ -101,7 +101,7 @@ impl Theme {
         share * self.width * if self.is_narrow() { 1.45 } else { 1.0 }
     }
 
-    /// Whether the figure is so narrow that side-by-side arrangements have to be stacked.
+    /// `true` if the figure is so narrow that side-by-side arrangements have to be stacked.
     pub(crate) fn is_narrow(&self) -> bool {
         self.width / self.tick_font < 45.0
     }

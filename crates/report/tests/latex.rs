@@ -6,7 +6,7 @@ use std::process::Command;
 
 use kempf_report::{Table, TableHead};
 
-/// Largest box that may stand out of the text, points.
+/// Maximum box that may stand out of the text, points.
 const OVERFULL: f64 = 5.0;
 
 /// Everything that tables of this program hold, and more.

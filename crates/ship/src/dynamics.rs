@@ -5,7 +5,7 @@
 
 use estimation::number::Real;
 
-/// Measured channels beside heading and rudder at one instant; `None` where the record has none.
+/// Measured channels beside heading and rudder at one instant; `None` if the record has none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured {
     /// Speed through the water, m/s.
@@ -113,7 +113,7 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
         R::from(0.0)
     }
 
-    /// Largest step, s, at which a fourth-order integrator keeps its accuracy for this system.
+    /// Maximum step, s, at which a fourth-order integrator keeps its accuracy for this system.
     fn largest_step(&self) -> f64 {
         0.1
     }

@@ -25,7 +25,7 @@ pub const USUAL_K_OVER_T_PRIME: [f64; 2] = [0.25, 2.0];
 /// Usual range of the rudder rate of ships, deg/s; SOLAS II-1/29 requires 65° in 28 s, 2.3 deg/s.
 const SHIP_RUDDER_RATE_DEG_S: [f64; 2] = [2.0, 7.0];
 
-/// Smallest length of a full-scale ship, m, and the lengths of the ships behind shorter models.
+/// Minimum length of a full-scale ship, m, and the lengths of the ships behind shorter models.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
 const MODELLED_LENGTHS_M: [f64; 2] = [100.0, 400.0];
 

@@ -42,7 +42,7 @@ pub struct Polyline {
 impl Polyline {
     /// Signal through these points.
     ///
-    /// Fails when there are no points, lengths differ, a number is not finite or time does not increase.
+    /// Fails if there are no points, lengths differ, a number is not finite or time does not increase.
     pub fn new(time: Vec<f64>, value: Vec<f64>) -> Result<Self, SignalError> {
         if time.len() != value.len() {
             return Err(SignalError::Lengths { times: time.len(), values: value.len() });

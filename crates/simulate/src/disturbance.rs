@@ -37,7 +37,7 @@ pub struct Disturbances {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {
-    /// Largest moment, as rudder angle.
+    /// Maximum moment, as rudder angle.
     #[serde(rename = "moment-deg", with = "Degrees::<f64>")]
     pub moment: f64,
     /// Direction the true wind comes from, clockwise from north.
@@ -154,10 +154,10 @@ impl Disturbances {
     }
 }
 
-/// Largest encounter frequency of waves, rad/s; even a model one metre long stays below it.
+/// Maximum encounter frequency of waves, rad/s; even a model one metre long stays below it.
 const MAX_FREQUENCY_RAD_S: f64 = 100.0;
 
-/// Largest relative damping at which [`NarrowBand`] oscillates; at 1 its damped frequency is zero.
+/// Maximum relative damping at which [`NarrowBand`] oscillates; at 1 its damped frequency is zero.
 const MAX_DAMPING: f64 = 0.999;
 
 impl Squall {

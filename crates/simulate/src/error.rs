@@ -31,7 +31,7 @@ pub enum Expected {
     Steps {
         /// Upper estimate of the steps.
         estimate: f64,
-        /// Largest number of steps.
+        /// Maximum number of steps.
         most: f64,
     },
     /// The number of an execute, up to that of the last one.

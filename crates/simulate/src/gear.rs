@@ -28,7 +28,7 @@ pub struct SteeringGear {
     /// Error at which the pump stops, and below which it does not start.
     #[serde(rename = "dead-band-deg", with = "Degrees::<f64>")]
     pub dead_band: f64,
-    /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
+    /// Maximum rudder angle to either side; that of the ship where its source gives one, and else 90°.
     #[serde(rename = "maximum-deg", with = "Degrees::<Option<f64>>")]
     pub maximum: Option<f64>,
 }
@@ -80,7 +80,7 @@ impl Segment {
 }
 
 impl SteeringGear {
-    /// Largest angle of any rudder, deg.
+    /// Maximum angle of any rudder, deg.
     const MAX_DEG: f64 = 90.0;
 
     /// Gear with a rate limit, rad/s, only.
@@ -97,12 +97,12 @@ impl SteeringGear {
         }
     }
 
-    /// Largest rudder rate, rad/s; infinite for none.
+    /// Maximum rudder rate, rad/s; infinite for none.
     pub fn largest_rate(&self) -> f64 {
         self.rate.unwrap_or(f64::INFINITY)
     }
 
-    /// Largest rudder angle to either side, rad; infinite for none.
+    /// Maximum rudder angle to either side, rad; infinite for none.
     pub fn largest_rudder(&self) -> f64 {
         self.maximum.unwrap_or(f64::INFINITY)
     }

@@ -32,13 +32,13 @@ pub(crate) struct View<'a> {
     pub jitter: &'a [f64],
     /// Rudder path, executes and readings of the helmsman.
     pub run: &'a RunResult,
-    /// Rudder path reconstructed from the orders; `None` where the rudder is recorded.
+    /// Rudder path reconstructed from the orders; `None` if the rudder is recorded.
     pub assumed: Option<&'a RudderPath>,
     /// Rudder order before the first execute, rad; `None` without orders.
     pub first_order: Option<f64>,
     /// Wind; `None` for none.
     pub wind: Option<Wind>,
-    /// Length and approach speed of the ship; `None` where unknown.
+    /// Length and approach speed of the ship; `None` if unknown.
     pub particulars: Option<Particulars>,
 }
 
@@ -244,7 +244,7 @@ fn wind_channels(view: &View) -> Vec<(Channel, Vec<f64>)> {
     channels
 }
 
-/// For every row, `true` if it is lost; `None` where no row can be lost.
+/// For every row, `true` if it is lost; `None` if no row can be lost.
 fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<bool>> {
     if drop_out.probability <= 0.0 && drop_out.burst_probability.is_none() {
         return None;

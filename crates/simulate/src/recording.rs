@@ -65,7 +65,7 @@ impl Recording {
         Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
     }
 
-    /// Largest duration of a record, s.
+    /// Maximum duration of a record, s.
     pub(crate) fn max_duration(&self) -> f64 {
         (MAX_ROWS - 1) as f64 * self.period
     }
@@ -145,10 +145,10 @@ struct Jitter {
     delay: f64,
 }
 
-/// Largest jitter as a share of the period; below a half, so that instants keep their order.
+/// Maximum jitter as a share of the period; below a half, so that instants keep their order.
 const MAX_JITTER_SHARE: f64 = 0.45;
 
-/// Largest number of rows reserved at once; a manoeuvre can end long before its record is full.
+/// Maximum number of rows reserved at once; a manoeuvre can end long before its record is full.
 const MAX_RESERVED_ROWS: usize = 4096;
 
 impl Sampler {
@@ -157,7 +157,7 @@ impl Sampler {
         Self::new(start, recording, None)
     }
 
-    /// Sampler at the instants of the instruments; `None` where these are the stamps.
+    /// Sampler at the instants of the instruments; `None` if these are the stamps.
     pub fn instruments(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
         let deviates = sensors.jitter > 0.0 || sensors.heading_delay != 0.0;
         deviates.then(|| {

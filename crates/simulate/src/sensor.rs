@@ -89,7 +89,7 @@ pub struct DropOut {
     pub burst_probability: Option<f64>,
     /// Mean length of a burst; with `burst-probability`.
     pub burst_mean_rows: Option<f64>,
-    /// Whether a lost row is lost whole, or only its heading.
+    /// `true` if a lost row is lost whole, or only its heading.
     pub whole_row: bool,
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
 const MIN_LAG_S: f64 = 0.01;
 const MAX_LAG_S: f64 = 100.0;
 
-/// Largest spike, deg, which is the largest difference of two headings.
+/// Maximum spike, deg, which is the largest difference of two headings.
 const MAX_SPIKE_DEG: f64 = 180.0;
 
 impl Sensors {
@@ -139,7 +139,7 @@ impl Sensors {
         self.drop_out.validate()
     }
 
-    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` where there is
+    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` if there is
     /// neither. Waves, lag, bias, coloured errors and spikes are not declared, because a standard deviation does not
     /// describe them.
     pub fn declared_noise(&self) -> Noise {

@@ -100,7 +100,7 @@ pub struct Simulation {
     /// Cell width of the weather, s, which is linear within a cell: short against every correlation time of the weather
     /// and every time constant of the ship.
     pub weather_grid: f64,
-    /// Longest wait for a heading after an execute, s; a ship that does not reach it is an error.
+    /// Maximum wait for a heading after an execute, s; a ship that does not reach it is an error.
     pub longest_wait: f64,
 }
 
@@ -350,7 +350,7 @@ impl Simulation {
         Ok(self.look_back(rows, instruments, &run.finish()))
     }
 
-    /// Rudder path reconstructed from the orders; `None` where the rudder is recorded.
+    /// Rudder path reconstructed from the orders; `None` if the rudder is recorded.
     fn assumed_path(&self, executes: &[HelmOrder]) -> Option<RudderPath> {
         let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
         let gear = SteeringGear::with_rate(rate);

@@ -89,7 +89,7 @@ impl Vessel {
         &self.random_headings
     }
 
-    /// Length and approach speed; `None` where unknown.
+    /// Length and approach speed; `None` if unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
     }

@@ -109,7 +109,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Whether the arguments ask for JSON; errors in the arguments themselves are then JSON, too.
+/// `true` if the arguments ask for JSON; errors in the arguments themselves are then JSON, too.
 fn asks_for_json(arguments: &[OsString]) -> bool {
     arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
         || arguments.iter().any(|word| word == "--format=json")

@@ -1,4 +1,4 @@
-//! Failures on standard error: as text, or as JSON where a program asked for it.
+//! Failures on standard error: as text, or as JSON where a program requested it.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +8,7 @@ use campaign::failure::Failure;
 use crate::documents::error;
 use crate::screen;
 
-/// Whether failures are written as JSON.
+/// `true` if failures are written as JSON.
 static FOR_PROGRAMS: AtomicBool = AtomicBool::new(false);
 
 /// Writes failures from now on as JSON, for programs.
@@ -16,7 +16,7 @@ pub fn use_json() {
     FOR_PROGRAMS.store(true, Ordering::Relaxed);
 }
 
-/// Whether failures are written as JSON.
+/// `true` if failures are written as JSON.
 pub fn is_for_programs() -> bool {
     FOR_PROGRAMS.load(Ordering::Relaxed)
 }

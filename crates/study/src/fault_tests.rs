@@ -162,7 +162,7 @@ fn no_fault_of_the_disk_loses_anything_of_shards() {
     assert!(fail_each(Some(&shards), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
-/// A block that is whole stays, whatever fails when its study goes on.
+/// A block that is whole stays, whatever fails if its study goes on.
 #[test]
 fn no_fault_of_the_disk_loses_a_block() {
     let desk = tempfile::tempdir().expect("a temporary folder");

@@ -32,7 +32,7 @@ pub fn listen(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
-/// Whether Ctrl-C has asked to stop.
+/// `true` if Ctrl-C has asked to stop.
 pub fn is_asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

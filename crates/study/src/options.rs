@@ -57,7 +57,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// Whether standard output stays empty; a format that was asked for is written even with `--quiet`.
+    /// `true` if standard output stays empty; a format that was requested is written even with `--quiet`.
     pub fn is_silent(&self) -> bool {
         self.quiet && self.format == Format::Text
     }

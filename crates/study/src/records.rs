@@ -99,7 +99,7 @@ fn refused(error: ReadError) -> Failure {
 
 /// Reads the records to identify: of each the selected part, or its zig-zag.
 ///
-/// Fails when one cannot be read, and when a log holds several zig-zags and none is selected.
+/// Fails if one cannot be read, and when a log holds several zig-zags and none is selected.
 pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
     let files = expand(paths)?;
     let one_only = [
@@ -135,7 +135,7 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
 
 /// The record in a log: the selected part, or its zig-zag. `path` is its name in messages.
 ///
-/// Fails when that part is not a record, and when the log holds several zig-zags and none is selected.
+/// Fails if that part is not a record, and when the log holds several zig-zags and none is selected.
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
@@ -149,8 +149,8 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Wa
     with_declared(trial, path, options)
 }
 
-/// The record with hull and trial particulars of the options, which override those of a sidecar; particulars of a ship of
-/// another length are dropped.
+/// The record with hull and trial particulars of the options, which override those of a sidecar; particulars of a ship
+/// of another length are dropped.
 fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
     let length = trial.particulars().map(|ship| ship.length);

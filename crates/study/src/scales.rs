@@ -12,13 +12,13 @@ pub struct RescaledRecords {
     pub trials: Vec<Trial>,
     /// Records that are held out, at the same scale.
     pub held_out: Vec<Trial>,
-    /// The scales they had; `None` where all had one.
+    /// The scales they had; `None` if all had one.
     pub scales: Option<Scales>,
 }
 
 /// Brings fitted and held-out records to the scale of the first where they differ.
 ///
-/// Fails where they differ and a record does not declare length and speed.
+/// Fails if they differ and a record does not declare length and speed.
 pub fn together(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
     let scales = Scales::among(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {

@@ -14,7 +14,7 @@ use campaign::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
-/// Fails when they cannot be written, except to a pipe that nobody reads any more.
+/// Fails if they cannot be written, except to a pipe that nobody reads any more.
 pub fn say(lines: &str) -> Result<(), Failure> {
     put(&shown(lines))
 }
@@ -33,12 +33,12 @@ fn put(text: &str) -> Result<(), Failure> {
 pub fn warn(line: &str) {
     let stream = std::io::stderr();
     let line = shown(line);
-    let line = if is_coloured(&stream) { coloured(&line) } else { line };
+    let line = if has_terminal_colours(&stream) { coloured(&line) } else { line };
     let _ = writeln!(stream.lock(), "{line}");
 }
 
-/// Whether a stream goes to a terminal with colours, not switched off by `NO_COLOR` or `TERM=dumb`.
-pub fn is_coloured(stream: &impl anstream::stream::RawStream) -> bool {
+/// `true` if a stream goes to a terminal with colours, not switched off by `NO_COLOR` or `TERM=dumb`.
+pub fn has_terminal_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
 

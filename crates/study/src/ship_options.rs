@@ -41,7 +41,7 @@ pub struct ShipOptions {
 }
 
 impl ShipOptions {
-    /// Whether no particular is given.
+    /// `true` if no particular is given.
     pub fn is_empty(&self) -> bool {
         self.scale.length_m.is_none() && self.form.0.is_empty()
     }

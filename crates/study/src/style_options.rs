@@ -28,7 +28,7 @@ pub struct PageFigureOptions {
     /// How they are drawn
     #[command(flatten)]
     pub style: FigureOptions,
-    /// Whether figures are made; the document, the curves and the text of the page are always written
+    /// `true` if figures are made; the document, the curves and the text of the page are always written
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = PageFigures::All)]
     pub figures: PageFigures,
 }
@@ -43,7 +43,7 @@ pub enum PageFigures {
 }
 
 impl PageFigureOptions {
-    /// The theme of the figures, `None` where none are made. Fails as [`FigureOptions::theme`] does.
+    /// The theme of the figures, `None` if none are made. Fails as [`FigureOptions::theme`] does.
     pub fn theme(&self) -> Result<Option<Theme>, Failure> {
         let theme = self.style.theme()?;
         Ok((self.figures == PageFigures::All).then_some(theme))

@@ -49,7 +49,7 @@ pub struct Analysis {
     pub identification: Vec<RecordComparison>,
     /// Comparisons on the held-out records.
     pub validation: Vec<RecordComparison>,
-    /// Leave-one-out comparisons, where several records are fitted and none is held out; `None` where the remaining
+    /// Leave-one-out comparisons, where several records are fitted and none is held out; `None` if the remaining
     /// records have no base or no finite replay.
     pub left_out: Vec<Option<RecordComparison>>,
     /// The structures with their probabilities.
@@ -108,7 +108,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// depends on them.
 ///
 /// Compass outliers are removed from all records and listed; a rudder with measurement noise is replaced by its
-/// piecewise linear estimate. Fails when a setting is out of range, when a requested effect is no candidate, and when
+/// piecewise linear estimate. Fails if a setting is out of range, when a requested effect is no candidate, and when
 /// the base cannot be fitted or replayed.
 ///
 /// ```
@@ -174,7 +174,7 @@ fn analyse(
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
-    let held_out = averaged.all_compared(&validation, &response, settings.thorough)?;
+    let held_out = averaged.compare_all(&validation, &response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let left_out = if is_folded { folds() } else { Vec::new() };
@@ -236,7 +236,7 @@ fn weighed(
     if calm.1.mean_square_of_ship() < best.1.mean_square_of_ship() { calm } else { best }
 }
 
-/// Candidate terms of the selection; fails where a requested effect is not among them.
+/// Candidate terms of the selection; fails if a requested effect is not among them.
 fn candidates_of(
     records: &[PreparedRecord],
     trials: &[Trial],
@@ -303,7 +303,7 @@ pub struct PlausibleStructure {
     pub response: Response,
     /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
-    /// Covariance of the fitted parameters; `None` where it is singular.
+    /// Covariance of the fitted parameters; `None` if it is singular.
     pub covariance: Option<DMatrix<f64>>,
 }
 
@@ -314,7 +314,7 @@ impl Analysis {
         best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
     }
 
-    /// Shape analysis of the residual of the most probable structure; `None` where its covariance is singular.
+    /// Shape analysis of the residual of the most probable structure; `None` if its covariance is singular.
     pub fn shapes(&self) -> Option<ShapeAnalysis> {
         shape::analysis(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
@@ -322,7 +322,7 @@ impl Analysis {
     /// Members of the structure average for predictions, the most probable first.
     pub fn plausible_structures(&self) -> Vec<PlausibleStructure> {
         let member = |(weight, fit): (f64, &StructureFit)| {
-            let (structure, theta) = fit.structure.alone(None, &fit.theta);
+            let (structure, theta) = fit.structure.for_record(None, &fit.theta);
             let fitted = structure.fitted();
             let covariance = fit.kept_covariance(None).map(|kept| {
                 // A parameter given relative to another one is converted to its physical value.
@@ -354,7 +354,7 @@ impl Analysis {
     }
 
     /// Replay of the average on a noise-free trial, from the best initial state near `start` (rad, rad/s). Its band
-    /// covers the errors of parameters and structures only. `None` when no replay is finite.
+    /// covers the errors of parameters and structures only. `None` if no replay is finite.
     pub fn replay_in_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);

@@ -47,7 +47,7 @@ pub struct AverageReplay {
 }
 
 impl AverageReplay {
-    /// Whether the replay of a member diverges.
+    /// `true` if the replay of a member diverges.
     pub fn is_divergent(&self) -> bool {
         is_divergent(&self.members.iter().map(Replay::rms).collect::<Vec<f64>>())
     }
@@ -78,7 +78,7 @@ impl AveragedModel<'_> {
 
 impl Average {
     /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of the
-    /// depth; `None` when no replay is finite.
+    /// depth; `None` if no replay is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
         let replays: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
@@ -109,7 +109,7 @@ impl Average {
     }
 }
 
-/// Whether the largest error exceeds [`MAX_ERROR_RATIO`] times their median.
+/// `true` if the largest error exceeds [`MAX_ERROR_RATIO`] times their median.
 fn is_divergent(errors: &[f64]) -> bool {
     let mut sorted = errors.to_vec();
     sorted.sort_by(f64::total_cmp);

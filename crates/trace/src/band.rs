@@ -25,7 +25,7 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 /// Number of drawn residuals for each structure.
 const DRAWS: usize = 100;
 
-/// Half-width of the band at every row of a replay, rad; `None` where the covariance of the parameters is singular.
+/// Half-width of the band at every row of a replay, rad; `None` if the covariance of the parameters is singular.
 pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
@@ -104,7 +104,7 @@ impl ResidualSampler {
         initial: [f64; 2],
         variance: f64,
     ) -> Option<Self> {
-        let (structure, theta) = fit.structure.alone(after.fitted_record, &fit.theta);
+        let (structure, theta) = fit.structure.for_record(after.fitted_record, &fit.theta);
         let linear = problem.linear(&structure, &theta, &[initial]);
         let rows = linear.blocks[0].residual.len();
         let count = linear.unknowns - 2;

@@ -16,7 +16,7 @@ pub struct Base {
 }
 
 impl Base {
-    /// Fits the base; fails where `output-error` has no answer or a replay is not finite.
+    /// Fits the base; fails if `output-error` has no answer or a replay is not finite.
     pub fn fit(trials: &[Trial]) -> Result<Self, TraceError> {
         let method = output_error::Settings::default().build().expect("default settings are valid");
         let estimate = method.identify(trials)?;

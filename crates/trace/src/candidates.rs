@@ -10,7 +10,7 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
-/// Smallest relative change of the propeller revolutions for which they count as recorded.
+/// Minimum relative change of the propeller revolutions for which they count as recorded.
 const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
 /// Prior probability of an effect.
@@ -54,14 +54,14 @@ pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, recor
     }
 }
 
-/// Whether a declared calm excludes an effect of the weather that was not requested: the record in which it would act
+/// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
 /// declares a calm, or all records do where it would act in all of them.
 pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
-    effect.is_environmental() && !selection.asks_for(effect.id()) && is_calm()
+    effect.is_environmental() && !selection.requires(effect.id()) && is_calm()
 }
 
-/// Whether waves are candidates for the noise law.
+/// `true` if waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
     selection.allows(WaveYaw.id()) && !is_becalmed(&WaveYaw, None, trials, selection)
 }
@@ -96,13 +96,13 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
     candidates.iter().map(weighted).collect()
 }
 
-/// Whether a form is tried only in place of another form of its effect, and not in the full model: a short first-order
-/// lag and a short dead time are nearly collinear.
+/// `true` if a form is tried only in place of another form of its effect, and not in the full model: a short
+/// first-order lag and a short dead time are nearly collinear.
 pub fn is_variant(effect: &dyn Effect) -> bool {
     (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
 }
 
-/// Whether an effect mainly shifts the response to the rudder in time.
+/// `true` if an effect mainly shifts the response to the rudder in time.
 pub fn is_delay(effect: &dyn Effect) -> bool {
     let id = effect.id();
     id == SteeringLag::DeadTime.id()
@@ -110,7 +110,7 @@ pub fn is_delay(effect: &dyn Effect) -> bool {
         || (id, effect.form()) == (Backlash.id(), Backlash.form())
 }
 
-/// Mean square of a channel over all records; `None` when a record lacks it, or when it is zero throughout.
+/// Mean square of a channel over all records; `None` if a record lacks it, or when it is zero throughout.
 pub fn mean_square<'a>(
     records: &'a [PreparedRecord],
     signal: impl Fn(&'a PreparedRecord) -> Option<&'a Polyline>,

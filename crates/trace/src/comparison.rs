@@ -27,7 +27,7 @@ pub struct ReplayResult {
     pub replay: Replay,
     /// Errors of the replay.
     pub errors: ReplayErrors,
-    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not computed and
+    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` if it was not computed and
     /// where the covariance of the parameters is singular.
     pub band: Option<Vec<f64>>,
 }
@@ -68,7 +68,7 @@ impl BandCoverage {
         self.inside as f64 / self.total as f64
     }
 
-    /// Whether the coverage is consistent with the nominal 95 %.
+    /// `true` if the coverage is consistent with the nominal 95 %.
     pub fn is_nominal(&self) -> bool {
         self.interval[1] >= NOMINAL_COVERAGE
     }
@@ -141,7 +141,7 @@ pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     starts
 }
 
-/// Replay of the base on a record, in closed form, which holds for either sign of T; fails where it is not finite.
+/// Replay of the base on a record, in closed form, which holds for either sign of T; fails if it is not finite.
 pub fn base_result(
     trial: &Trial,
     record: &PreparedRecord,
@@ -160,7 +160,7 @@ pub fn base_result(
 
 impl AveragedModel<'_> {
     /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
-    /// Fails where no replay is finite.
+    /// Fails if no replay is finite.
     pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
@@ -176,7 +176,7 @@ impl AveragedModel<'_> {
     }
 
     /// Comparisons on several held-out records.
-    pub fn all_compared(
+    pub fn compare_all(
         &self,
         trials: &[Trial],
         base: &FirstOrder,
@@ -185,7 +185,7 @@ impl AveragedModel<'_> {
         trials.par_iter().map(|trial| self.compared(trial, base, thorough)).collect()
     }
 
-    /// Replay of the average on a record from initial states near the `starts`; fails where none is finite.
+    /// Replay of the average on a record from initial states near the `starts`; fails if none is finite.
     pub fn on(
         &self,
         trial: &Trial,

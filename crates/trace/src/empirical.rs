@@ -28,7 +28,7 @@ pub struct Monomial {
 pub struct Powers {
     /// Exponents of r, δ, ψ and U.
     pub exponents: [i32; 4],
-    /// Whether one factor of each power is a magnitude.
+    /// `true` if one factor of each power is a magnitude.
     magnitude: [bool; 4],
     /// Notation: "δ|δ||ψ|".
     pub form: &'static str,

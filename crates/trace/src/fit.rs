@@ -320,12 +320,12 @@ impl StructureFit {
     /// Refit without one of the terms.
     pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: Effort) -> Self {
         let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
-        theta.drain(self.structure.ranges()[out].clone());
+        theta.drain(self.structure.term_ranges()[out].clone());
         terms.remove(out);
         problem.fit(&self.structure.of(terms), theta, self.initial.clone(), weights, effort)
     }
 
-    /// Covariance of all entries of θ, zero for fixed ones; `None` when the precision is singular.
+    /// Covariance of all entries of θ, zero for fixed ones; `None` if the precision is singular.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
         let covariance = self.structure.spread(&inverse);
@@ -341,7 +341,7 @@ impl StructureFit {
         values.map(|(place, value)| (value, sd(place))).collect()
     }
 
-    /// Covariance of the fitted entries of [`Structure::alone`] for a record.
+    /// Covariance of the fitted entries of [`Structure::for_record`] for a record.
     pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();

@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use crate::base::Base;
 use crate::candidates::is_variant;
 use crate::fit::{Effort, FittedRecords, StructureFit};
-use crate::law::{self, ChosenLaw};
+use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
 use crate::noise::CorrelatedNoise;
 use crate::transient;
@@ -76,7 +76,7 @@ pub fn fit(
     let fitted = |law: &NoiseLaw| if law.is_alike(&stationary_law) { whole.clone() } else { refit(law) };
     let mut fulls: Vec<FullModel> = laws
         .into_par_iter()
-        .map(|ChosenLaw { law, waves_gain, .. }| FullModel { fit: fitted(&law), law, waves_gain })
+        .map(|EstimatedNoiseLaw { law, waves_gain, .. }| FullModel { fit: fitted(&law), law, waves_gain })
         .collect();
     let base_only = base_only(problem, base, with_waves, kinds);
     if fulls.iter().all(|full| !full.law.is_alike(&base_only.law)) {
@@ -94,7 +94,7 @@ fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[Co
         problem.fit(&structure, theta, initial, &problem.weights(law), Effort::FINE)
     };
     let fit = refit(theta, base.initial(), &law);
-    let ChosenLaw { law, waves_gain, .. } = law::estimate(problem, &fit, &law.variance, with_waves, kinds);
+    let EstimatedNoiseLaw { law, waves_gain, .. } = law::estimate(problem, &fit, &law.variance, with_waves, kinds);
     FullModel { fit: refit(fit.theta, fit.initial, &law), law, waves_gain }
 }
 

@@ -9,7 +9,7 @@ use crate::remainder::{Remainder, squares};
 use crate::settings::Settings;
 
 /// Hulls that fit the records about as well as the structures, with earlier trials as priors. None without length and
-/// speed of the ship; without earlier trials, none where the structures leave only noise.
+/// speed of the ship; without earlier trials, none if the structures leave only noise.
 pub fn fit(
     trials: &[Trial],
     settings: &Settings,

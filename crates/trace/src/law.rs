@@ -78,16 +78,19 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Law of least criterion among some kinds, beside the waves of the law `start` and from its variances.
-    pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> ChosenLaw {
+    pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
         let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
-        let sum = |c: ChosenLaw| ChosenLaw { criterion: c.criterion + c.law.colour.freedom() as f64 * log_n, ..c };
+        let sum = |c: EstimatedNoiseLaw| EstimatedNoiseLaw {
+            criterion: c.criterion + c.law.colour.freedom() as f64 * log_n,
+            ..c
+        };
         let all = [white].into_iter().chain(coloured).map(sum);
         all.min_by(|a, b| a.criterion.total_cmp(&b.criterion)).expect("white noise is a candidate")
     }
 
-    /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` where the
+    /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` if the
     /// precision is singular.
     pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
         let (mut normal, _) = self.linear.normal(weights);
@@ -106,7 +109,7 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Noise variances of all records under a colour, from `start`, with the criterion −2 log p.
-    fn evaluate(&self, colour: NoiseColour, start: &[f64]) -> ChosenLaw {
+    fn evaluate(&self, colour: NoiseColour, start: &[f64]) -> EstimatedNoiseLaw {
         let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
         let weights = self.problem.weights(&unit);
         let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
@@ -118,7 +121,7 @@ impl<'a> LinearisedFit<'a> {
             law.variance = next;
             criterion = value;
         }
-        ChosenLaw { law, criterion, waves_gain: 0.0 }
+        EstimatedNoiseLaw { law, criterion, waves_gain: 0.0 }
     }
 
     /// Normal equations and sum of squares of one record.
@@ -128,7 +131,7 @@ impl<'a> LinearisedFit<'a> {
         alone.normal(&weights)
     }
 
-    /// Updated variances and the criterion at the old ones; `None` where the precision is singular.
+    /// Updated variances and the criterion at the old ones; `None` if the precision is singular.
     fn update(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
         let mut normal = Normal::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
@@ -155,7 +158,7 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Some kinds of colour at their best levels: all are screened on a grid, the best few are minimised.
-    fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<ChosenLaw> {
+    fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<EstimatedNoiseLaw> {
         let at = |kind: CorrelatedNoise, log: f64| {
             let colour = NoiseColour { correlated: Some((kind, log.exp())), ..white.colour };
             self.evaluate(colour, &white.variance)
@@ -174,7 +177,7 @@ impl<'a> LinearisedFit<'a> {
 
 /// Estimated noise law with its criterion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ChosenLaw {
+pub struct EstimatedNoiseLaw {
     /// Noise law.
     pub law: NoiseLaw,
     /// Criterion −2 log p; that of the chosen law includes the penalty of its colour.
@@ -190,7 +193,7 @@ pub fn estimate(
     variance: &[f64],
     with_waves: bool,
     kinds: &[CorrelatedNoise],
-) -> ChosenLaw {
+) -> EstimatedNoiseLaw {
     let linearised = LinearisedFit::new(problem, fit);
     let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
     let mut best = linearised.law(&start, kinds);
@@ -201,17 +204,17 @@ pub fn estimate(
             best.law.colour.correlated.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let ChosenLaw { law, criterion, .. } = linearised.evaluate(colour, &best.law.variance);
+            let EstimatedNoiseLaw { law, criterion, .. } = linearised.evaluate(colour, &best.law.variance);
             let criterion = criterion + colour.freedom() as f64 * log_n;
             if criterion < best.criterion {
-                best = ChosenLaw { law, criterion, waves_gain: best.waves_gain + best.criterion - criterion };
+                best = EstimatedNoiseLaw { law, criterion, waves_gain: best.waves_gain + best.criterion - criterion };
             }
         }
     }
-    ChosenLaw { law: best.law.with_model_error_bound(problem), ..best }
+    EstimatedNoiseLaw { law: best.law.with_model_error_bound(problem), ..best }
 }
 
-/// Smallest smooth error of a model over the standard deviation of the heading: no response describes a hull better.
+/// Minimum smooth error of a model over the standard deviation of the heading: no response describes a hull better.
 const MIN_MODEL_ERROR: f64 = 0.02;
 
 /// Effective number of independent readings per time L/U, where the noise includes a model error.

@@ -83,7 +83,7 @@ fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
         theta.extend(without(&fit.theta[3..structure.base_count()], omitted));
     }
     let mut terms = Vec::new();
-    for (term, range) in structure.terms.iter().zip(structure.ranges()) {
+    for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
         if term.only == Some(omitted) {
             continue;
         }

@@ -25,12 +25,12 @@ pub struct Location {
     pub named: Vec<EffectNaming>,
     /// Effects dropped because shapes or a random moment explain the records better in their place.
     pub displaced: Vec<EffectNaming>,
-    /// Shape analysis of the residual of the named effects; `None` where their covariance is singular.
+    /// Shape analysis of the residual of the named effects; `None` if their covariance is singular.
     pub shapes: Option<ShapeAnalysis>,
 }
 
 impl Location {
-    /// Random moment beside named effects and shapes; `None` where the rudder noise explains it.
+    /// Random moment beside named effects and shapes; `None` if the rudder noise explains it.
     pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
@@ -38,7 +38,7 @@ impl Location {
         (!is_of_rudder).then_some(moment)
     }
 
-    /// Whether the gain of the shapes is significant.
+    /// `true` if the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
         self.shapes.as_ref().is_some_and(ShapeAnalysis::is_located)
     }
@@ -61,7 +61,7 @@ pub fn locate(
     settings: &Settings,
 ) -> Location {
     let named_structures = NamedStructures { problem, full, structures, candidates };
-    let is_asked = |effect: &EffectNaming| settings.selection.asks_for(effect.term.0);
+    let is_asked = |effect: &EffectNaming| settings.selection.requires(effect.term.0);
     let mut probable = named(structures, settings.probability, &settings.selection);
     probable.retain(|effect| is_asked(effect) || named_structures.is_supported(effect));
     let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
@@ -86,7 +86,7 @@ pub fn locate(
     current
 }
 
-/// Whether the residual without an effect is explained better than with it: by shapes with a gain above
+/// `true` if the residual without an effect is explained better than with it: by shapes with a gain above
 /// [`EQUIVALENT_GAIN`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
@@ -119,7 +119,7 @@ impl NamedStructures<'_> {
         }
     }
 
-    /// Location without the effect that shapes replace best; `None` where they replace none. `none` is the shape
+    /// Location without the effect that shapes replace best; `None` if they replace none. `none` is the shape
     /// analysis without any of the open effects.
     fn without_name(
         &self,
@@ -138,7 +138,7 @@ impl NamedStructures<'_> {
         lowest.filter(|next| is_better(&next.shapes, &current.shapes))
     }
 
-    /// Whether an effect improves the evidence (not required of a group) with coefficients significant at
+    /// `true` if an effect improves the evidence (not required of a group) with coefficients significant at
     /// [`MAX_P_VALUE`].
     fn is_supported(&self, effect: &EffectNaming) -> bool {
         let (id, _, only) = effect.term;
@@ -150,7 +150,7 @@ impl NamedStructures<'_> {
     fn p_value(&self, name: TermName) -> Option<f64> {
         let with = |fit: &StructureFit| fit.structure.terms.iter().position(|term| term.name() == name);
         let (fit, place) = self.structures.all.iter().find_map(|weighed| Some((&weighed.fit, with(&weighed.fit)?)))?;
-        let (term, range) = (&fit.structure.terms[place], fit.structure.ranges()[place].clone());
+        let (term, range) = (&fit.structure.terms[place], fit.structure.term_ranges()[place].clone());
         let sizes: Vec<(usize, f64)> = (range.zip(&term.priors).zip(term.neutral()))
             .filter(|((_, prior), _)| prior.is_fitted() && !prior.is_shape)
             .map(|((place, _), neutral)| (place, fit.theta[place] - neutral))
@@ -165,7 +165,7 @@ impl NamedStructures<'_> {
     }
 
     /// Fit of the structure of some terms: the weighed one, otherwise a new fit from their values in other structures.
-    /// `None` where a term is no candidate.
+    /// `None` if a term is no candidate.
     fn fit(&self, names: &[TermName]) -> Option<StructureFit> {
         let weighed = || self.structures.all.iter().map(|weighed| &weighed.fit);
         let is_same = |fit: &&StructureFit| {
@@ -187,7 +187,8 @@ impl NamedStructures<'_> {
         }
         for term in candidates {
             let place = |fit: &StructureFit| fit.structure.terms.iter().position(|other| other.name() == term.name());
-            let values = fits().find_map(|fit| Some(fit.theta[fit.structure.ranges()[place(fit)?].clone()].to_vec()));
+            let values =
+                fits().find_map(|fit| Some(fit.theta[fit.structure.term_ranges()[place(fit)?].clone()].to_vec()));
             theta.extend(values.unwrap_or_else(|| term.priors.iter().map(|prior| prior.mean).collect()));
             terms.push(Arc::clone(term));
         }

@@ -73,7 +73,7 @@ pub struct ModelParameter {
 const BOUND_TOLERANCE: f64 = 1e-9;
 
 impl ModelParameter {
-    /// Whether a value is fitted and lies at a bound of its prior.
+    /// `true` if a value is fitted and lies at a bound of its prior.
     pub fn is_at_bound(&self, value: f64) -> bool {
         let near = |end: f64| (value - end).abs() <= BOUND_TOLERANCE * end.abs().max(1e-6);
         self.prior.is_fitted() && (near(self.prior.lowest) || near(self.prior.highest))
@@ -119,7 +119,7 @@ impl Structure {
     }
 
     /// Ranges of the parameters of the terms in θ.
-    pub fn ranges(&self) -> Vec<Range<usize>> {
+    pub fn term_ranges(&self) -> Vec<Range<usize>> {
         let mut start = self.base_count();
         let range = |term: &Arc<Term>| {
             let range = start..start + term.priors.len();
@@ -177,19 +177,19 @@ impl Structure {
         all
     }
 
-    /// Whether the response depends on the heading itself, and so on its initial value.
+    /// `true` if the response depends on the heading itself, and so on its initial value.
     pub fn is_heading_dependent(&self) -> bool {
         self.terms.iter().any(|term| term.effect.is_heading_dependent())
     }
 
-    /// Whether an entry of θ acts in a record.
+    /// `true` if an entry of θ acts in a record.
     pub fn acts(entry: &ModelParameter, record: usize) -> bool {
         entry.only.is_none_or(|only| only == record)
     }
 
     /// Entries of θ that are given relative to another one: index, index of the reference.
     fn relative(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.terms.iter().zip(self.ranges()).flat_map(|(term, range)| {
+        self.terms.iter().zip(self.term_ranges()).flat_map(|(term, range)| {
             let reference = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.beside?));
             range.clone().zip(&term.priors).filter_map(reference).collect::<Vec<_>>()
         })
@@ -213,7 +213,7 @@ impl Structure {
     /// terms of single records.
     pub fn places(&self, record: Option<usize>) -> Vec<usize> {
         let mut places: Vec<usize> = (0..BASE_PARAMETERS).collect();
-        for (term, range) in self.terms.iter().zip(self.ranges()) {
+        for (term, range) in self.terms.iter().zip(self.term_ranges()) {
             if Self::applies(term, record) {
                 places.extend(range);
             }
@@ -222,7 +222,7 @@ impl Structure {
     }
 
     /// Structure and parameters for one fitted record; with `None` for any other record of the ship.
-    pub fn alone(&self, record: Option<usize>, theta: &[f64]) -> (Self, Vec<f64>) {
+    pub fn for_record(&self, record: Option<usize>, theta: &[f64]) -> (Self, Vec<f64>) {
         let kept = self.terms.iter().filter(|term| Self::applies(term, record));
         let terms = kept.map(|term| Arc::new(Term { only: None, ..term.as_ref().clone() })).collect();
         let mut values: Vec<f64> = self.places(record).into_iter().map(|place| theta[place]).collect();
@@ -232,7 +232,7 @@ impl Structure {
         (Self { records: 1, time: self.time, terms }, values)
     }
 
-    /// Whether a term applies to a fitted record, or to any other one (`None`).
+    /// `true` if a term applies to a fitted record, or to any other one (`None`).
     fn applies(term: &Term, record: Option<usize>) -> bool {
         match record {
             Some(record) => term.only.is_none_or(|only| only == record),
@@ -310,7 +310,7 @@ mod tests {
             let structure = Structure::base(records, 13.0).of(terms);
             let theta: Vec<f64> = (0..structure.count()).map(|place| 0.01 * (1 + place) as f64).collect();
             let last = theta[theta.len() - 1];
-            let (alone, values) = structure.alone(None, &theta);
+            let (alone, values) = structure.for_record(None, &theta);
             for ship in [structure.response(None, &theta), alone.response(None, &values)] {
                 assert_eq!(ship.parameters(), [theta[0], theta[1], theta[2], last]);
             }

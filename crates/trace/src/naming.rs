@@ -4,7 +4,7 @@ use crate::model::TermName;
 use crate::selection::Selection;
 use crate::structures::Structures;
 
-/// Smallest probability of a member of a group, and of an alternative form.
+/// Minimum probability of a member of a group, and of an alternative form.
 const MIN_PROBABILITY: f64 = 0.05;
 
 /// Maximum number of effects in a group.
@@ -27,7 +27,7 @@ pub struct EffectNaming {
 }
 
 impl EffectNaming {
-    /// Whether a term is a form of the effect or of one of the group.
+    /// `true` if a term is a form of the effect or of one of the group.
     pub fn includes(&self, name: &TermName) -> bool {
         let mut group = self.aliases.iter().chain([&self.term]);
         group.any(|member| (member.0, member.2) == (name.0, name.2))
@@ -47,7 +47,7 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
         }
     }
     keys.sort_by(|(a, p), (b, q)| q.total_cmp(p).then(a.cmp(b)));
-    let is_named = |(key, p): &(EffectKey, f64)| *p >= threshold || selection.asks_for(key.0) && *p > 0.0;
+    let is_named = |(key, p): &(EffectKey, f64)| *p >= threshold || selection.requires(key.0) && *p > 0.0;
     let (certain, open): (Vec<_>, Vec<_>) = keys.into_iter().partition(is_named);
     let mut all: Vec<EffectNaming> = certain.iter().map(|(key, p)| named_effect(structures, *key, *p)).collect();
     let mut open: Vec<EffectKey> =
@@ -71,7 +71,7 @@ fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64
     EffectNaming { term: forms[0].0, aliases: Vec::new(), forms: alternatives, probability }
 }
 
-/// Smallest group of effects whose joint probability suffices, the most probable effect first; `None` without one.
+/// Minimum group of effects whose joint probability suffices, the most probable effect first; `None` without one.
 fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
     let union = |group: &[EffectKey]| structures.probability_of_any(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];

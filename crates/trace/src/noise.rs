@@ -67,7 +67,7 @@ impl CorrelatedNoise {
         [Self::White, Self::Walk].into_iter().chain(gusts).chain(compass).chain((0..SMOOTH.len()).map(Self::Smooth))
     }
 
-    /// Whether it is an error of the heading and not a moment.
+    /// `true` if it is an error of the heading and not a moment.
     pub fn is_of_heading(self) -> bool {
         matches!(self, Self::Compass(_) | Self::Smooth(_))
     }

@@ -18,7 +18,7 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::weights::NoiseLaw;
 
-/// Smallest expected visibility (squared coefficient over its variance) of a distinguishable effect.
+/// Minimum expected visibility (squared coefficient over its variance) of a distinguishable effect.
 const MIN_VISIBILITY: f64 = 20.0;
 
 /// Value of one planned trial. Effects are named with their form: "wind moment (steady wind)".
@@ -69,11 +69,11 @@ impl Analysis {
         Some(Prospect { name: name.to_owned(), separated, still_alike, revealed, still_hidden, information })
     }
 
-    /// Expected visibility of every candidate of the ship from the records and another trial; `None` where the
+    /// Expected visibility of every candidate of the ship from the records and another trial; `None` if the
     /// precision is singular.
     fn visibility_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
         let full = &self.full.fit;
-        let (structure, theta) = full.structure.alone(None, &full.theta);
+        let (structure, theta) = full.structure.for_record(None, &full.theta);
         let record = PreparedRecord::averaged(trial, self.problem.time);
         let problem = FittedRecords::new(vec![record], theta[0], self.problem.time);
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
@@ -93,7 +93,7 @@ impl Analysis {
             });
             (names::effect_form(term.effect.id(), term.effect.form()), squares.fold(0.0, f64::max))
         };
-        Some(structure.terms.iter().zip(structure.ranges()).map(visibility).collect())
+        Some(structure.terms.iter().zip(structure.term_ranges()).map(visibility).collect())
     }
 }
 

@@ -11,22 +11,22 @@ use ship::replay::RecordedSignals;
 use ship::{Polyline, Real, Regressor, Replayable};
 use trial::{Channel, Trial};
 
-/// Smallest number of rows after averaging.
+/// Minimum number of rows after averaging.
 const MIN_ROWS: usize = 300;
 
-/// Smallest number of rows per time constant after averaging.
+/// Minimum number of rows per time constant after averaging.
 const MIN_ROWS_PER_TIME: f64 = 10.0;
 
-/// Largest number of rows after averaging.
+/// Maximum number of rows after averaging.
 const MAX_ROWS: usize = 4000;
 
-/// Largest number of rudder rows per heading row, where the rudder was recorded more often.
+/// Maximum number of rudder rows per heading row, where the rudder was recorded more often.
 const MAX_RUDDER_ROWS_PER_HEADING: usize = 5;
 
 /// Interval in usual sampling periods above which a group of averaged rows ends.
 const MAX_GAP_PERIODS: f64 = 3.0;
 
-/// Smallest share of finite rows of a usable channel.
+/// Minimum share of finite rows of a usable channel.
 const MIN_FINITE_SHARE: f64 = 0.5;
 
 /// Record ready to be replayed.
@@ -175,7 +175,7 @@ fn mean(values: &[f64]) -> f64 {
     if 2 * count > values.len() { sum / count as f64 } else { f64::NAN }
 }
 
-/// Signal through the finite values; `None` where too few are finite.
+/// Signal through the finite values; `None` if too few are finite.
 fn signal(time: &[f64], values: &[f64]) -> Option<Polyline> {
     let finite: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
     if (finite.len() as f64) < MIN_FINITE_SHARE * time.len() as f64 {

@@ -37,7 +37,7 @@ struct MomentRegression {
 }
 
 impl MomentRegression {
-    /// `None` where there are no more rows than columns, or a column is not finite.
+    /// `None` if there are no more rows than columns, or a column is not finite.
     fn new(columns: DMatrix<f64>) -> Option<Self> {
         let scale = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm()));
         let is_sound = columns.nrows() > columns.ncols() && scale.iter().all(|size| size.is_normal());
@@ -66,7 +66,7 @@ pub struct RecordMoment<'a> {
 }
 
 impl<'a> RecordMoment<'a> {
-    /// Prepares a record; `None` where it cannot determine a moment.
+    /// Prepares a record; `None` if it cannot determine a moment.
     pub fn new(record: &'a PreparedRecord, base: &FirstOrder) -> Option<Self> {
         let slow = headings(record, base);
         let mut bias = slow.columns(0, 3).into_owned();

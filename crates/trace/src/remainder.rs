@@ -54,10 +54,10 @@ pub struct Remainder {
     pub signature: Option<Signature>,
 }
 
-/// Smallest residual, over the error of the base, that can be unexplained.
+/// Minimum residual, over the error of the base, that can be unexplained.
 const MIN_UNEXPLAINED_RATIO: f64 = 0.3;
 
-/// Smallest residual, in standard deviations of the white noise, that can be unexplained.
+/// Minimum residual, in standard deviations of the white noise, that can be unexplained.
 const MIN_UNEXPLAINED_SD: f64 = 1.5;
 
 impl Remainder {
@@ -130,7 +130,7 @@ pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLa
     problem.records.iter().zip(residual).enumerate().map(whitened).collect()
 }
 
-/// Whether innovations agree with their law: white (Ljung and Box 1978), of constant variance, and without outliers.
+/// `true` if innovations agree with their law: white (Ljung and Box 1978), of constant variance, and without outliers.
 fn are_noise(all: &[Innovations]) -> bool {
     let even = all.iter().map(|record| constant_variance_p_value(&record.values)).fold(1.0, f64::min);
     let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();

@@ -27,7 +27,7 @@ const MIN_WINDOW_S: f64 = 5.0;
 /// Share of a window below which the last piece is joined to the window before.
 const MIN_LAST_PIECE: f64 = 0.5;
 
-/// Smallest number of headings in a window: two are used up by its initial state.
+/// Minimum number of headings in a window: two are used up by its initial state.
 const MIN_HEADINGS: usize = 4;
 
 /// Maximum number of Gauss–Newton steps for an initial state, and of step lengths tried in each.
@@ -54,7 +54,7 @@ pub struct MomentErrors {
 pub struct WindowError {
     /// Window length, s.
     pub length: f64,
-    /// Root mean square heading error, rad; `None` when a window holds too few headings.
+    /// Root mean square heading error, rad; `None` if a window holds too few headings.
     pub heading: Option<f64>,
 }
 
@@ -108,7 +108,7 @@ impl ReplayDepth {
     }
 }
 
-/// Whether a record with rows at these times holds more than one window of a length, s.
+/// `true` if a record with rows at these times holds more than one window of a length, s.
 pub fn is_shorter(length: f64, time: &[f64]) -> bool {
     (1.0 + MIN_LAST_PIECE) * length <= duration(time)
 }
@@ -118,7 +118,7 @@ pub fn duration(time: &[f64]) -> f64 {
     time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first)
 }
 
-/// Full replay of a record from the best initial state near one of the `starts`; `None` when no replay is finite.
+/// Full replay of a record from the best initial state near one of the `starts`; `None` if no replay is finite.
 pub fn full(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
     let mut minima: Vec<(f64, [f64; 2])> = Vec::new();
@@ -149,7 +149,7 @@ pub fn root_mean_square(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt())
 }
 
-/// Zig-zag characteristics of a replayed heading under the recorded rudder; `None` where it is no zig-zag.
+/// Zig-zag characteristics of a replayed heading under the recorded rudder; `None` if it is no zig-zag.
 pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     let first = trial.observed_rows().next().unwrap_or(0);
     let range = first..first + replayed.time.len();
@@ -179,7 +179,7 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 }
 
 /// Headings (rad) of a replay restarted every `length` seconds from the best initial heading and yaw rate of each
-/// window; other states continue. `None` when a window holds too few headings.
+/// window; other states continue. `None` if a window holds too few headings.
 pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; ship.dimension()];
@@ -260,7 +260,7 @@ struct InitialStateFit {
 }
 
 /// Least-squares initial heading and yaw rate of some rows (Gauss–Newton with damped steps), preceded by the sum of
-/// squares; `None` when it is not finite, or when the search reaches a state already `visited`.
+/// squares; `None` if it is not finite, or when the search reaches a state already `visited`.
 fn fit_initial_state(
     ship: &dyn ReplayedShip,
     record: &PreparedRecord,

@@ -59,13 +59,13 @@ pub struct TraceParts<'a> {
     pub outliers: &'a [Vec<f64>],
     /// Measurement errors of the rudders of the fitted records.
     pub rudder_errors: &'a [Option<RudderError>],
-    /// Whether the replay of the base is kept on the fitted records.
+    /// `true` if the replay of the base is kept on the fitted records.
     pub keeps_base: bool,
     /// Prepared records.
     pub problem: &'a FittedRecords,
 }
 
-/// Smallest visibility of an observable candidate.
+/// Minimum visibility of an observable candidate.
 const MIN_VISIBILITY: f64 = 4.0;
 
 /// Maximum number of listed structures.
@@ -76,7 +76,7 @@ impl TraceParts<'_> {
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = self.location.named.clone();
-        named.retain(|naming| self.remainder.is_credible || selection.asks_for(naming.term.0));
+        named.retain(|naming| self.remainder.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
         let signature = self.remainder.signature.as_ref();
         let error = self.errors();
@@ -202,7 +202,7 @@ impl TraceParts<'_> {
         let all = members.chain(self.structures.all.iter().map(|weighed| (1e-9 * weighed.weight, &weighed.fit)));
         let with = all.filter_map(|(weight, fit)| {
             let place = fit.structure.terms.iter().position(|term| term.name() == name)?;
-            let range = fit.structure.ranges()[place].clone();
+            let range = fit.structure.term_ranges()[place].clone();
             let values = fit.physical()[range.clone()].to_vec();
             Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
         });
@@ -223,7 +223,7 @@ impl TraceParts<'_> {
             let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
-            let asked = self.settings.selection.asks_for(id);
+            let asked = self.settings.selection.requires(id);
             EffectEntry {
                 id: id.into(),
                 form: form.into(),
@@ -261,7 +261,7 @@ impl TraceParts<'_> {
             form: waves.form().into(),
             equation: waves.equation().into(),
             only: None,
-            asked: self.settings.selection.asks_for(waves.id()),
+            asked: self.settings.selection.requires(waves.id()),
             aliases: Vec::new(),
             alias_forms: Vec::new(),
             parameters: parameters.collect(),

@@ -36,10 +36,10 @@ use pieces::RudderPiece;
 /// Standard deviation over the median absolute value of the normal law.
 const SD_PER_MEDIAN: f64 = 1.4826;
 
-/// Smallest standard deviation that is treated, deg.
+/// Minimum standard deviation that is treated, deg.
 const MIN_SD_DEG: f64 = 0.05;
 
-/// Smallest mean number of rows per piece: with more pieces the rudder does not rest between strokes.
+/// Minimum mean number of rows per piece: with more pieces the rudder does not rest between strokes.
 const MIN_ROWS_PER_PIECE: usize = 5;
 
 /// Autocorrelation, at any of [`LAGS`] lags, above which the residual about the pieces is a motion of the rudder.
@@ -76,7 +76,7 @@ pub fn without_noise(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderEr
     (kept, errors)
 }
 
-/// Record with the estimated true rudder, and its measurement error; `None` where the readings are kept as exact.
+/// Record with the estimated true rudder, and its measurement error; `None` if the readings are kept as exact.
 fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
     let (time, angle) = (trial.time(), trial.rudder());
     let quantum = quantum(angle);
@@ -127,7 +127,7 @@ fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// Whether a residual is autocorrelated.
+/// `true` if a residual is autocorrelated.
 fn is_correlated(residual: &[f64]) -> bool {
     let products =
         |lag: usize| residual.iter().zip(&residual[lag.min(residual.len())..]).map(|(a, b)| a * b).sum::<f64>();
@@ -135,7 +135,7 @@ fn is_correlated(residual: &[f64]) -> bool {
     (1..=LAGS).any(|lag| products(lag).abs() > MAX_AUTOCORRELATION.max(chance) * products(0))
 }
 
-/// Error of readings about the estimated rudder `path`; `None` where it is a correlated motion and not noise.
+/// Error of readings about the estimated rudder `path`; `None` if it is a correlated motion and not noise.
 fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], rounding: f64) -> Option<RudderError> {
     let residual: Vec<f64> = angle.iter().zip(path).map(|(angle, path)| angle - path).collect();
     if rounding == 0.0 && is_correlated(&residual) {
@@ -160,7 +160,7 @@ fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], r
     (growth > 0.0).then_some(error)
 }
 
-/// Maximised log likelihood of a record with a random moment; `None` where the method fails.
+/// Maximised log likelihood of a record with a random moment; `None` if the method fails.
 fn log_likelihood(trial: &Trial) -> Option<f64> {
     let settings = maximum_likelihood::Settings {
         rudder: maximum_likelihood::RudderChoice::None,

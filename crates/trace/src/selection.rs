@@ -10,7 +10,7 @@ use ship::effects::{self, Effect, Formula};
 pub struct EffectId(&'static str);
 
 impl EffectId {
-    /// Listed effect of this name; `None` where there is none.
+    /// Listed effect of this name; `None` if there is none.
     pub fn find(name: &str) -> Option<Self> {
         effects::all().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
     }
@@ -43,7 +43,7 @@ pub struct Selection {
     pub with: Vec<EffectId>,
     /// Excluded effects.
     pub without: Vec<EffectId>,
-    /// Whether effects that are not required are candidates.
+    /// `true` if effects that are not required are candidates.
     pub search: bool,
     /// Effects given as formulas, candidates like the listed ones.
     pub formulas: Vec<Arc<Formula>>,
@@ -78,12 +78,12 @@ impl Selection {
         EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
     }
 
-    /// Formula of this name; `None` where there is none.
+    /// Formula of this name; `None` if there is none.
     pub fn formula(&self, name: &str) -> Option<&Formula> {
         self.formulas.iter().find(|formula| formula.id() == name).map(Arc::as_ref)
     }
 
-    /// Listed effect or formula of this name; `None` where there is none.
+    /// Listed effect or formula of this name; `None` if there is none.
     pub fn find(&self, name: &str) -> Option<EffectId> {
         EffectId::find(name).or_else(|| self.formula(name).map(EffectId::of))
     }
@@ -103,14 +103,14 @@ impl Selection {
         }
     }
 
-    /// Whether an effect is required.
-    pub fn asks_for(&self, id: &str) -> bool {
+    /// `true` if an effect is required.
+    pub fn requires(&self, id: &str) -> bool {
         self.with.iter().any(|asked| asked.as_str() == id)
     }
 
-    /// Whether an effect is a candidate.
+    /// `true` if an effect is a candidate.
     pub fn allows(&self, id: &str) -> bool {
-        self.asks_for(id) || self.search && !self.without.iter().any(|excluded| excluded.as_str() == id)
+        self.requires(id) || self.search && !self.without.iter().any(|excluded| excluded.as_str() == id)
     }
 }
 

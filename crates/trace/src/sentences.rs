@@ -48,10 +48,10 @@ fn listed(items: &[String]) -> String {
 /// Window of the restarted replays in the headline, s.
 const WINDOW: &str = "60";
 
-/// Smallest share of the heading error that counts as unchanged.
+/// Minimum share of the heading error that counts as unchanged.
 const UNCHANGED_SHARE: f64 = 0.95;
 
-/// Heading errors (deg) of some records, before and after, as root mean squares; `None` where no record has both.
+/// Heading errors (deg) of some records, before and after, as root mean squares; `None` if no record has both.
 fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) -> Option<[f64; 2]> {
     let pairs: Vec<[f64; 2]> =
         all.iter().filter_map(|record| Some([of(&record.before)?, of(&record.after)?])).collect();
@@ -59,7 +59,7 @@ fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) ->
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
 }
 
-/// "27 %": an error after over that before; `None` where it is not finite.
+/// "27 %": an error after over that before; `None` if it is not finite.
 fn percent(errors: Option<[f64; 2]>) -> Option<String> {
     let ratio = errors.map(|[before, after]| after / before).filter(|ratio| ratio.is_finite())?;
     Some(format!("{:.0} %", 100.0 * ratio))

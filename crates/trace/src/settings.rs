@@ -35,7 +35,7 @@ impl Rule {
 /// Settings of a trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Smallest probability of a named effect.
+    /// Minimum probability of a named effect.
     pub probability: f64,
     /// Weighting rule of the structures.
     pub rule: Rule,
@@ -43,11 +43,11 @@ pub struct Settings {
     pub monomials: usize,
     /// Required and excluded effects.
     pub selection: Selection,
-    /// Whether errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
+    /// `true` if errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
     pub thorough: bool,
-    /// Whether only heading, yaw rate and rudder are used, as by methods without other channels.
+    /// `true` if only heading, yaw rate and rudder are used, as by methods without other channels.
     pub heading_alone: bool,
-    /// Whether hull models of three degrees of freedom are fitted where the residual is more than noise.
+    /// `true` if hull models of three degrees of freedom are fitted where the residual is more than noise.
     pub hulls: bool,
     /// Hulls from earlier trials of the ship or a similar one, used as priors.
     pub earlier: Vec<EarlierHull>,

@@ -9,7 +9,7 @@ pub struct Signature {
     pub record: usize,
     /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
-    /// Strongest line of its spectrum; `None` where it has none.
+    /// Strongest line of its spectrum; `None` if it has none.
     pub line: Option<SpectralLine>,
     /// Quarter of the headings (rad) with the largest root mean square, and its value, rad.
     pub heading: ([f64; 2], f64),

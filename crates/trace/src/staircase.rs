@@ -44,7 +44,7 @@ fn root_mean_square(fit: &StructureFit) -> f64 {
 }
 
 impl Analysis {
-    /// Steps to the most probable structure; `None` where it has no terms.
+    /// Steps to the most probable structure; `None` if it has no terms.
     pub fn staircase(&self) -> Option<Staircase> {
         let problem = &self.problem;
         let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;

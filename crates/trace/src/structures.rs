@@ -166,7 +166,7 @@ impl StructureSearch<'_> {
                 let (mut terms, mut theta) = (top.structure.terms.clone(), top.theta.clone());
                 terms[place] = Arc::clone(other);
                 let start = other.priors.iter().map(|prior| prior.mean.max(DELAY_START * prior.sd).min(prior.highest));
-                theta.splice(top.structure.ranges()[place].clone(), start);
+                theta.splice(top.structure.term_ranges()[place].clone(), start);
                 fresh.push((top.structure.of(terms), theta, top.initial.clone()));
             }
         }
@@ -220,7 +220,7 @@ impl StructureSearch<'_> {
 
     /// Log prior odds of a term; `required` for a required effect.
     fn odds(&self, term: &Term, required: f64) -> f64 {
-        if self.selection.asks_for(term.effect.id()) { required } else { term.log_odds }
+        if self.selection.requires(term.effect.id()) { required } else { term.log_odds }
     }
 
     /// Visibility of every term: expected squared coefficient over its posterior variance beside all other terms.
@@ -262,7 +262,8 @@ impl StructureSearch<'_> {
         let initial = initial.iter().map(|_| [next(), next()]).collect();
         let mut theta = all[..structure.base_count()].to_vec();
         let mut terms = Vec::new();
-        for ((term, range), _) in structure.terms.iter().zip(structure.ranges()).zip(chosen).filter(|(_, kept)| **kept)
+        for ((term, range), _) in
+            structure.terms.iter().zip(structure.term_ranges()).zip(chosen).filter(|(_, kept)| **kept)
         {
             terms.push(Arc::clone(term));
             theta.extend_from_slice(&all[range]);
@@ -298,10 +299,10 @@ impl StructureSearch<'_> {
             .structure
             .terms
             .iter()
-            .zip(fit.structure.ranges())
+            .zip(fit.structure.term_ranges())
             .map(|(term, range)| (term.name(), &fit.theta[range]))
             .collect();
-        for (term, range) in structure.terms.iter().zip(structure.ranges()) {
+        for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
             match fitted.get(&term.name()) {
                 Some(values) => theta.extend_from_slice(values),
                 None => {

@@ -16,7 +16,7 @@ const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 /// Spacing of the steps that are tried, as a share of the record.
 const STEP_SPACING: f64 = 1.0 / 80.0;
 
-/// Best start values of some moments beside a fit: (m, t_c, d) of a transient one and (m, t₀) of a step; `None` where
+/// Best start values of some moments beside a fit: (m, t_c, d) of a transient one and (m, t₀) of a step; `None` if
 /// the precision of the fit is singular.
 pub fn places(
     problem: &FittedRecords,

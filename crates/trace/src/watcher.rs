@@ -8,7 +8,7 @@ pub trait Watcher: Sync {
     /// One fold is done.
     fn end_fold(&self) {}
 
-    /// Whether to stop; [`Analysis::left_out`](crate::Analysis::left_out) is then empty.
+    /// `true` if to stop; [`Analysis::left_out`](crate::Analysis::left_out) is then empty.
     fn is_asked_to_stop(&self) -> bool {
         false
     }

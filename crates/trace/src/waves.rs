@@ -6,21 +6,21 @@ use crate::fit::FittedRecords;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
 
-/// Smallest frequency of waves over the fundamental of the manoeuvre; a lower band is model structure.
+/// Minimum frequency of waves over the fundamental of the manoeuvre; a lower band is model structure.
 const MIN_FREQUENCY_RATIO: f64 = 5.0;
 
 /// Number of frequencies tried, damping ratios, and sizes over the white noise.
 const FREQUENCIES: usize = 30;
 const DAMPINGS: [f64; 3] = [0.03, 0.08, 0.2];
 
-/// Largest damping ratio of waves.
+/// Maximum damping ratio of waves.
 const MAX_DAMPING: f64 = 0.3;
 
-/// Smallest share of waves in the mean square residual; a smaller one is a colour of the sensor.
+/// Minimum share of waves in the mean square residual; a smaller one is a colour of the sensor.
 const MIN_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
-/// Waves of largest likelihood beside the correlated noise of a law; `None` where the rows are too far apart, or where
+/// Waves of largest likelihood beside the correlated noise of a law; `None` if the rows are too far apart, or where
 /// waves do not increase the likelihood.
 pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
     let beside = &NoiseColour { waves: None, ..law.colour };

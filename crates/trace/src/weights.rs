@@ -18,17 +18,17 @@ pub struct NoiseLaw {
 }
 
 impl NoiseLaw {
-    /// Whether it includes a smooth model error.
+    /// `true` if it includes a smooth model error.
     pub fn is_of_model(&self) -> bool {
         matches!(self.colour.correlated, Some((CorrelatedNoise::Smooth(_), _)))
     }
 
-    /// Whether it includes a random yaw moment.
+    /// `true` if it includes a random yaw moment.
     pub fn is_random_moment(&self) -> bool {
         self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
     }
 
-    /// Whether two laws have the same kind and similar variances.
+    /// `true` if two laws have the same kind and similar variances.
     pub fn is_alike(&self, other: &Self) -> bool {
         let kind = |law: &Self| (law.colour.correlated.map(|(kind, _)| kind), law.colour.waves.is_some());
         let is_similar = |(a, b): (&f64, &f64)| (a / b).ln().abs() < 0.4;

@@ -37,7 +37,7 @@ pub struct Stamp {
     second: Option<f64>,
     /// Minutes the local time is ahead of UTC.
     zone: Option<i32>,
-    /// Whether the seconds have a fraction that is not zero.
+    /// `true` if the seconds have a fraction that is not zero.
     fraction: bool,
 }
 
@@ -238,17 +238,17 @@ impl Stamp {
         Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
     }
 
-    /// Whether there is a time of day.
+    /// `true` if there is a time of day.
     pub fn has_time(&self) -> bool {
         self.second.is_some()
     }
 
-    /// Whether there is a date.
+    /// `true` if there is a date.
     pub fn has_date(&self) -> bool {
         self.date.is_some()
     }
 
-    /// Whether the seconds have a fraction that is not zero.
+    /// `true` if the seconds have a fraction that is not zero.
     pub fn has_fraction(&self) -> bool {
         self.fraction
     }
@@ -257,7 +257,7 @@ impl Stamp {
 /// Clock of the ship at time 0 of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Days since 1970-01-01; `None` where the file has times of day alone, or leaves open which number is the month.
+    /// Days since 1970-01-01; `None` if the file has times of day alone, or leaves open which number is the month.
     pub day: Option<i64>,
     /// Second of the day.
     pub second: f64,
@@ -307,7 +307,7 @@ pub struct Stamps {
     /// The second of the day read last, for stamps without a date, and the midnights passed.
     last_second: f64,
     midnights: i64,
-    /// Whether the first of two numbers is the month, once a date has shown it.
+    /// `true` if the first of two numbers is the month, once a date has shown it.
     month_first: Option<bool>,
 }
 

@@ -37,7 +37,7 @@ pub enum DeclaredWeather {
     Calm,
 }
 
-/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared. In
+/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` if nothing is declared. In
 /// brackets, what the key of a sidecar may be.
 ///
 /// Source of the entries: MSC/Circ.1053 (2002), appendix 6.

@@ -22,7 +22,7 @@ thread_local! {
 
 static QUIET: Once = Once::new();
 
-/// Runs a decoder; `None` where it panics. The message of the panic is not shown.
+/// Runs a decoder; `None` if it panics. The message of the panic is not shown.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
     QUIET.call_once(|| {
         let hook = std::panic::take_hook();

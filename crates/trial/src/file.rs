@@ -91,7 +91,7 @@ pub fn display_path(path: &Path) -> &Path {
 
 /// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
-/// Fails when there is no such file or its size exceeds that of its kind. A file that hides its size fails in reading,
+/// Fails if there is no such file or its size exceeds that of its kind. A file that hides its size fails in reading,
 /// with an error that becomes a [`FileError`] again.
 pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
     if path == Path::new(STDIN) {

@@ -190,7 +190,7 @@ mod tests {
         // The rate of the approach dies out in 10 s.
         let turned = time.iter().zip(heading).map(|(t, psi)| psi + 0.05 * (1.0 - (-(t - 40.0) / 10.0).exp().min(5.0)));
         let zigzag = ZigZag::of(&trial(time.clone(), turned.collect(), rudder)).expect("a zig-zag");
-        assert!(!zigzag.begins_within_trial() && zigzag.straight_yaw_rate().is_none());
+        assert!(!zigzag.lacks_first_execute() && zigzag.straight_yaw_rate().is_none());
         let measured = values(&criteria(&zigzag, YUKUN));
         assert!(measured[1].is_some(), "{measured:?}");
         assert_eq!([measured[0], measured[3]], [None, None]);

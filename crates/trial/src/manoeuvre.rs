@@ -99,7 +99,7 @@ pub enum Manoeuvre {
     /// Steady turns up to a rudder to either side, their unstable branch included; no helm steers it.
     #[serde(skip)]
     Spiral {
-        /// Largest rudder angle, rad.
+        /// Maximum rudder angle, rad.
         rudder: f64,
     },
 }
@@ -125,7 +125,7 @@ pub enum Trigger {
 pub struct OrderStep {
     /// Condition of the order.
     pub trigger: Trigger,
-    /// Ordered rudder, rad; `None` where the manoeuvre ends.
+    /// Ordered rudder, rad; `None` if the manoeuvre ends.
     pub order: Option<f64>,
     /// Scenario key that the trigger depends on.
     pub key: &'static str,
@@ -250,7 +250,7 @@ impl Manoeuvre {
         }
     }
 
-    /// Largest ordered rudder angle, rad.
+    /// Maximum ordered rudder angle, rad.
     pub fn rudder(&self) -> f64 {
         match self {
             Self::ZigZag { rudder, .. }
@@ -266,7 +266,7 @@ impl Manoeuvre {
         }
     }
 
-    /// Side of the first execute; starboard where there is none.
+    /// Side of the first execute; starboard if there is none.
     pub fn side(&self) -> Side {
         match self {
             Self::ZigZag { first: side, .. }

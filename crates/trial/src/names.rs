@@ -12,7 +12,7 @@ pub enum ColumnMeaning {
     Date,
     /// A channel; its unit where the name has it.
     Channel(Channel, Option<Unit>),
-    /// A speed over ground, which stands for the speed where there is none through the water.
+    /// A speed over ground, which stands for the speed if there is none through the water.
     OverGround(Option<Unit>),
     /// Latitude, degrees north.
     Latitude,
@@ -174,14 +174,14 @@ fn suffix_unit(text: &str) -> Option<Unit> {
     unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
 }
 
-/// Unit of a channel for a written unit; `None` where the channel cannot have it.
+/// Unit of a channel for a written unit; `None` if the channel cannot have it.
 fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
     // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
     let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
     Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
 }
 
-/// The same meaning with a unit; `None` where the quantity cannot have it.
+/// The same meaning with a unit; `None` if the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),

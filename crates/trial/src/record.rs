@@ -39,7 +39,7 @@ pub enum Origin {
     },
 }
 
-/// Declared standard deviations of the sensors; `None` where nothing is declared.
+/// Declared standard deviations of the sensors; `None` if nothing is declared.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Noise {
     /// Heading, rad.
@@ -137,7 +137,7 @@ pub struct Trial {
     rejected: Vec<RejectedReading>,
 }
 
-/// Rudder angle (rad) over time (s) through every row. Fails where time does not increase or an angle is not finite.
+/// Rudder angle (rad) over time (s) through every row. Fails if time does not increase or an angle is not finite.
 fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
     let rows = time.len();
     Polyline::new(time, rudder).map_err(|error| match error {
@@ -157,7 +157,7 @@ impl Trial {
 
     /// Checks the columns and makes the record.
     ///
-    /// Fails when the rudder, or both heading and yaw rate, are absent; when columns differ in length; when time does
+    /// Fails if the rudder, or both heading and yaw rate, are absent; when columns differ in length; when time does
     /// not increase; or when fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows hold a heading.
     pub fn new(name: impl Into<String>, origin: Origin, columns: Columns) -> Result<Self, TrialError> {
         let Columns { time, mut channels, unknown } = columns;
@@ -258,7 +258,7 @@ impl Trial {
         &self.channels[&Channel::Heading]
     }
 
-    /// Whether the heading is the integral of the yaw rate, because none was recorded.
+    /// `true` if the heading is the integral of the yaw rate, because none was recorded.
     pub fn heading_from_yaw_rate(&self) -> bool {
         self.heading_from_yaw_rate
     }
@@ -273,7 +273,7 @@ impl Trial {
         self.rudder.path()
     }
 
-    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; none where it does not
+    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; none if it does not
     /// rest or move at one rate.
     pub fn rudder_corners(&self) -> &[Corner] {
         &self.rudder.corners
@@ -317,7 +317,7 @@ impl Trial {
         self.particulars
     }
 
-    /// Declared particulars of the hull; `None` where length and speed are not declared.
+    /// Declared particulars of the hull; `None` if length and speed are not declared.
     pub fn hull(&self) -> Option<HullParticulars> {
         self.particulars.map(|Particulars { length, speed }| HullParticulars { length, speed, ..self.conditions.hull })
     }

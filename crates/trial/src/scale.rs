@@ -38,9 +38,9 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of records; `None` where the declared scales do not differ.
+    /// The scales of records; `None` if the declared scales do not differ.
     ///
-    /// Fails where records differ in scale and a record declares none.
+    /// Fails if records differ in scale and a record declares none.
     pub fn among<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
         let mut particulars: Vec<Particulars> = Vec::new();
         let mut indices = Vec::new();
@@ -96,7 +96,7 @@ const RESOLVED_SHARE: f64 = 0.25;
 const ROUNDING: f64 = 1e-12;
 
 /// Comparison of independent dimensionless estimates at different scales: the largest difference of two, x₂ − x₁ in
-/// units of √(s₁² + s₂²), and its verdict. The difference is `None` where fewer than two estimates have a standard
+/// units of √(s₁² + s₂²), and its verdict. The difference is `None` if fewer than two estimates have a standard
 /// deviation.
 pub fn scaling(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
     let with_sd: Vec<(f64, f64)> = estimates

@@ -87,7 +87,7 @@ impl Sidecar {
 
     /// Reads and checks a sidecar.
     ///
-    /// Fails when the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.
+    /// Fails if the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.
     pub fn load(file: &Path) -> Result<Self, SidecarError> {
         let text = read_text(file, SIDECAR).map_err(|error| SidecarError {
             file: file.to_path_buf(),

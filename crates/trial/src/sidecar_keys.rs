@@ -58,7 +58,7 @@ pub(crate) struct TableKeys {
     /// How bytes stand for letters; when absent utf-8, and windows-1252 in lines that are not. (utf-8 or windows-1252)
     #[serde(default)]
     pub encoding: Encoding,
-    /// Whether a line with names comes before the rows; true when absent. (true or false)
+    /// `true` if a line with names comes before the rows; true when absent. (true or false)
     pub header: Option<bool>,
     #[schemars(
         description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \

@@ -6,7 +6,7 @@ use toml::Value;
 
 use crate::clock::day;
 
-/// Ship, day and draughts of a trial, as a sidecar declares them under `[trial]`; `None` where nothing is declared. In
+/// Ship, day and draughts of a trial, as a sidecar declares them under `[trial]`; `None` if nothing is declared. In
 /// brackets, what the key of a sidecar may be.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

@@ -13,7 +13,7 @@ use crate::record::{Noise, Trial};
 /// columns with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is left
 /// out.
 ///
-/// Numbers have as many digits as they need to be read back as the same `f64`. Fails when `output` does.
+/// Numbers have as many digits as they need to be read back as the same `f64`. Fails if `output` does.
 pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     let channels: Vec<(Channel, f64, &[f64])> = Channel::ALL
         .into_iter()

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rand::{RngExt, rngs::ChaCha8Rng};
 
-/// Largest damaged file, bytes.
+/// Maximum damaged file, bytes.
 const LARGEST: usize = 32 * 1024;
 
 /// Most kinds of damage to one file.

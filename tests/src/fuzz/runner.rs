@@ -13,7 +13,7 @@ use rand::{SeedableRng, rngs::ChaCha8Rng};
 
 use super::{Target, mutate};
 
-/// Longest time a case may take.
+/// Maximum time a case may take.
 const LONGEST: Duration = Duration::from_secs(5);
 
 /// Most memory the process may ever have had, MiB.
@@ -165,7 +165,7 @@ fn save(target: &Target, data: &[u8]) -> PathBuf {
     written.map_or_else(|error| PathBuf::from(format!("nothing ({error})")), |()| path)
 }
 
-/// Largest memory of this process so far, MiB; `None` where the system does not say.
+/// Maximum memory of this process so far, MiB; `None` if the system does not say.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string(Path::new("/proc/self/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -24,7 +24,7 @@ use trial::{Channel, Trial};
 
 use super::seeds;
 
-/// Longest message, bytes: a few lines of a file and the advice.
+/// Maximum message, bytes: a few lines of a file and the advice.
 const LONGEST_MESSAGE: usize = 8192;
 
 /// Rows of the longest record that is handed on to the methods; more only costs time.

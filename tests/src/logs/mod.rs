@@ -36,7 +36,7 @@ pub struct File {
     pub outcome: Outcome,
     /// The name of another file that belongs to it.
     pub beside: Option<&'static str>,
-    /// Whether it lies in `tests/logs`.
+    /// `true` if it lies in `tests/logs`.
     pub kept: bool,
 }
 

@@ -34,7 +34,7 @@ const CHECK_YAW: [(f64, [f64; 3]); 2] = [(10.0, [13.74, 14.95, 15.01]), (20.0, [
 const TOLERANCE: f64 = 0.02 + 0.005;
 const RATE_TOLERANCE: f64 = 0.002;
 
-/// Step of the independent program, s: its rudder is reversed at the first step beyond the heading asked for.
+/// Step of the independent program, s: its rudder is reversed at the first step beyond the heading requested.
 const STEP: f64 = 0.01;
 
 /// Length simulated, s, which is that of the independent program as its median periods show.

@@ -82,7 +82,7 @@ impl Check {
         self.ours - self.published
     }
 
-    /// Whether our number agrees; one that is not finite never does.
+    /// `true` if our number agrees; one that is not finite never does.
     pub fn holds(&self) -> bool {
         match self.tolerance {
             Tolerance::Absolute(most) => self.difference().abs() <= most,

@@ -40,7 +40,7 @@ struct Best {
     rate: f64,
 }
 
-/// What one ship has in place of [`HEADINGS`] and [`RUDDERS`], deg; `None` when it does not make so long a trial.
+/// What one ship has in place of [`HEADINGS`] and [`RUDDERS`], deg; `None` if it does not make so long a trial.
 fn facts(rudder: f64, heading: f64, gain: f64, time: f64, rate: f64) -> Option<Vec<f64>> {
     let ship = FirstOrder::from_indices(gain, time, 0.0);
     let case =

@@ -1,7 +1,7 @@
 //! Zig-zags of the hulls with three degrees of freedom, and the first-order response that output error fits to them,
 //! against an independent simulation.
 //!
-//! That program steps by 0.05 s and reverses the rudder at the first step beyond the heading asked for; its fits take 1
+//! That program steps by 0.05 s and reverses the rudder at the first step beyond the heading requested; its fits take 1
 //! s data from the first execute to the sixth (10/20 of the SEIUN-like ship: to the fifth), the one reading with which
 //! its numbers agree to their last digit.
 

@@ -51,7 +51,7 @@ impl BenchTask {
         }
     }
 
-    /// Name and unit of the score; `None` where an answer is right or wrong.
+    /// Name and unit of the score; `None` if an answer is right or wrong.
     pub fn score(self) -> Option<&'static str> {
         match self {
             Self::Indices => Some("larger error of K and T [%]"),
@@ -79,7 +79,7 @@ pub struct BenchCase {
     /// Name of the scored record; none for tasks about the ship itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scored: Option<String>,
-    /// The effect to be named; none where the first-order model lacks nothing.
+    /// The effect to be named; none if the first-order model lacks nothing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
     /// The answers, in the order of methods.
@@ -99,7 +99,7 @@ pub struct CaseAnswer {
     /// Relative errors of K and T, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors_percent: Option<[f64; 2]>,
-    /// Whether the 95 % intervals contain K and T, where there are intervals.
+    /// `true` if the 95 % intervals contain K and T, where there are intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<[bool; 2]>,
     /// Correctness of the effects named.
@@ -153,7 +153,7 @@ pub struct Skipped {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Naming {
-    /// The missing effect alone; nothing where nothing is missing.
+    /// The missing effect alone; nothing if nothing is missing.
     Right,
     /// One group whose aliases contain the missing effect.
     Alias,
@@ -201,12 +201,12 @@ impl BenchCase {
         (&self.set, unit)
     }
 
-    /// Ratio of the scores of two methods; `None` where one of them takes no part.
+    /// Ratio of the scores of two methods; `None` if one of them takes no part.
     pub fn ratio_of(&self, method: &str, reference: &str) -> Option<f64> {
         Some(ratio(self.score_of(method)?, self.score_of(reference)?))
     }
 
-    /// Score of a method: infinite for a failed answer, `None` where it takes no part.
+    /// Score of a method: infinite for a failed answer, `None` if it takes no part.
     pub fn score_of(&self, method: &str) -> Option<f64> {
         let answer = self.answers.iter().find(|answer| answer.method == method)?;
         Some(answer.score.unwrap_or(f64::INFINITY))

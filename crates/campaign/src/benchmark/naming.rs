@@ -14,7 +14,7 @@ pub struct NamingLine {
     pub method: String,
     /// Name of the set.
     pub set: String,
-    /// The missing effect; none where nothing is missing.
+    /// The missing effect; none if nothing is missing.
     pub missing: Option<String>,
     /// Number of answers by correctness, in the order of [`Naming::ALL`].
     pub counts: [usize; Naming::ALL.len()],

@@ -69,7 +69,7 @@ impl SteeredRecord {
     }
 }
 
-/// Task of predicting a record from others; `None` where it repeats one of them, or where turns are fitted.
+/// Task of predicting a record from others; `None` if it repeats one of them, or where turns are fitted.
 fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchTask> {
     let fitted: Vec<_> = fitted.iter().map(|record| record.zig_zag).collect::<Option<_>>()?;
     let Some((angles, first)) = judge.zig_zag else { return Some(BenchTask::Circle) };
@@ -87,7 +87,7 @@ struct CellQuestions {
     /// Number of fitted records of a simulated trial.
     fitted: usize,
     is_simulated: bool,
-    /// Whether K and T are known.
+    /// `true` if K and T are known.
     has_indices: bool,
     /// The missing effect or none, where it is to be named.
     missing: Option<Option<String>>,
@@ -210,7 +210,7 @@ fn bench_sets(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<BenchSet> {
     sets
 }
 
-/// Answer of a row to a task; `None` where its method takes no part.
+/// Answer of a row to a task; `None` if its method takes no part.
 fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str>) -> Option<CaseAnswer> {
     let takes_part = match task {
         BenchTask::Indices => !matches!(method.procedure, Procedure::StraightOn),

@@ -11,9 +11,9 @@ use crate::statistics::{Moments, interval};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreFigure {
-    /// The figure; none where it falls on a failed answer.
+    /// The figure; none if it falls on a failed answer.
     pub value: Option<f64>,
-    /// Its interval, from six clusters on; an end is none where it falls on a failed answer.
+    /// Its interval, from six clusters on; an end is none if it falls on a failed answer.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 

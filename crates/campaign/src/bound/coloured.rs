@@ -21,7 +21,7 @@ pub struct CompassError {
 ///
 /// Σ_jk = σ² δ_jk + σ_w² exp(−|t_j − t_k|/τ)
 ///
-/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not
+/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the record does not
 /// determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &CompassError) -> Option<Matrix3<f64>> {
     let track = Track::new(trial);

@@ -26,13 +26,13 @@ use crate::scenario::hex;
 const LABEL: &str = "kempf.block";
 const LABEL_SHA256: &str = "kempf.block-sha256";
 
-/// Largest text of a row, bytes; failure messages of outside programs are far shorter.
+/// Maximum size of a text of a row, bytes; failure messages of outside programs are far shorter.
 const MAX_TEXT_BYTES: usize = 4096;
 
-/// Largest uncompressed column of a block, bytes.
+/// Maximum size of an uncompressed column of a block, bytes.
 const MAX_COLUMN_BYTES: i64 = 1 << 28;
 
-/// Largest uncompressed page, bytes, and largest number of values in a page.
+/// Maximum size of an uncompressed page, bytes, and largest number of values in a page.
 const MAX_PAGE_BYTES: u64 = 1 << 24;
 const MAX_PAGE_VALUES: u64 = 1 << 20;
 

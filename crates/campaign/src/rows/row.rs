@@ -122,7 +122,7 @@ pub struct StudyRow {
     pub replicate: u64,
     /// Index of the method in the scenario.
     pub method: usize,
-    /// Why the method failed; `None` when it did not.
+    /// Why the method failed; `None` if it did not.
     pub failure: Option<Box<str>>,
     /// K of the first-order response nearest to the undisturbed trial, 1/s; the ship's own K where it is first order.
     /// It is the true value for methods that fit such a response.
@@ -159,7 +159,7 @@ pub struct StudyRow {
     pub stop: Option<&'static str>,
     /// Result of a trace.
     pub traced: Option<Box<TraceAnswer>>,
-    /// Predicted figures of manoeuvres, empty without a covariance; `None` where nothing is predicted.
+    /// Predicted figures of manoeuvres, empty without a covariance; `None` if nothing is predicted.
     pub predicted: Option<Box<[PredictedFigure]>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,

@@ -7,7 +7,7 @@ use ship::Particulars;
 use simulate::{Assumption, Disturbances, Manoeuvre, StreamKey};
 use toml::{Table, Value};
 
-use crate::scenario::draw::DrawnKey;
+use crate::scenario::draw::RandomKey;
 use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::physics::MissingPhysics;
@@ -44,7 +44,7 @@ pub(crate) enum TrialSource {
 
 /// Template of trials with drawn values.
 pub(crate) struct DrawnSettings {
-    draws: Vec<DrawnKey>,
+    draws: Vec<RandomKey>,
     /// The part of the document that specifies a trial.
     document: Table,
     name: String,
@@ -175,7 +175,7 @@ impl DrawnSettings {
     ///
     /// Fails with the index of the faulty draw and the fault.
     fn new(
-        draws: &[DrawnKey],
+        draws: &[RandomKey],
         document: &Table,
         name: &str,
         folder: &Path,
@@ -187,7 +187,7 @@ impl DrawnSettings {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&fault.key));
             (of_key.unwrap_or(index), fault)
         };
-        let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
+        let middle: Vec<f64> = draws.iter().map(RandomKey::middle).collect();
         let document = only(document, &[ScenarioPart::Trial]);
         let drawn = Self { draws: draws.to_vec(), document, name: name.to_owned(), folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|fault| attributed(0, fault))?;
@@ -274,7 +274,7 @@ pub(crate) fn swept(
     let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     limits::entries("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
-    let draws: Vec<DrawnKey> = wire
+    let draws: Vec<RandomKey> = wire
         .draw
         .iter()
         .enumerate()

@@ -34,7 +34,7 @@ pub struct Scenario {
     pub name: String,
     /// Key of every random draw.
     pub seed: u64,
-    /// Largest number of trials per cell.
+    /// Maximum number of trials per cell.
     pub replicates: u64,
     /// Axes of the design.
     pub axes: Vec<SweepAxis>,
@@ -186,7 +186,7 @@ impl Scenario {
 
     /// Scenario of cells and methods alone; the caller sets trials, seed, identity, text and optional parts.
     ///
-    /// Fails where the presentation names cells, axes or methods that do not exist.
+    /// Fails if the presentation names cells, axes or methods that do not exist.
     fn of_design(
         name: &str,
         prose: Prose,
@@ -215,12 +215,12 @@ impl Scenario {
         })
     }
 
-    /// Largest number of trials of a cell; for measured records the number of splits.
+    /// Maximum number of trials of a cell; for measured records the number of splits.
     pub fn trials_of(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
-    /// Largest number of trials of all cells.
+    /// Maximum number of trials of all cells.
     pub fn trials(&self) -> u64 {
         (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
     }

@@ -11,7 +11,7 @@ use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
 use crate::scenario::prose::{Highlight, MarkedValue};
 use crate::scenario::sweep::SweepAxis;
 
-/// Largest number of trials of a study; more is a typing error.
+/// Maximum number of trials of a study; more is a typing error.
 const MAX_TRIALS: u64 = 1_000_000_000;
 
 /// Checks the number of trials and of methods times cells.
@@ -25,11 +25,11 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFaul
             "give the number of trials in every cell, or leave the key out for one",
         ));
     }
-    if cells * methods > limits::MAX_METHODS_OF_CELLS {
+    if cells * methods > limits::MAX_CELLS_TIMES_METHODS {
         return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {cells} cells, each with {methods} methods"),
-            format!("expected at most {} cells times methods", limits::MAX_METHODS_OF_CELLS),
+            format!("expected at most {} cells times methods", limits::MAX_CELLS_TIMES_METHODS),
             "use fewer points or fewer methods, or split the scenario",
         ));
     }

@@ -60,7 +60,7 @@ struct RangeWire {
 
 /// A drawn key with its distribution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrawnKey {
+pub struct RandomKey {
     /// The key.
     pub key: KeyPath,
     index: u32,
@@ -92,7 +92,7 @@ enum Distribution {
     },
 }
 
-/// Smallest probability of the range `between`; below it, rejection sampling takes too long.
+/// Minimum probability of the range `between`; below it, rejection sampling takes too long.
 const MIN_PROBABILITY: f64 = 1e-3;
 
 impl DrawWire {
@@ -102,10 +102,10 @@ impl DrawWire {
     }
 
     /// Checks a draw; `index` is its index in the list.
-    pub fn resolve(&self, index: usize) -> Result<DrawnKey, KeyFault> {
+    pub fn resolve(&self, index: usize) -> Result<RandomKey, KeyFault> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
-        limits::depth(&key, &place.child("key"))?;
+        limits::check_depth(&key, &place.child("key"))?;
         let is_of_trial = |first: &String| {
             ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
         };
@@ -120,7 +120,7 @@ impl DrawWire {
         let shape = self.shape(&place)?;
         let between = self.between.unwrap_or_else(|| shape.support());
         let [low, high] = between;
-        let draw = DrawnKey { key, index: index as u32, shape, between };
+        let draw = RandomKey { key, index: index as u32, shape, between };
         if !(low < high && draw.probability() >= MIN_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
@@ -172,7 +172,7 @@ impl DrawWire {
     }
 }
 
-impl DrawnKey {
+impl RandomKey {
     /// Value for one trial, in the unit of its key.
     pub fn value(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
@@ -270,11 +270,11 @@ impl DrawnDistribution {
 mod tests {
     use super::*;
 
-    fn draw(text: &str) -> Result<DrawnKey, KeyFault> {
+    fn draw(text: &str) -> Result<RandomKey, KeyFault> {
         toml::from_str::<DrawWire>(&format!("key = \"ship.first-order.T-s\"\n{text}")).expect("well formed").resolve(0)
     }
 
-    fn values(draw: &DrawnKey) -> Vec<f64> {
+    fn values(draw: &RandomKey) -> Vec<f64> {
         (0..20_000).map(|replicate| draw.value(&StreamKey { seed: 4, cell: 9, replicate })).collect()
     }
 

@@ -24,7 +24,7 @@ pub fn design_of(document: &Table) -> Table {
 
 /// SHA-256 of a design and of the records it replays, each with the sidecar beside it, if any.
 ///
-/// Fails when an existing record cannot be read to its end.
+/// Fails if an existing record cannot be read to its end.
 pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
@@ -57,7 +57,7 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Largest length of a value in a message, characters.
+/// Maximum length of a value in a message, characters.
 const MAX_VALUE_CHARACTERS: usize = 60;
 
 fn shortened(value: Option<&Value>) -> String {

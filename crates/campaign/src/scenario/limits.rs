@@ -3,22 +3,22 @@
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 
-/// Largest number of `[[sweep]]` entries: with two points each, more would exceed the number of cells.
+/// Maximum number of `[[sweep]]` entries: with two points each, more would exceed the number of cells.
 pub const MAX_SWEEPS: usize = 16;
 
-/// Largest number of `[[draw]]` entries: each is checked at both ends of its range in every cell.
+/// Maximum number of `[[draw]]` entries: each is checked at both ends of its range in every cell.
 pub const MAX_DRAWS: usize = 64;
 
-/// Largest number of `[[identifier]]` entries: each is a column of every table.
+/// Maximum number of `[[identifier]]` entries: each is a column of every table.
 pub const MAX_METHODS: usize = 100;
 
-/// Largest number of `[[effect]]` entries, which is above the number of listed effects: each is computed at every step.
+/// Maximum number of `[[effect]]` entries, which is above the number of listed effects: each is computed at every step.
 pub const MAX_EFFECTS: usize = 20;
 
-/// Largest number of cells times methods, which are in memory while the study runs.
-pub const MAX_METHODS_OF_CELLS: usize = 1_000_000;
+/// Maximum number of cells times methods, which are in memory while the study runs.
+pub const MAX_CELLS_TIMES_METHODS: usize = 1_000_000;
 
-/// Largest number of names in a dotted key; no key has half as many.
+/// Maximum number of names in a dotted key; no key has half as many.
 const MAX_NAMES: usize = 16;
 
 /// Refuses a list with too many entries.
@@ -35,7 +35,7 @@ pub fn entries(list: &str, count: usize, most: usize) -> Result<(), KeyFault> {
 }
 
 /// Refuses a key with too many names, at the `place` where it is written.
-pub fn depth(key: &KeyPath, place: &KeyPath) -> Result<(), KeyFault> {
+pub fn check_depth(key: &KeyPath, place: &KeyPath) -> Result<(), KeyFault> {
     let names = key.parts().len();
     if names <= MAX_NAMES {
         return Ok(());

@@ -133,7 +133,7 @@ pub(crate) struct TraceWire {
     menu: Option<Vec<String>>,
     /// Monomials that stand among the candidates.
     monomials: usize,
-    /// Whether speed, sway, propeller and wind are left unread.
+    /// `true` if speed, sway, propeller and wind are left unread.
     heading_alone: bool,
     /// Effects as lines of text, `bank = c * tanh(k * psi)`, candidates like those of the list.
     formulas: Vec<String>,

@@ -8,10 +8,10 @@ use report::printable::is_printable;
 
 use crate::failure::Failure;
 
-/// Largest length of a label, characters.
+/// Maximum length of a label, characters.
 pub const MAX_LABEL_CHARS: usize = 80;
 
-/// Largest length of a name, bytes, and of the labels of a cell together, characters. File names contain them together
+/// Maximum length of a name, bytes, and of the labels of a cell together, characters. File names contain them together
 /// with a prefix and an extension, within the 255 bytes of a file system.
 pub const MAX_NAME_BYTES: usize = 180;
 
@@ -24,7 +24,7 @@ pub enum Unfit {
     /// Too long.
     #[error("expected at most {most} characters, this text has {length}")]
     Long {
-        /// Largest number of characters.
+        /// Maximum number of characters.
         most: usize,
         /// Number of characters.
         length: usize,

@@ -42,7 +42,7 @@ pub enum MissingPhysics {
     },
     /// Nothing.
     Nothing {
-        /// Whether chance turns the ship or her recorded rudder, so that a random moment is right as well.
+        /// `true` if chance turns the ship or her recorded rudder, so that a random moment is right as well.
         disturbed: bool,
     },
 }

@@ -27,7 +27,7 @@ use crate::scenario::sweep::AxisWire;
 /// Environment variable for the folder of records that are not beside the scenario.
 pub const DATA: &str = "KEMPF_DATA";
 
-/// Largest number of records of a cell.
+/// Maximum number of records of a cell.
 const MAX_RECORDS: usize = 1000;
 
 /// A scenario of measured records.
@@ -99,14 +99,14 @@ pub enum SidecarWire {
 #[serde(untagged, expecting = "\"others\", \"left-out\", \"none\", or a table with `fit` and `judge`")]
 pub enum JudgeWire {
     /// By a rule.
-    Rule(JudgeRule),
+    Rule(HoldOutRule),
     /// By lists of names of records.
     Lists {
         /// Records that are fitted: together, or each alone.
         fit: Vec<String>,
         /// Records that judge; where each is fitted alone, all but the fitted one.
         judge: Vec<String>,
-        /// Whether each record is fitted alone.
+        /// `true` if each record is fitted alone.
         #[serde(default)]
         each: bool,
     },
@@ -115,7 +115,7 @@ pub enum JudgeWire {
 /// How records are shared out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum JudgeRule {
+pub enum HoldOutRule {
     /// Each record is fitted alone and judged by all others.
     Others,
     /// All records but one are fitted together and judged by that one, each in turn.
@@ -126,7 +126,7 @@ pub enum JudgeRule {
 
 impl Default for JudgeWire {
     fn default() -> Self {
-        Self::Rule(JudgeRule::Others)
+        Self::Rule(HoldOutRule::Others)
     }
 }
 
@@ -168,7 +168,7 @@ impl RecordSet {
 
     /// Records of a `[records]` table.
     ///
-    /// Fails when a file is missing or is not a record, and when no split is left.
+    /// Fails if a file is missing or is not a record, and when no split is left.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
         let ListedFiles { paths, absent } = files(wire, folder, &key)?;
@@ -289,15 +289,15 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
     let without = |excluded: usize| all.clone().filter(|place| *place != excluded).collect::<Vec<usize>>();
     let split = |fitted: Vec<usize>, judge| RecordSplit { fitted, judge };
     let splits: Vec<RecordSplit> = match judge {
-        JudgeWire::Rule(JudgeRule::None) => all.map(|record| split(vec![record], None)).collect(),
-        JudgeWire::Rule(JudgeRule::Others) => {
+        JudgeWire::Rule(HoldOutRule::None) => all.map(|record| split(vec![record], None)).collect(),
+        JudgeWire::Rule(HoldOutRule::Others) => {
             let pairs = |fitted: usize| without(fitted).into_iter().map(move |judge| split(vec![fitted], Some(judge)));
             all.clone().flat_map(pairs).collect()
         }
-        JudgeWire::Rule(JudgeRule::LeftOut) if names.len() > 1 => {
+        JudgeWire::Rule(HoldOutRule::LeftOut) if names.len() > 1 => {
             all.clone().map(|judge| split(without(judge), Some(judge))).collect()
         }
-        JudgeWire::Rule(JudgeRule::LeftOut) => Vec::new(),
+        JudgeWire::Rule(HoldOutRule::LeftOut) => Vec::new(),
         JudgeWire::Lists { fit, judge, each } => {
             let places = |list: &[String], part: &str| -> Result<Vec<usize>, KeyFault> {
                 let place = |name: &String| {
@@ -413,8 +413,8 @@ mod tests {
         let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
         assert_eq!(of(&JudgeWire::default()), pairs);
         let left_out = [(vec![1, 2], Some(0)), (vec![0, 2], Some(1)), (vec![0, 1], Some(2))];
-        assert_eq!(of(&JudgeWire::Rule(JudgeRule::LeftOut)), left_out);
-        assert_eq!(of(&JudgeWire::Rule(JudgeRule::None)), [0, 1, 2].map(|record| (vec![record], None)));
+        assert_eq!(of(&JudgeWire::Rule(HoldOutRule::LeftOut)), left_out);
+        assert_eq!(of(&JudgeWire::Rule(HoldOutRule::None)), [0, 1, 2].map(|record| (vec![record], None)));
         let lists = |fit: &[&str], judge: &[&str]| JudgeWire::Lists {
             fit: fit.iter().map(|name| (*name).to_owned()).collect(),
             judge: judge.iter().map(|name| (*name).to_owned()).collect(),

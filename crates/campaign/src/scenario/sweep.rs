@@ -15,7 +15,7 @@ use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath, of_text};
 
-/// Largest number of cells; more is an error in a range.
+/// Maximum number of cells; more is an error in a range.
 const MAX_CELLS: usize = 100_000;
 
 /// An axis as it is written: `[[sweep]]`.
@@ -98,7 +98,7 @@ pub struct SweepSetting {
 impl SweepSetting {
     /// Checks that a sweep may change the key.
     fn check(&self) -> Result<(), KeyFault> {
-        limits::depth(&self.key, &self.key_place)?;
+        limits::check_depth(&self.key, &self.key_place)?;
         let first = self.key.parts().first().map_or("", String::as_str);
         if first.is_empty() || matches!(ScenarioPart::of(first), ScenarioPart::Prose | ScenarioPart::Study) {
             let problem = match first {
@@ -376,7 +376,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
 
 /// Sets a key in a document and creates missing tables; numbers in the path are list indices from 0.
 ///
-/// Fails when the path passes through a value, or beyond the end of a list.
+/// Fails if the path passes through a value, or beyond the end of a list.
 pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
     let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;

@@ -41,7 +41,7 @@ impl Resamples {
         self.batches
     }
 
-    /// Statistics of the same sums, each with a percentile interval. `None` where undefined; no interval below six
+    /// Statistics of the same sums, each with a percentile interval. `None` if undefined; no interval below six
     /// values.
     pub fn figures<const N: usize>(
         &self,

@@ -13,7 +13,7 @@ pub struct Moments {
     pub third: f64,
     /// Σ (x − mean)⁴.
     pub fourth: f64,
-    /// Smallest value; infinite without values.
+    /// Minimum value; infinite without values.
     pub smallest: f64,
 }
 

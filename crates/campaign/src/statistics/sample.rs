@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::statistic::{MIN_INTERVAL_VALUES, Statistic, Z95};
 
-/// Largest number of exact values.
+/// Maximum number of exact values.
 const MAX_EXACT_VALUES: usize = 8192;
 
 /// Relative accuracy of a binned value.
@@ -14,7 +14,7 @@ const ACCURACY: f64 = 1e-3;
 /// Size below which a value counts as zero.
 const ZERO: f64 = 1e-12;
 
-/// Largest extent of a density beyond the quartiles, in quartile distances.
+/// Maximum extent of a density beyond the quartiles, in quartile distances.
 const TAILS: f64 = 3.0;
 
 /// Accumulating sample.

@@ -28,10 +28,10 @@ impl Statistic {
 /// Two-sided 95 % quantile of the standard normal distribution.
 pub const Z95: f64 = 1.959_963_984_540_054;
 
-/// Smallest number of values with an interval: below it no pair of order statistics covers the median with 95 %.
+/// Minimum number of values with an interval: below it no pair of order statistics covers the median with 95 %.
 pub const MIN_INTERVAL_VALUES: u64 = 6;
 
-/// Smallest number of values that are summarised by a median and a range; fewer are shown individually.
+/// Minimum number of values that are summarised by a median and a range; fewer are shown individually.
 pub const MIN_SUMMARISED: usize = 5;
 
 /// Share of `count` in `of` with its interval (Wilson 1927); `None` without cases.

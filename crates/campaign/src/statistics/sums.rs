@@ -119,7 +119,7 @@ impl PairSums {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Ratio of the root mean square errors of a total; `None` where that of the reference is zero.
+    /// Ratio of the root mean square errors of a total; `None` if that of the reference is zero.
     pub fn ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }

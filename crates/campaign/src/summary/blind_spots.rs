@@ -25,7 +25,7 @@ pub struct BlindSpot {
 }
 
 impl BlindSpot {
-    /// Smallest and largest tried size.
+    /// Minimum and largest tried size.
     pub fn ends(&self) -> [f64; 2] {
         let sizes = || self.tried.iter().map(|level| level.size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]

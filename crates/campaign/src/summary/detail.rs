@@ -7,10 +7,10 @@ use crate::statistics::OrderedSample;
 /// Number of places of a density.
 const PLACES: usize = 160;
 
-/// Largest number of error pairs kept per cell.
+/// Maximum number of error pairs kept per cell.
 pub(super) const MAX_PAIRS: usize = 2000;
 
-/// Largest number of error pairs drawn per cell.
+/// Maximum number of error pairs drawn per cell.
 const MAX_DRAWN_PAIRS: usize = 400;
 
 /// Limit of winsorising, in robust standard deviations: a few outliers would otherwise inflate the covariance (Huber

@@ -31,7 +31,7 @@ pub struct PredictionSummary {
 pub struct CriterionTally {
     /// Name of the criterion.
     pub name: Box<str>,
-    /// Largest allowed value.
+    /// Maximum allowed value.
     pub limit: f64,
     /// Trials whose ship meets it.
     pub kept: u64,

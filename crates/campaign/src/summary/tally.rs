@@ -30,7 +30,7 @@ pub struct Tally<'a> {
     summary: Summary,
 }
 
-/// Largest number of rows of cells that wait to be summarised in parallel: enough to be efficient, few enough to bound
+/// Maximum number of rows of cells that wait to be summarised in parallel: enough to be efficient, few enough to bound
 /// memory.
 const MAX_WAITING_ROWS: u64 = 1 << 15;
 
@@ -198,7 +198,7 @@ struct MethodTally {
     predictions: Vec<PredictionSummary>,
 }
 
-/// Largest number of distinct reasons; a reason may contain numbers of its trial.
+/// Maximum number of distinct reasons; a reason may contain numbers of its trial.
 const MAX_REASONS: usize = 50;
 
 impl MethodTally {

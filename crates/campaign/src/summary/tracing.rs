@@ -91,7 +91,7 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 }
 
 impl TraceSummary {
-    /// Share of trials in which all missing effects were named; `None` where nothing is missing, and for a hull.
+    /// Share of trials in which all missing effects were named; `None` if nothing is missing, and for a hull.
     pub fn complete_share(&self) -> Option<Statistic> {
         if self.missing.is_empty() { None } else { self.share_of(self.complete) }
     }

@@ -57,7 +57,7 @@ pub struct ParameterEntry {
     pub prime: Option<PrimeEntry>,
     /// Record to which it belongs; `null` for all.
     pub only: Option<String>,
-    /// Whether it lies at its bound; left out where it does not.
+    /// `true` if it lies at its bound; left out where it does not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_bound: bool,
 }
@@ -96,7 +96,7 @@ pub enum Dependence {
 /// Unexplained residual.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct UnexplainedEntry {
-    /// Whether the residual is neither random nor of a shape that was searched for.
+    /// `true` if the residual is neither random nor of a shape that was searched for.
     pub present: bool,
     /// Location of the residual, where it is more than noise.
     pub signature: Option<String>,
@@ -144,7 +144,7 @@ pub struct RecordEntry {
     /// SHA-256 of the file.
     #[serde(default)]
     pub sha256: String,
-    /// Whether it was held out.
+    /// `true` if it was held out.
     pub held_out: bool,
     /// File of the record and its replays.
     pub curves: String,
@@ -161,7 +161,7 @@ pub struct RecordEntry {
 }
 
 impl RecordEntry {
-    /// Length and speed of the ship; `None` where one is unknown.
+    /// Length and speed of the ship; `None` if one is unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
@@ -204,7 +204,7 @@ pub struct MissingMomentEntry {
     pub rms_rudder_deg: f64,
     /// Explanation in the tables: the named effects together, otherwise the best candidate alone.
     pub explanation: Option<String>,
-    /// Whether the verdict is located or unexplained and no effect lies inside the bands of all significant curves.
+    /// `true` if the verdict is located or unexplained and no effect lies inside the bands of all significant curves.
     pub unlisted: bool,
     /// Effects inside the bands of all significant curves.
     pub inside_all: Vec<String>,
@@ -221,7 +221,7 @@ pub struct PanelEntry {
     pub column: String,
     /// Share of the variance of the walk that the curve explains.
     pub variance_share: Option<f64>,
-    /// Whether the curve is significant: its band excludes zero somewhere.
+    /// `true` if the curve is significant: its band excludes zero somewhere.
     pub shows: bool,
     /// Effects inside the band everywhere.
     pub inside: Vec<String>,

@@ -100,7 +100,7 @@ fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyErro
     Ok(SelectedPoints { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
 }
 
-/// Interval from the last instant with r = 0 before a passage, or from the first after it where there is none before.
+/// Interval from the last instant with r = 0 before a passage, or from the first after it if there is none before.
 fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
     let after = still.partition_point(|point| point.time < crossing.time);
     let from = still.get(after.saturating_sub(1))?;

@@ -54,7 +54,7 @@ pub struct Points {
     pub still: Vec<Point>,
     /// Passages of the base course in order of time.
     pub crossings: Vec<Point>,
-    /// Whether the record starts at rest, so that the first of `still` is the execute and no extremum.
+    /// `true` if the record starts at rest, so that the first of `still` is the execute and no extremum.
     pub from_rest: bool,
     /// Base course, rad.
     pub base: f64,
@@ -147,7 +147,7 @@ fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
 /// Vertex (s, rad) of the parabola through the rows within `half_width` of itself.
 ///
 /// An extremum is first looked for around the largest heading, which noise picks: a window there holds high values on
-/// purpose. Moving the window to its own vertex until it stays there removes this bias. `None` when the window leaves
+/// purpose. Moving the window to its own vertex until it stays there removes this bias. `None` if the window leaves
 /// the neighbourhood of the start.
 fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option<(f64, f64)> {
     let mut vertex = start;

@@ -33,7 +33,7 @@ use document::{Warning, WarningCode};
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 
-/// Largest condition number of the basis at which derivatives of the curve are used.
+/// Maximum condition number of the basis at which derivatives of the curve are used.
 pub const TRUSTED_CONDITION: f64 = 1e4;
 
 /// Fourier fit of a heading: the curve with its basis and projection.

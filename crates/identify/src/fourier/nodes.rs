@@ -24,7 +24,7 @@ pub struct Nodes {
     pub weight: Vec<f64>,
     /// See [`Self::weight`].
     pub skew: Vec<f64>,
-    /// Whether every row has its mirror image, so that `skew` is zero.
+    /// `true` if every row has its mirror image, so that `skew` is zero.
     pub is_symmetric: bool,
     /// Instants without the padding.
     pub used: usize,
@@ -70,8 +70,8 @@ impl Nodes {
     }
 }
 
-/// Whether times (s, increasing, at least 2) are a step apart to the rounding of a clock: then every one has its mirror
-/// image about the middle.
+/// `true` if times (s, increasing, at least 2) are a step apart to the rounding of a clock: then every one has its
+/// mirror image about the middle.
 pub fn has_even_steps(time: &[f64]) -> bool {
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN_STEP_TOLERANCE * step)

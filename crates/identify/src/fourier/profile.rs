@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::nodes::{LANES, Nodes, lanes};
 
-/// Smallest pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
+/// Minimum pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
 /// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error
 /// and false minima appear. It happens where gaps leave too little of the record, and where the highest harmonics are
 /// beyond the sampling.
@@ -275,7 +275,7 @@ fn residual_sum_of_squares(design: DMatrix<f64>, mut signal: DVector<f64>) -> f6
     signal.rows_range(width..).norm_squared()
 }
 
-/// bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` when a pivot is down to rounding.
+/// bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` if a pivot is down to rounding.
 fn explained(gram: &mut [f64], right: &mut [f64]) -> Option<f64> {
     let width = right.len();
     let mut diagonal = [0.0; MAX_COLUMNS];

@@ -98,7 +98,7 @@ impl Equations {
         self.rudder.len()
     }
 
-    /// Whether there are no equations.
+    /// `true` if there are no equations.
     pub fn is_empty(&self) -> bool {
         self.rudder.is_empty()
     }

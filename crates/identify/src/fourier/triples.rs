@@ -14,13 +14,13 @@ use crate::error::IdentifyError;
 /// Area over the product of standard deviations below which three instants lie on one line to rounding.
 const MIN_AREA: f64 = 1e-9;
 
-/// Draws allowed for every triple asked for.
+/// Draws allowed for every triple requested.
 const DRAWS_PER_TRIPLE: usize = 1000;
 
 /// Limit on the triples: ten million draws where no triple is usable.
 pub const MAX_TRIPLES: usize = 10_000;
 
-/// Largest condition number of the equations of a well-conditioned triple, columns divided by the standard deviations
+/// Maximum condition number of the equations of a well-conditioned triple, columns divided by the standard deviations
 /// of r' and δ.
 const MAX_CONDITION: f64 = 10.0;
 
@@ -38,7 +38,7 @@ pub enum Selection {
 
 /// An instant at which the equation of motion may be written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EquationInstant {
+pub struct RegressionPoint {
     /// Rudder δ, rad.
     pub rudder: f64,
     /// Yaw rate r, rad/s.
@@ -78,7 +78,7 @@ pub struct DrawnTriples {
 /// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than three instants or `count` triples do not come
 /// together in a thousand draws each.
 pub fn draw(
-    instants: &[EquationInstant],
+    instants: &[RegressionPoint],
     selection: Selection,
     count: usize,
     seed: u64,
@@ -115,12 +115,12 @@ pub fn draw(
     Ok(drawn)
 }
 
-/// Parameters from three instants; `None` when they lie on a line in the plane of rudder and r' (to rounding), both
+/// Parameters from three instants; `None` if they lie on a line in the plane of rudder and r' (to rounding), both
 /// measured in `scale` (standard deviations of r' and δ).
-pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
+pub fn solve(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
     let [first, second, third] = triple;
     // Differences against the third instant eliminate K δ_r.
-    let difference = |i: &EquationInstant| {
+    let difference = |i: &RegressionPoint| {
         (i.yaw_acceleration - third.yaw_acceleration, i.yaw_rate - third.yaw_rate, i.rudder - third.rudder)
     };
     let ((a1, r1, d1), (a2, r2, d2)) = (difference(first), difference(second));
@@ -134,7 +134,7 @@ pub fn solve(triple: &[EquationInstant; 3], scale: [f64; 2]) -> Option<TripleEst
 }
 
 /// Condition number of the three equations with scaled columns.
-fn condition(triple: &[EquationInstant; 3], scale: [f64; 2]) -> f64 {
+fn condition(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> f64 {
     let rows = Matrix3::from_fn(|row, column| match column {
         0 => triple[row].yaw_acceleration / scale[0],
         1 => triple[row].rudder / scale[1],
@@ -145,7 +145,7 @@ fn condition(triple: &[EquationInstant; 3], scale: [f64; 2]) -> f64 {
     values.max() / values.min()
 }
 
-fn standard_deviation(instants: &[EquationInstant], quantity: impl Fn(&EquationInstant) -> f64) -> f64 {
+fn standard_deviation(instants: &[RegressionPoint], quantity: impl Fn(&RegressionPoint) -> f64) -> f64 {
     let count = instants.len() as f64;
     let mean = instants.iter().map(&quantity).sum::<f64>() / count;
     (instants.iter().map(|i| (quantity(i) - mean).powi(2)).sum::<f64>() / count).sqrt()
@@ -157,10 +157,10 @@ mod tests {
     use crate::testing::Case;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
 
-    fn exact(case: &Case) -> Vec<EquationInstant> {
+    fn exact(case: &Case) -> Vec<RegressionPoint> {
         let truth = case.truth();
         (0..truth.time.len())
-            .map(|row| EquationInstant {
+            .map(|row| RegressionPoint {
                 rudder: truth.rudder[row],
                 yaw_rate: truth.yaw_rate[row],
                 yaw_acceleration: truth.yaw_acceleration[row],

@@ -14,7 +14,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::expected::FormPrior;
 
-/// Largest ratio of posterior to prior variance of an informed direction.
+/// Maximum ratio of posterior to prior variance of an informed direction.
 const MAX_RATIO: f64 = 0.9;
 
 /// p value below which the check reports a conflict.
@@ -39,7 +39,7 @@ impl PriorCheck {
         self.p_value < CONFLICT_P_VALUE
     }
 
-    /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` where
+    /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` if
     /// the records add no information.
     pub(super) fn of(expected: &FormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =

@@ -5,10 +5,10 @@ use thiserror::Error;
 /// Headings that a record needs.
 pub(super) const MIN_HEADINGS: usize = 20;
 
-/// Largest interval between rows, L/U₀: within two lengths a ship turns and comes back.
+/// Maximum interval between rows, L/U₀: within two lengths a ship turns and comes back.
 pub(super) const MAX_INTERVAL_LENGTHS: f64 = 2.0;
 
-/// Longest duration of a record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it,
+/// Maximum duration of a record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it,
 /// and the time of a fit grows with it.
 pub(super) const MAX_DURATION_LENGTHS: f64 = 1000.0;
 

@@ -20,7 +20,7 @@ use ship::vessel::prior::HullParticulars;
 /// Relative tolerance of equal Froude numbers.
 const FROUDE_TOLERANCE: f64 = 0.1;
 
-/// Smallest information of an earlier trial in a direction, relative to its prior, that is used.
+/// Minimum information of an earlier trial in a direction, relative to its prior, that is used.
 const MIN_INFORMATION: f64 = 1e-6;
 
 /// Prior of the coefficients of a form: a normal law.
@@ -121,7 +121,7 @@ fn precision_of(form: &HullForm) -> DMatrix<f64> {
 
 impl EarlierHull {
     /// Information of the trials of this hull, D/f² and (h + D s)/f², in the places of the coefficients of another
-    /// ship. `None` where its covariance is not positive definite.
+    /// ship. `None` if its covariance is not positive definite.
     ///
     /// Coefficients of a single trial are left out; so are those of friction at another scale, except through their
     /// correlations.

@@ -102,7 +102,7 @@ pub struct HullEstimate {
 
 /// Fits a hull to records of one ship, with a prior of its coefficients.
 ///
-/// Fails where length or speed of the ship are missing, where a record has fewer than twenty headings, rows too far
+/// Fails if length or speed of the ship are missing, where a record has fewer than twenty headings, rows too far
 /// apart, an impossible duration or a start near rest, and where no values near the prior can be replayed.
 pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
@@ -135,7 +135,7 @@ pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullF
     Ok(HullEstimate { expected, reference, values: search.at, covariance, records, moment })
 }
 
-/// Reason why no hull can be fitted to these records of one ship; `None` where a fit is possible.
+/// Reason why no hull can be fitted to these records of one ship; `None` if a fit is possible.
 pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
     tracks(trials).err()
 }
@@ -147,7 +147,7 @@ fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitEr
     Ok((reference, tracks))
 }
 
-/// Largest residual of a member, relative to the smallest of all hulls and another model.
+/// Maximum residual of a member, relative to the smallest of all hulls and another model.
 const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
@@ -187,7 +187,7 @@ impl HullEstimate {
         Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
     }
 
-    /// Check of the prior against the records; `None` where the records add no information.
+    /// Check of the prior against the records; `None` if the records add no information.
     pub fn check(&self) -> Option<PriorCheck> {
         PriorCheck::of(&self.expected, &self.values, &self.covariance)
     }

@@ -34,7 +34,7 @@ pub struct HullDeviations {
     pub speed: f64,
 }
 
-/// Smallest deviations of a record.
+/// Minimum deviations of a record.
 const MIN_DEVIATIONS: HullDeviations = HullDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search: so large that the hull stays near its prior.
@@ -163,7 +163,7 @@ impl<'a> HullObjective<'a> {
         Self { expected, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
-    /// Mean square residuals of every record; `None` where the values make no ship.
+    /// Mean square residuals of every record; `None` if the values make no ship.
     pub fn misfits(&mut self, at: &[f64]) -> Option<Vec<Misfit>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
         let hull = self.expected.form.with(&values)?;
@@ -310,7 +310,7 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
     (columns, shares)
 }
 
-/// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` where
+/// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if
 /// the values make no ship.
 pub(super) fn variances(
     expected: &FormPrior,

@@ -5,7 +5,7 @@ use ship::vessel::prime::PrimeHull;
 
 use super::track::HullTrack;
 
-/// Largest step of the solver, in L/U₀.
+/// Maximum step of the solver, in L/U₀.
 const MAX_STEP_LENGTHS: f64 = 0.08;
 
 /// Replay of a window: rows of states, each (ψ, u, v).

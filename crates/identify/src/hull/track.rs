@@ -16,7 +16,7 @@ const WINDOW: f64 = 3.5;
 /// little, and the path is nearly straight.
 const SPEED_BASE: f64 = 1.0;
 
-/// Smallest speed at the start of a record, relative to the approach speed: the priors do not apply to a ship that
+/// Minimum speed at the start of a record, relative to the approach speed: the priors do not apply to a ship that
 /// gathers way.
 const MIN_START_SPEED: f64 = 0.4;
 
@@ -32,7 +32,7 @@ pub struct HullReference {
 }
 
 impl HullReference {
-    /// Reference of a trial; `None` where its length or speed is not declared.
+    /// Reference of a trial; `None` if its length or speed is not declared.
     pub fn of(trial: &Trial) -> Option<Self> {
         let particulars = trial.particulars()?;
         let rates = trial.channel(Channel::PropellerRate);
@@ -203,7 +203,7 @@ fn mean_of_read(values: &[f64]) -> f64 {
     read().sum::<f64>() / read().count() as f64
 }
 
-/// Gaps filled with the value before, or after at the start; `None` where nothing was read.
+/// Gaps filled with the value before, or after at the start; `None` if nothing was read.
 fn filled(mut values: Vec<f64>) -> Option<Vec<f64>> {
     let mut last = *values.iter().find(|value| value.is_finite())?;
     for value in &mut values {

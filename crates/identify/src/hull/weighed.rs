@@ -7,7 +7,7 @@ use super::conflict::PriorCheck;
 use super::expected::{EarlierHull, FormPrior};
 
 /// The estimate of some trials combined with that of earlier trials, which it does not include yet, and the check of
-/// the two against each other; `None` where the earlier trials have no information on its form.
+/// the two against each other; `None` if the earlier trials have no information on its form.
 ///
 /// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`FormPrior`]. Both are treated as
 /// normal laws: where they are far apart, a fit with the earlier trials as prior is better.

@@ -14,9 +14,9 @@ pub const ENTRIES: usize = 5;
 pub struct NoiseVector {
     /// Which yaw moment.
     pub moment: MomentKind,
-    /// Whether the rudder has an error.
+    /// `true` if the rudder has an error.
     pub rudder: bool,
-    /// Whether the compass error has a correlation time.
+    /// `true` if the compass error has a correlation time.
     pub coloured: bool,
     /// The logarithms, in the order above; inactive entries are ignored.
     pub log: [f64; ENTRIES],
@@ -118,7 +118,7 @@ pub struct NoiseParameters {
 }
 
 impl NoiseParameters {
-    /// Whether the moment is a state.
+    /// `true` if the moment is a state.
     pub fn has_moment_state(&self) -> bool {
         matches!(self.moment, MomentKind::OrnsteinUhlenbeck | MomentKind::Walk)
     }

@@ -129,7 +129,7 @@ impl Coefficients {
     }
 }
 
-/// Whether the anchor of the columns is the last row.
+/// `true` if the anchor of the columns is the last row.
 pub fn is_backward(inverse_time: f64) -> bool {
     inverse_time < 0.0
 }
@@ -202,7 +202,7 @@ impl Track {
         self.heading.len()
     }
 
-    /// Whether no row has a heading.
+    /// `true` if no row has a heading.
     pub fn is_empty(&self) -> bool {
         self.heading.is_empty()
     }

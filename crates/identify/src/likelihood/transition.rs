@@ -11,7 +11,7 @@ use super::schedule::Span;
 /// Terms of the series of the matrix exponential over one scaled step.
 const TERMS: usize = 16;
 
-/// Largest scaled step, in time constants: the series then ends below rounding. Longer steps are built by doubling.
+/// Maximum scaled step, in time constants: the series then ends below rounding. Longer steps are built by doubling.
 const MAX_SCALED_STEP: f64 = 0.25;
 
 /// Nodes and weights on (0, 1) of the Gauss–Legendre rule of eight points, exact up to degree 15.

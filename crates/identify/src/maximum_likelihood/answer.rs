@@ -285,7 +285,7 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning
 /// an unbiased method that also estimates the initial state.
 ///
 /// The information is Σ (∂ν/∂θ)(∂ν/∂θ)ᵀ/S over the innovations; the small information of the noise spectrum on 1/T is
-/// neglected. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the
+/// neglected. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the
 /// record does not determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &NoiseModel) -> Option<Covariance> {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);

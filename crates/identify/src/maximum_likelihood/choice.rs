@@ -19,7 +19,7 @@ use crate::robust;
 use crate::samples::track;
 use trial::noise_model::MomentKind;
 
-/// Largest number of rounds of outlier search and refit.
+/// Maximum number of rounds of outlier search and refit.
 const MAX_OUTLIER_ROUNDS: usize = 12;
 
 /// Gain in −2 log L, beside log n, that a jump of the compass needs.
@@ -53,12 +53,12 @@ pub(super) struct Chosen {
     pub maxima: Vec<(f64, Maximum)>,
     /// Spikes and jumps of every record, by row of its track.
     pub outliers: Vec<Suspects>,
-    /// Whether there were too many spikes to leave them out.
+    /// `true` if there were too many spikes to leave them out.
     pub too_many: bool,
     /// BIC of every kind of moment that was fitted.
     pub tried: Vec<(MomentKind, f64)>,
     pub evaluations: usize,
-    /// Whether 1/T is at the edge of the range of `output-error`.
+    /// `true` if 1/T is at the edge of the range of `output-error`.
     pub at_bound: bool,
 }
 
@@ -234,7 +234,7 @@ fn fit_laws(
     }
     for (a, vectors) in coloured_starts {
         let starts = search.spread(a, &vectors, COMPASS);
-        let start = search.best(starts, |point| point.restricted);
+        let start = search.best_start(starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
     // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already the
@@ -284,7 +284,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
             MomentKind::White | MomentKind::Walk => search.levels(a, &none, kind),
             MomentKind::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
-        let start = search.best(starts, |point| point.restricted);
+        let start = search.best_start(starts, |point| point.restricted);
         // A moment without gain at any size is absent; its BIC still counts its entries.
         let is_unseen = |start: &Point| {
             matches!(kind, MomentKind::White | MomentKind::Walk)
@@ -345,7 +345,7 @@ fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVec
     let points = (decades * VALUES_PER_DECADE as f64).ceil() as usize;
     let sizes = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
     let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_time).abs() > 0.2 * a.abs()).collect();
-    search.best(starts.into_iter().map(|a| (a, vectors.to_vec())).collect(), |point| point.deviance)
+    search.best_start(starts.into_iter().map(|a| (a, vectors.to_vec())).collect(), |point| point.deviance)
 }
 
 /// Keeps the suspected jumps that raise the likelihood enough under the noise of a point.

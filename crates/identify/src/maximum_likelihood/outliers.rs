@@ -28,13 +28,13 @@ const SPIKE_SDS: f64 = 6.0;
 /// Change of level, in robust standard deviations, beyond which it is a jump.
 const JUMP_SDS: f64 = 8.0;
 
-/// Smallest outlier, as a share of the heading range: corners of the rudder between rows leave residuals below it.
+/// Minimum outlier, as a share of the heading range: corners of the rudder between rows leave residuals below it.
 const MIN_OUTLIER_SHARE: f64 = 2e-3;
 
-/// Smallest spike, relative to the largest new spike, that is removed in the same round.
+/// Minimum spike, relative to the largest new spike, that is removed in the same round.
 const MIN_GROSS_SHARE: f64 = 0.3;
 
-/// Largest share of outliers: a larger share is noise of another law.
+/// Maximum share of outliers: a larger share is noise of another law.
 pub(super) const MAX_OUTLIER_SHARE: f64 = 0.1;
 
 /// Standard deviation of normal numbers over the median of their magnitudes.

@@ -18,7 +18,7 @@ use estimation::kalman::Whitener;
 /// Unknowns that all records share: 1/T, K/T and (K/T) δ_r.
 pub(super) const SHARED: usize = 3;
 
-/// Largest number of iterations of the weights of the records of one ship.
+/// Maximum number of iterations of the weights of the records of one ship.
 const MAX_WEIGHT_ITERATIONS: usize = 20;
 
 /// Relative change of the variances at convergence of the weights.
@@ -95,7 +95,7 @@ impl Record {
         self.schedule.readings.len()
     }
 
-    /// Whether the yaw rate is among the readings.
+    /// `true` if the yaw rate is among the readings.
     pub fn has_gyro(&self) -> bool {
         !self.track.rates.is_empty()
     }
@@ -116,7 +116,7 @@ impl Record {
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// The columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` when a
+    /// The columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a
     /// column is not finite.
     fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<White> {
         let mut motion = MotionColumns::default();
@@ -324,7 +324,7 @@ pub(super) fn readings(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
 
-/// The best fit for a given 1/T and a noise vector of every record. `None` when it is not a ship or not finite.
+/// The best fit for a given 1/T and a noise vector of every record. `None` if it is not a ship or not finite.
 pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let columns =
         |(record, vector): (&Record, &NoiseVector)| record.white(inverse_time, &vector.parameters(inverse_time));

@@ -75,7 +75,7 @@ impl Slope {
 }
 
 impl Linearised {
-    /// Adds the contribution of a record, whose noise entries have these numbers among the unknowns. `None` where it is
+    /// Adds the contribution of a record, whose noise entries have these numbers among the unknowns. `None` if it is
     /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {
         let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);

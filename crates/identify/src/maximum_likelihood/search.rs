@@ -23,7 +23,7 @@ const RIDGE: f64 = 1e-10;
 /// Halvings of a step.
 const HALVINGS: usize = 12;
 
-/// Largest change of a logarithm in one step.
+/// Maximum change of a logarithm in one step.
 const MAX_LOG_STEP: f64 = 2.5;
 
 /// Scales of one record that set the ranges of the logarithms and the starts of the search.
@@ -46,7 +46,7 @@ impl Ranges {
         }
     }
 
-    /// Smallest and largest logarithm of an entry.
+    /// Minimum and largest logarithm of an entry.
     fn range(&self, vector: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
@@ -102,7 +102,7 @@ impl Search<'_> {
     }
 
     /// The start with the lowest −2 log L, or restricted −2 log L where only the noise differs.
-    pub fn best(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
+    pub fn best_start(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
         let points = starts.iter().filter_map(|(a, vectors)| self.evaluate(*a, vectors));
         points.min_by(|a, b| height(a).total_cmp(&height(b)))
     }

@@ -69,11 +69,11 @@ pub struct Settings {
     pub compass: CompassChoice,
     /// The error of the recorded rudder: `declared`, `none` or `estimated`.
     pub rudder: RudderChoice,
-    /// Whether the yaw rate is used where every record has one.
+    /// `true` if the yaw rate is used where every record has one.
     pub yaw_rate: bool,
-    /// Whether spikes are left out and jumps of the compass estimated.
+    /// `true` if spikes are left out and jumps of the compass estimated.
     pub outliers: bool,
-    /// Largest number of scoring steps for one kind of noise.
+    /// Maximum number of scoring steps for one kind of noise.
     pub iterations: usize,
 }
 

@@ -29,7 +29,7 @@ pub(super) struct Residuals {
 impl Residuals {
     /// Filters every record with the final estimate.
     ///
-    /// `None` when Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
+    /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
     pub fn new(records: &[Record], point: &Point, blocks: &[NormalEquations]) -> Option<Self> {
         let count: usize = records.iter().map(|record| record.observed).sum();
         let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;

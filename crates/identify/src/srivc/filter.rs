@@ -149,7 +149,7 @@ pub(super) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// One pass over `record` with the filters of `shared`; `None` when 1 and φ₁ are parallel, as after an overflow.
+    /// One pass over `record` with the filters of `shared`; `None` if 1 and φ₁ are parallel, as after an overflow.
     pub fn new(record: &Record, shared: Shared, start: State, left: Left) -> Option<Self> {
         let mut gram = SMatrix::<f64, 5, 5>::zeros();
         let mut cross = SMatrix::<f64, 5, 2>::zeros();

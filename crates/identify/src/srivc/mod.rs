@@ -46,7 +46,7 @@ use record::Record;
 /// Headings that a trial needs: twice its unknowns.
 const MIN_ROWS: usize = 10;
 
-/// Smallest share of a step that is taken when the iteration oscillates.
+/// Minimum share of a step that is taken when the iteration oscillates.
 const MIN_STEP_SHARE: f64 = 0.05;
 
 /// Settings of the method.
@@ -58,7 +58,7 @@ pub struct Settings {
     /// Change of the simulated heading in one iteration at which the method has settled, as a share of the heading that
     /// the rudder explains. Not of the parameters: a ship with 1/T = 0 and a poorly determined K have no scale.
     pub relative_step: f64,
-    /// Largest accepted condition number of the scaled instruments, initial states eliminated.
+    /// Maximum accepted condition number of the scaled instruments, initial states eliminated.
     pub condition_limit: f64,
 }
 
@@ -71,7 +71,7 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings.
     ///
-    /// Fails when there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the
+    /// Fails if there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the
     /// condition limit is not above 1.
     pub fn build(self) -> Result<Srivc, SettingsError> {
         check_iterations("max-iterations", self.max_iterations)?;

@@ -15,7 +15,7 @@ pub(super) struct FilterRow {
     pub rudder: f64,
     /// Heading from the first row, rad; interpolated where it was not observed.
     pub heading: f64,
-    /// Whether the heading was observed.
+    /// `true` if the heading was observed.
     pub observed: bool,
 }
 

@@ -10,7 +10,7 @@ use crate::helm_replay;
 use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TOLERANCE, TWENTY};
 use crate::turn::{self, HeldTurn};
 
-/// Largest yaw rate of a straight approach, relative to the largest of the record.
+/// Maximum yaw rate of a straight approach, relative to the largest of the record.
 const MAX_STRAIGHT_RATE: f64 = 0.05;
 
 /// Rows needed for the yaw rate of an approach to a circle.
@@ -64,7 +64,7 @@ impl<'a> TestedManoeuvre<'a> {
         }
     }
 
-    /// Whether it is this manoeuvre to this side.
+    /// `true` if it is this manoeuvre to this side.
     pub fn is(&self, manoeuvre: FormManoeuvre, side: &str) -> bool {
         self.what.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
     }

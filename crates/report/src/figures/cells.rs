@@ -67,7 +67,7 @@ pub struct CellMap {
     pub note: Option<String>,
 }
 
-/// Smallest type that can be read, points.
+/// Minimum type that can be read, points.
 const MIN_FONT_PT: f64 = 6.5;
 
 /// Height that the rows of a wide figure take, as a share of its width, by being higher, up to so many times as high.
@@ -83,7 +83,7 @@ impl CellMap {
         self.shades == Shades::Shares
     }
 
-    /// Whether intervals stand below the values.
+    /// `true` if intervals stand below the values.
     fn has_intervals(&self, theme: &Theme) -> bool {
         self.is_shares() && !theme.is_narrow() && self.all().any(|cell| bracket(cell).is_some())
     }
@@ -154,7 +154,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Dra
 /// Pieces of the bar of colours.
 const PIECES: usize = 64;
 
-/// The colours with their values, under the panels; nothing where there is one value, or none.
+/// The colours with their values, under the panels; nothing if there is one value, or none.
 fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Plotted {
     if shading.high <= shading.low {
         return Ok(());

@@ -22,23 +22,23 @@ use crate::theme::Theme;
 /// What is said under a figure of what it does not show.
 #[derive(Default)]
 struct Unshown {
-    /// Whether a layer is cut.
+    /// `true` if a layer is cut.
     is_cut: bool,
-    /// Largest number of dots beyond the panels of a stack.
+    /// Maximum number of dots beyond the panels of a stack.
     dots: usize,
-    /// Whether a mark lies beyond a panel.
+    /// `true` if a mark lies beyond a panel.
     marks: bool,
-    /// Whether marks stand side by side.
+    /// `true` if marks stand side by side.
     apart: bool,
     /// Names without a place in the frame, with their numbers.
     names: Vec<String>,
 }
 
-/// Largest height of all panels of a wide figure, as a share of its width, and the least share of its height that a
+/// Maximum height of all panels of a wide figure, as a share of its width, and the least share of its height that a
 /// panel keeps.
 const WIDE: [f64; 2] = [0.52, 0.62];
 
-/// Largest share of the height of a panel that is left free below and above its data.
+/// Maximum share of the height of a panel that is left free below and above its data.
 const MAX_ROOM: f64 = 0.6;
 
 /// Panels side by side in a narrow figure.
@@ -261,7 +261,7 @@ fn equalise(grid: &mut Grid, width: f64) {
     }
 }
 
-/// Whether a layer goes beyond the axes of the one panel.
+/// `true` if a layer goes beyond the axes of the one panel.
 fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
     let (Some(column), Some((row, _))) = (grid.columns.first(), grid.rows.first()) else { return false };
     let holds = |axis: &Axis, value: f64| value >= axis.ends().0 && value <= axis.ends().1;

@@ -130,7 +130,7 @@ pub struct Marks {
     pub intervals: Vec<Option<[f64; 2]>>,
     /// The line that joins them.
     pub joined: Option<Pen>,
-    /// Whether marks that would hide each other stand side by side.
+    /// `true` if marks that would hide each other stand side by side.
     pub apart: bool,
 }
 
@@ -256,7 +256,7 @@ pub struct PanelRow {
     pub y: Ruler,
     /// Height, as a share of the width of the figure.
     pub height: f64,
-    /// Whether there is a line at zero.
+    /// `true` if there is a line at zero.
     pub zero: bool,
     /// Dashed lines from left to right, such as the ends of what chance leaves.
     pub levels: Vec<f64>,
@@ -292,7 +292,7 @@ pub struct LayeredPanel {
 pub struct AxisLine {
     /// The value.
     pub at: f64,
-    /// Its name in the key; nothing where it has none.
+    /// Its name in the key; nothing if it has none.
     pub label: String,
 }
 
@@ -309,13 +309,13 @@ pub struct Stack {
     pub marks: Vec<AxisLine>,
     /// Small multiples, so many side by side: the one axis and the one row are those of all.
     pub across: Option<usize>,
-    /// Whether these stay side by side on a narrow page, too: a row of them is one thing.
+    /// `true` if these stay side by side on a narrow page, too: a row of them is one thing.
     pub unbroken: bool,
-    /// Whether it takes half the width of the figure; two of them stand side by side where there is room.
+    /// `true` if it takes half the width of the figure; two of them stand side by side where there is room.
     pub is_half: bool,
-    /// Whether there is a line at zero from bottom to top.
+    /// `true` if there is a line at zero from bottom to top.
     pub zero: bool,
-    /// Whether one unit is as long on one axis as on the other.
+    /// `true` if one unit is as long on one axis as on the other.
     pub equal: bool,
 }
 
@@ -338,7 +338,7 @@ impl Stack {
 pub struct Panels {
     /// The stacks, in reading order.
     pub stacks: Vec<Stack>,
-    /// Whether names stand right of the frame, in place of a key; on a narrow page they are in the key all the same.
+    /// `true` if names stand right of the frame, in place of a key; on a narrow page they are in the key all the same.
     pub names_aside: bool,
     /// Numbers that stand in the key.
     pub said: Vec<String>,

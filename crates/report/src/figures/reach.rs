@@ -9,9 +9,9 @@ use crate::axis;
 pub struct AxisReach {
     /// Times the middle extent.
     pub times: f64,
-    /// The centre; the middle of the data where there is none.
+    /// The centre; the middle of the data if there is none.
     pub centre: Option<f64>,
-    /// Whether the axis goes as far to one side of the centre as to the other.
+    /// `true` if the axis goes as far to one side of the centre as to the other.
     pub symmetric: bool,
 }
 
@@ -48,7 +48,7 @@ impl Extents {
         self.core.extend(axis::range(values));
     }
 
-    /// Both ends, and whether something soft is cut; `None` where there is nothing.
+    /// Both ends, and whether something soft is cut; `None` if there is nothing.
     pub(super) fn ends(&self, reach: Option<AxisReach>) -> (Option<(f64, f64)>, bool) {
         let within = reach.map_or_else(|| self.core.clone(), |reach| self.within(reach));
         let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };

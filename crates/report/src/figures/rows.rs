@@ -58,7 +58,7 @@ pub struct RowItem {
     pub kind: RowKind,
     /// Where it stands in its row.
     pub place: RowPlace,
-    /// Whether it may be cut where it leaves the range of everything else by more than that range.
+    /// `true` if it may be cut where it leaves the range of everything else by more than that range.
     pub soft: bool,
     /// A number written at the right end of the row.
     pub text: Option<String>,
@@ -88,7 +88,7 @@ impl RowItem {
         Self { soft: true, ..self }
     }
 
-    /// Whether it stands for a value, and not only for an interval of one; a heading needs none.
+    /// `true` if it stands for a value, and not only for an interval of one; a heading needs none.
     fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
@@ -144,7 +144,7 @@ pub struct RowsColumn {
     pub x: Ruler,
     /// What stands in every row.
     pub rows: Vec<Vec<RowItem>>,
-    /// Whether the axis holds zero, with a line there.
+    /// `true` if the axis holds zero, with a line there.
     pub zero: bool,
     /// Share of the axis that is left free at its right end, for numbers.
     pub room: f64,
@@ -159,7 +159,7 @@ pub struct RowsColumn {
 /// What [`super::Plot::Rows`] draws.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedRows {
-    /// What the names are, beside them; nothing where they say it themselves.
+    /// What the names are, beside them; nothing if they say it themselves.
     pub of: String,
     /// Names from top to bottom.
     pub names: Vec<String>,

@@ -57,7 +57,7 @@ pub struct OvershootMark {
 pub struct ZigzagTrial {
     /// Heading, degrees over seconds.
     pub heading: PlotCurve,
-    /// Whether the heading is drawn as separate points (noisy or widely spaced) and not as a line.
+    /// `true` if the heading is drawn as separate points (noisy or widely spaced) and not as a line.
     pub heading_as_points: bool,
     /// Rudder angle, degrees over seconds.
     pub rudder: PlotCurve,

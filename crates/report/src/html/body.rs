@@ -30,7 +30,7 @@ struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> Images,
     /// Titles of the parts that are closed at first.
     folded: &'a [&'a str],
-    /// Whether such a part is being read, and whether its headline is.
+    /// `true` if such a part is being read, and whether its headline is.
     fold: (bool, bool),
     room: Room,
     out: Vec<Event<'m>>,

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::escape::escaped;
 
-/// Largest drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
+/// Maximum drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
 const MAX_DRAWING_BYTES: usize = 300_000;
 
 /// Most bytes of a file that is looked at for a figure.

@@ -116,7 +116,7 @@ fn quote(text: &str) -> String {
     }
 }
 
-/// Whether a text is a number, alone or with its uncertainty.
+/// `true` if a text is a number, alone or with its uncertainty.
 fn is_number(text: &str) -> bool {
     text.split(' ').all(|word| word == "±" || word.parse::<f64>().is_ok())
 }

@@ -13,7 +13,7 @@ pub struct TableColumn {
     pub unit: Option<String>,
     /// How its cells are aligned.
     pub alignment: Alignment,
-    /// Whether its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
+    /// `true` if its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub interval: bool,
 }

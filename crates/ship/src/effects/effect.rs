@@ -23,9 +23,9 @@ pub struct Parameter {
     pub neutral: f64,
     /// Typical value, for scaling and for tests.
     pub typical: f64,
-    /// Smallest physical value.
+    /// Minimum physical value.
     pub lowest: f64,
-    /// Largest physical value.
+    /// Maximum physical value.
     pub highest: f64,
     /// `true` if the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
@@ -206,7 +206,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
         self.needs() == Some(channel)
     }
 
-    /// Candidate effect with its priors in records of these manoeuvres; `None` where it is not identifiable from them,
+    /// Candidate effect with its priors in records of these manoeuvres; `None` if it is not identifiable from them,
     /// as without its channel.
     fn proposal(&self, records: &RecordScales) -> Option<Proposal>;
 
@@ -337,7 +337,7 @@ impl EffectReal for Tangent {
 pub struct RecordScales {
     /// Ship-length time L/U, s; where length or speed is unknown, (K/T)^(−1/2) of the base, which is of that order.
     pub time: f64,
-    /// Largest rudder angle, rad.
+    /// Maximum rudder angle, rad.
     pub rudder: f64,
     /// Duration of the longest record, s.
     pub duration: f64,
@@ -362,9 +362,9 @@ pub struct Prior {
     pub mean: f64,
     /// Standard deviation; infinite for a uniform distribution on the range, zero for a parameter that is not fitted.
     pub sd: f64,
-    /// Smallest value.
+    /// Minimum value.
     pub lowest: f64,
-    /// Largest value.
+    /// Maximum value.
     pub highest: f64,
     /// `true` for a shape parameter, which has no meaning where the amplitudes are neutral.
     pub is_shape: bool,

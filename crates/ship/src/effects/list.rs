@@ -52,7 +52,7 @@ const fn weather(
     Row(ListedFormula { description, acts: Targets::MOMENT, formula, prior, of_weather: true })
 }
 
-/// Largest value of a prior that is limited by the range of the parameter alone.
+/// Maximum value of a prior that is limited by the range of the parameter alone.
 const UNBOUNDED: f64 = f64::INFINITY;
 
 /// List of effects. The order of factors in a formula is part of the published numbers to the last bit.

@@ -67,7 +67,7 @@ const INFLOW: [Parameter; 3] = [
     Parameter { key: "e_n", symbol: "e_n", typical: 0.5, lowest: -0.5, highest: 1.5, ..MEASURED[0] },
 ];
 
-/// Smallest speed ratio at which the scaling laws are evaluated, so that a bad trial step of a search stays finite.
+/// Minimum speed ratio at which the scaling laws are evaluated, so that a bad trial step of a search stays finite.
 const MIN_SPEED_RATIO: f64 = 0.05;
 
 impl Effect for SpeedLoss {

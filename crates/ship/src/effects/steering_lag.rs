@@ -20,7 +20,7 @@ const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.
     "Time constant of a first-order lag.",
 )];
 
-/// Smallest lag, s: a shorter one is below the resolution of any record and is neglected.
+/// Minimum lag, s: a shorter one is below the resolution of any record and is neglected.
 const MIN_LAG_S: f64 = 0.02;
 
 impl Effect for SteeringLag {

@@ -36,7 +36,7 @@ const EDGE_SHARE: f64 = 0.1;
 /// Prior standard deviation of the moment as equivalent rudder angle, rad: that of a strong squall.
 const MOMENT_SD_RAD: f64 = 0.05;
 
-/// Largest duration of a pulse over that of its record.
+/// Maximum duration of a pulse over that of its record.
 const MAX_DURATION_SHARE: f64 = 0.2;
 
 /// Share of a record at either end in which no step is fitted, because only a few rows would determine it.

@@ -6,7 +6,7 @@ use super::Response;
 use crate::dynamics::{Dynamics, Input};
 use crate::replayable::Replayable;
 
-/// Largest rudder of the search, rad.
+/// Maximum rudder of the search, rad.
 const MAX_RUDDER_RAD: f64 = 1.0;
 
 /// Number of steps of the search to either side of amidships.

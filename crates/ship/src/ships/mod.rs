@@ -45,7 +45,7 @@ pub struct Ship {
     pub particulars: Option<Particulars>,
     /// Rudder rate of the steering gear, rad/s, where the source gives one.
     pub rudder_rate: Option<f64>,
-    /// Largest rudder angle to either side, rad, where the source gives one.
+    /// Maximum rudder angle to either side, rad, where the source gives one.
     pub largest_rudder: Option<f64>,
     /// Equations.
     pub model: Model,

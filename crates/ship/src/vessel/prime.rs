@@ -38,7 +38,7 @@ pub struct HullCoefficient {
     pub mean: f64,
     /// Prior standard deviation.
     pub sd: f64,
-    /// Smallest and largest value.
+    /// Minimum and largest value.
     pub ends: [f64; 2],
 }
 
@@ -152,7 +152,7 @@ impl HullForm {
         polynomials.into_iter().chain(prior.as_ref().map(Self::mmg)).collect()
     }
 
-    /// The two polynomials with priors from the particulars; `None` where these are not valid for a ship. A ship and
+    /// The two polynomials with priors from the particulars; `None` if these are not valid for a ship. A ship and
     /// its mirror image are equally probable, so coefficients of asymmetry have prior mean 0.
     fn polynomials(prior: &HullPrior) -> Option<[Self; 2]> {
         let [quadratic, cubic] = nearest::polynomials(prior)?;
@@ -228,7 +228,7 @@ impl HullForm {
         }
     }
 
-    /// Hull with these coefficient values; `None` where they are not valid for a ship.
+    /// Hull with these coefficient values; `None` if they are not valid for a ship.
     pub fn with<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
         let (&windage, values) = values.split_last()?;
         let in_calm = match &self.equations {

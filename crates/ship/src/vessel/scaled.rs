@@ -23,7 +23,7 @@ pub struct ScaledHull<R = f64> {
     pub length: f64,
     /// Approach speed U₀, m/s.
     pub speed: f64,
-    /// Propeller rate at that speed, 1/s; `None` where it is unknown.
+    /// Propeller rate at that speed, 1/s; `None` if it is unknown.
     pub propeller: Option<f64>,
 }
 
@@ -92,12 +92,12 @@ const FIRST_STEP: f64 = 0.5;
 const STEP_GROWTH: f64 = 1.5;
 const ACCELERATION_TOLERANCE: f64 = 1e-10;
 
-/// Largest rudder of a steady turn, rad.
+/// Maximum rudder of a steady turn, rad.
 const MAX_RUDDER_RAD: f64 = 1.2;
 
 impl ScaledHull {
     /// Rudder (rad) of a steady turn at a yaw rate (rad/s): speed and drift settle while the rudder keeps the rate
-    /// (reversed spiral, Bech 1968), so the unstable branch is found, too. `None` where no rudder within 1.2 rad keeps
+    /// (reversed spiral, Bech 1968), so the unstable branch is found, too. `None` if no rudder within 1.2 rad keeps
     /// it.
     ///
     /// Implicit Euler steps of growing length, which become Newton steps (pseudo-transient continuation).

@@ -50,7 +50,7 @@ pub struct TurningCircleFigures {
 /// Heading change from which a turn counts as steady, rad.
 const STEADY: f64 = TAU;
 
-/// Smallest heading change of the steady part, rad; over half a circle a current and waves nearly cancel.
+/// Minimum heading change of the steady part, rad; over half a circle a current and waves nearly cancel.
 const MIN_STEADY_CHANGE: f64 = PI;
 
 /// Figures of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),

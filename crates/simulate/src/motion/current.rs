@@ -12,7 +12,7 @@ use super::circle::reached;
 /// Heading change from which a turn counts as steady, rad.
 const STEADY: f64 = PI;
 
-/// Smallest heading change of a turn, rad: it gives 180° of pairs one round apart.
+/// Minimum heading change of a turn, rad: it gives 180° of pairs one round apart.
 const MIN_CHANGE: f64 = 2.0 * TAU;
 
 /// Heading between successive pairs, rad (10°).

@@ -9,7 +9,7 @@ use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
 
-/// Largest step, s, and largest step in units of |T|, so that a course-unstable ship is stopped before it overflows.
+/// Maximum step, s, and largest step in units of |T|, so that a course-unstable ship is stopped before it overflows.
 const MAX_STEP_S: f64 = 60.0;
 const MAX_STEP_OVER_T: f64 = 30.0;
 
@@ -39,7 +39,7 @@ impl ClosedForm {
         Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
     }
 
-    /// Largest step, s.
+    /// Maximum step, s.
     pub fn longest_step(ship: &FirstOrder) -> f64 {
         MAX_STEP_S.min(MAX_STEP_OVER_T / ship.inverse_T.abs())
     }

@@ -92,7 +92,7 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     }
 }
 
-/// Largest step, s, of a ship with largest step `ship_step` s and a compass with time constant `gyro_lag` s.
+/// Maximum step, s, of a ship with largest step `ship_step` s and a compass with time constant `gyro_lag` s.
 pub(crate) fn largest_step(ship_step: f64, gyro_lag: f64) -> f64 {
     // A quarter of the time constant keeps the compass state stable and accurate.
     if gyro_lag > 0.0 { ship_step.min(0.25 * gyro_lag) } else { ship_step }

@@ -43,7 +43,7 @@ pub(crate) struct Limits {
     pub base: f64,
 }
 
-/// Largest deviation from the base course, rad, before a run has diverged: a hundred turns.
+/// Maximum deviation from the base course, rad, before a run has diverged: a hundred turns.
 const MAX_DEVIATION_RAD: f64 = 100.0 * std::f64::consts::TAU;
 
 /// `true` if the motion has diverged from the base course (rad).

@@ -75,7 +75,7 @@ pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
 /// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; `entrants`
 /// answer beside the methods of the scenarios.
 ///
-/// Fails when a scenario is at fault, and when nothing can be asked.
+/// Fails if a scenario is at fault, and when nothing can be asked.
 pub fn measure(
     request: &BenchRequest,
     seed: Option<u64>,
@@ -151,7 +151,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
 
 /// Writes the tables, pages and figures of a benchmark and prints the leaderboards.
 ///
-/// Fails when they cannot be written.
+/// Fails if they cannot be written.
 pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
     let text = publish(results, folder, theme)?;
     let notes: String = results.skipped.iter().map(|record| format!("skipped: {}\n", skipped(record))).collect();

@@ -18,7 +18,7 @@ const PROBE: &str = ".study-doctor";
 
 /// Tells what there is.
 ///
-/// Fails when no file can be written to the folder where results go.
+/// Fails if no file can be written to the folder where results go.
 pub fn run(common: &Common) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(Path::new("."));
     let written = probe(folder);
@@ -34,8 +34,8 @@ pub fn run(common: &Common) -> Result<(), Failure> {
         ("processors", threads::cores().to_string()),
         ("threads", threads::count(common).to_string()),
         ("instruction set", estimation::lanes::instruction_set().to_owned()),
-        ("standard output", terminal(output.is_terminal(), screen::is_coloured(&output)).to_owned()),
-        ("standard error", terminal(errors.is_terminal(), screen::is_coloured(&errors)).to_owned()),
+        ("standard output", terminal(output.is_terminal(), screen::has_terminal_colours(&output)).to_owned()),
+        ("standard error", terminal(errors.is_terminal(), screen::has_terminal_colours(&errors)).to_owned()),
         ("spreadsheets", String::from(if cfg!(feature = "spreadsheets") { "read" } else { "not compiled in" })),
         (
             "writing",

@@ -17,7 +17,7 @@ use campaign::failure::Failure;
 
 /// The logs of a request.
 ///
-/// Fails when a folder of them cannot be listed, and when a file is to be joined with several.
+/// Fails if a folder of them cannot be listed, and when a file is to be joined with several.
 fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     let files = expand(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
@@ -28,7 +28,7 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
 
 /// The manoeuvres of every log, for other programs.
 ///
-/// Fails when a log cannot be read.
+/// Fails if a log cannot be read.
 pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {
     let entry_of = |file: &PathBuf| entry(file, request, warnings);
     let logs = files(request)?.iter().map(entry_of).collect::<Result<_, Failure>>()?;
@@ -42,7 +42,7 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<
 
 /// Prints the manoeuvres of every log.
 ///
-/// Fails when a log cannot be read.
+/// Fails if a log cannot be read.
 pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     if common.format == Format::Json {

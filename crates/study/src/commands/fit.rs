@@ -20,7 +20,7 @@ use crate::work::fit::{fit, methods};
 
 /// Identifies the records, prints the table, writes `fit.json`, the curves, figures, `report.md` and `report.html`.
 ///
-/// Fails when a record cannot be read, and when no method can identify the records.
+/// Fails if a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     if request.each {
         return fit_each::run(request, common);
@@ -47,7 +47,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
 
 /// Draws a fit into a folder and tells what it says; `text` is that of `fit.json`.
 ///
-/// Fails when a file cannot be written.
+/// Fails if a file cannot be written.
 pub fn show(
     folder: &ResultFolder,
     document: &FitDocument,

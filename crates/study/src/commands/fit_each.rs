@@ -17,7 +17,7 @@ const CHUNK_LOGS: usize = 64;
 
 /// Identifies every log alone and prints a row for it, in the order in which they were named.
 ///
-/// Fails when no log can be read; a log that cannot be read is a row.
+/// Fails if no log can be read; a log that cannot be read is a row.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let files = expand(&request.trials)?;
@@ -45,7 +45,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     }
 }
 
-/// A log as a line of JSON. Fails where it cannot be written so.
+/// A log as a line of JSON. Fails if it cannot be written so.
 fn line(LogFit { file, verdict, warnings, error, .. }: &LogFit) -> Result<String, Failure> {
     let error = error.as_ref().map(ErrorEntry::of);
     let (file, verdict) = (file.display().to_string(), verdict.as_ref());

@@ -33,7 +33,7 @@ pub struct InspectRequest {
 
 /// Prints every channel of the log, and what the reader warns of. A log that contradicts itself is shown all the same.
 ///
-/// Fails when the log cannot be read.
+/// Fails if the log cannot be read.
 pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;

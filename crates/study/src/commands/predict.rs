@@ -26,7 +26,7 @@ const FORM: &str = "trial-form.md";
 
 /// Predicts, prints what was found, writes `predict.json`, `report.md`, `report.html`, tables and figures.
 ///
-/// Fails when a model or a record cannot be read, and when hardly any drawn ship comes to the end of a manoeuvre.
+/// Fails if a model or a record cannot be read, and when hardly any drawn ship comes to the end of a manoeuvre.
 pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     if !request.ballast.is_empty() && request.replays.is_empty() {
@@ -61,7 +61,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
 
 /// Draws a prediction into a folder and tells what it says; `text` is that of `predict.json`.
 ///
-/// Fails when a file cannot be written.
+/// Fails if a file cannot be written.
 pub fn show(
     folder: &ResultFolder,
     predicted: &PredictDocument,
@@ -80,7 +80,7 @@ pub fn show(
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
     let [before, behind] = [predict_page::summary(predicted), predict_page::below_table(predicted)];
-    let table = predict_tables::figures(predicted);
+    let table = predict_tables::characteristics_table(predicted);
     let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::tell(common, &output, warnings)
 }

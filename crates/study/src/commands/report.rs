@@ -55,7 +55,7 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     if common.quiet { Ok(()) } else { screen::say(&format!("page over {} studies: {}", folders.len(), page.display())) }
 }
 
-/// The folder that holds all of some folders. Fails where they lie in different ones.
+/// The folder that holds all of some folders. Fails if they lie in different ones.
 fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
     let holding = |folder: &PathBuf| match folder.file_name().and(folder.parent()) {
         Some(parent) if parent == Path::new("") => Some(PathBuf::from(".")),
@@ -114,7 +114,7 @@ const OPENER: (&str, &[&str]) = ("cmd", &["/C", "start", ""]);
 #[cfg(not(any(target_os = "macos", windows)))]
 const OPENER: (&str, &[&str]) = ("xdg-open", &[]);
 
-/// Shows a page in a browser. Fails when there is no page, and when nothing can open it.
+/// Shows a page in a browser. Fails if there is no page, and when nothing can open it.
 fn show(page: &Path) -> Result<(), Failure> {
     let shown = page.display();
     if !page.is_file() {

@@ -42,7 +42,7 @@ const LIST: Kind = Kind { name: "a description of trials", max_bytes: 1 << 22 };
 
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` would.
 ///
-/// Fails when the answers are to other trials than those of the scenario.
+/// Fails if the answers are to other trials than those of the scenario.
 pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     let scenario = scenario_of(request, common)?;
     let theme = request.style.style.theme()?;

@@ -46,7 +46,7 @@ pub fn completions(
 
 /// Writes a page for the program and one for each of its commands.
 ///
-/// Fails when the folder cannot be written.
+/// Fails if the folder cannot be written.
 pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Common) -> Result<(), Failure> {
     command.build();
     let pages = ResultFolder::make(folder)?;

@@ -23,7 +23,7 @@ pub struct SidecarRequest {
 
 /// Writes the description beside the table; that of a table on standard input to standard output.
 ///
-/// Fails when the table cannot be read, and when it has a description.
+/// Fails if the table cannot be read, and when it has a description.
 pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(), Failure> {
     if log == Path::new(STDIN) {
         // There is nothing beside which it could be put.

@@ -16,12 +16,12 @@ use super::reply;
 use crate::documents::answers::SimulateAnswer;
 use crate::options::{Common, SimulateRequest};
 use crate::progress;
-use crate::views::page_files::first_failure;
+use crate::views::page_files::run_all;
 use crate::work::simulate::{RecordFiles, records, tasks};
 
-/// Simulates the trials that are asked for and writes them, with the truth of each.
+/// Simulates the trials that are requested and writes them, with the truth of each.
 ///
-/// Fails when no such cell or trial is there, when several records are to become one file, and with the first trial
+/// Fails if no such cell or trial is there, when several records are to become one file, and with the first trial
 /// that cannot be made.
 pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(&request.scenario, common.seed)?;
@@ -45,7 +45,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     };
     let bar = progress::bar("records", tasks.len() as u64, common.quiet);
     let work = tasks.par_iter().zip(&names).progress_with(bar);
-    first_failure(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
+    run_all(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
     if !is_file {
         list(&scenario, &tasks, &names, &folder)?;
     }

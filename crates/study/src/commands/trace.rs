@@ -22,7 +22,7 @@ use crate::work::trace::{STOPPED, settings, trace, without};
 /// Analyses the records, prints what was found, writes `trace.json`, the curves, `report.md`, `report.html` and
 /// figures.
 ///
-/// Fails when a record cannot be read, and when the base cannot be fitted.
+/// Fails if a record cannot be read, and when the base cannot be fitted.
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let (theme, settings) = (request.style.theme()?, settings(request)?);
     let priors = EarlierModel::of_files(&request.priors)?;
@@ -45,7 +45,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
 
 /// Draws a trace into a folder and tells what it says; `text` is that of `trace.json`.
 ///
-/// Fails when a file cannot be written.
+/// Fails if a file cannot be written.
 pub fn show(
     folder: &ResultFolder,
     document: &TraceDocument,

@@ -63,7 +63,7 @@ pub struct CheckedScenario {
     pub methods: Vec<MethodName>,
     /// Assumptions for values left open that can affect the result.
     pub assumptions: Vec<String>,
-    /// The scenario with nothing left out, where it was asked for.
+    /// The scenario with nothing left out, where it was requested.
     #[schemars(with = "Option<Map<String, Value>>")]
     pub resolved: Option<toml::Table>,
 }
@@ -118,7 +118,7 @@ pub struct CompletionsAnswer {
 /// A first description of a table.
 #[derive(Serialize, JsonSchema)]
 pub struct SidecarAnswer {
-    /// The file; none where it was not written.
+    /// The file; none if it was not written.
     pub file: Option<String>,
     /// Keys and values of the description.
     #[schemars(with = "Map<String, Value>")]

@@ -30,7 +30,7 @@ impl CurveTable {
         [names.join(",")].into_iter().chain((0..rows).map(line)).map(|line| line + "\n").collect()
     }
 
-    /// Columns of a table by their names; an empty cell is NaN. `None` where a cell is no number or a row is short.
+    /// Columns of a table by their names; an empty cell is NaN. `None` if a cell is no number or a row is short.
     pub fn read(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next()?.split(',').collect();

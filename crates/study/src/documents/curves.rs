@@ -115,7 +115,7 @@ pub fn innovations(series: &Innovations) -> String {
     columns.text()
 }
 
-/// The record of a table. `None` where the table is not one of [`table`].
+/// The record of a table. `None` if the table is not one of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     let columns = CurveTable::read(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
@@ -154,7 +154,7 @@ fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Re
 impl TraceCurves {
     /// Curves of a document, from the files in its folder.
     ///
-    /// Fails when one cannot be read.
+    /// Fails if one cannot be read.
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);

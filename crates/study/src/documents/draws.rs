@@ -86,7 +86,7 @@ fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
 
 /// Writes so many draws of every answer, each under the name of its method, with this seed.
 ///
-/// Fails when an answer cannot be drawn from, and when the file cannot be written.
+/// Fails if an answer cannot be drawn from, and when the file cannot be written.
 pub fn keep_estimates<'a>(
     folder: &ResultFolder,
     answers: impl Iterator<Item = (&'a str, &'a IdentifiedShip)>,
@@ -101,7 +101,7 @@ pub fn keep_estimates<'a>(
     keep_columns(folder, estimate_columns(&rows))
 }
 
-/// Writes the ships of a prediction. Fails when the file cannot be written.
+/// Writes the ships of a prediction. Fails if the file cannot be written.
 pub fn keep(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
     keep_columns(folder, columns(predicted))
 }

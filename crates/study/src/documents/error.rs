@@ -22,7 +22,7 @@ pub struct ErrorEntry<'a> {
     /// `error`: there is no answer, whatever the `severity` of warnings.
     #[schemars(extend("const" = "error"))]
     pub severity: &'static str,
-    /// Whether the input is wrong, the work could not be done, or somebody asked to stop.
+    /// `true` if the input is wrong, the work could not be done, or somebody asked to stop.
     pub blame: Blame,
     /// The whole message, as a person reads it.
     pub message: &'a str,
@@ -38,7 +38,7 @@ impl<'a> ErrorEntry<'a> {
     }
 }
 
-/// The document of a failure in one line. Fails where it cannot be written as JSON.
+/// The document of a failure in one line. Fails if it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
     let exit_code = screen::exit_code(failure.blame);
     let document = ErrorDocument { schema: "error/1", error: ErrorEntry::of(failure), exit_code };

@@ -27,9 +27,9 @@ pub struct FitRecord {
     pub name: String,
     /// Its file.
     pub file: String,
-    /// Whether another record has the name that it came with.
+    /// `true` if another record has the name that it came with.
     pub is_renamed: bool,
-    /// Whether it was kept for validation.
+    /// `true` if it was kept for validation.
     pub validation: bool,
     /// The zig-zag with its characteristic points.
     pub zigzag: Option<ZigzagTrial>,

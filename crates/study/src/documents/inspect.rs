@@ -35,27 +35,27 @@ impl CommandAnswer for InspectAnswer {
 pub struct ChannelEntry {
     /// Name, such as `yaw rate`.
     pub channel: String,
-    /// The column or instrument it comes from; none where it was made of others.
+    /// The column or instrument it comes from; none if it was made of others.
     pub source: Option<String>,
     /// Readings.
     pub readings: usize,
     /// Median time from one reading to the next.
     pub interval_s: Option<f64>,
-    /// Longest time from one reading to the next, where it exceeds one and a half times the median.
+    /// Maximum time from one reading to the next, where it exceeds one and a half times the median.
     pub longest_gap_s: Option<f64>,
     /// Beginning of the longest gap.
     pub longest_gap_from_s: Option<f64>,
     /// Unit of the four numbers below.
     pub unit: String,
-    /// Smallest reading; a heading goes on past north.
+    /// Minimum reading; a heading goes on past north.
     pub lowest: f64,
-    /// Largest reading.
+    /// Maximum reading.
     pub highest: f64,
-    /// Smallest change from one reading to the next.
+    /// Minimum change from one reading to the next.
     pub step: Option<f64>,
     /// How often a heading crosses north.
     pub wraps: Option<usize>,
-    /// Where positive values turn the ship, `starboard` or `port`; none where nobody can tell.
+    /// Where positive values turn the ship, `starboard` or `port`; none if nobody can tell.
     pub turns_to: Option<String>,
     /// The channel that it is compared with.
     pub reference: Option<String>,

@@ -47,12 +47,12 @@ pub const BENCH: &str = "bench.json";
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
 
-/// The text of a document. Fails where a type cannot be written as JSON.
+/// The text of a document. Fails if a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
 }
 
-/// Folder for the results of a command. Fails when it holds those of another command, whose page would be lost.
+/// Folder for the results of a command. Fails if it holds those of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|name| *name != document);
     match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
@@ -108,7 +108,7 @@ fn few(files: &[String]) -> String {
     }
 }
 
-/// Writes the document of a command to a folder and returns its text. Fails when the file cannot be written.
+/// Writes the document of a command to a folder and returns its text. Fails if the file cannot be written.
 pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
     let text = text(document).on("describe", &folder.path().join(name))?;
     folder.write_synced(name, &text).map(|_| text)
@@ -128,7 +128,7 @@ pub fn keep_with_curves(
 
 /// A document that a command wrote, and its text.
 ///
-/// Fails when the file cannot be read or was not written by this program.
+/// Fails if the file cannot be read or was not written by this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
     let text = read_text(path)?;
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
@@ -163,7 +163,7 @@ fn unread(path: &Path, error: serde_json::Error, command: &str) -> Failure {
 /// Maximum size of a document or a table of curves, bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
-/// Text of a file that a command wrote. Fails when it is missing, too large or not a file.
+/// Text of a file that a command wrote. Fails if it is missing, too large or not a file.
 fn read_text(path: &Path) -> Result<String, Failure> {
     let bytes = disk::read(path, MAX_FILE_BYTES).and_then(|bytes| bytes.ok_or_else(|| ErrorKind::NotFound.into()));
     String::from_utf8(bytes.on("read", path)?).on("read", path)
@@ -171,7 +171,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 
 /// Text of an answer without a file, with its schema version first.
 ///
-/// Fails where it cannot be written as JSON.
+/// Fails if it cannot be written as JSON.
 pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
     text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
 }

@@ -33,7 +33,7 @@ pub fn sentence(earlier: &EarlierTrials) -> String {
     format!("prior: {models}; {agreement}{no_part}")
 }
 
-/// Warning of a conflict between records and models; `None` where they agree.
+/// Warning of a conflict between records and models; `None` if they agree.
 pub fn warning(earlier: &EarlierTrials) -> Option<Warning> {
     earlier.conflict.then(|| WarningCode::EarlierTrials.warning(contradiction(earlier)))
 }

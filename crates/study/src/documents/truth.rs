@@ -75,7 +75,7 @@ impl TrueIndices {
 
 /// The truth of one record of a trial.
 ///
-/// Fails when the drawn values of the trial make no ship.
+/// Fails if the drawn values of the trial make no ship.
 pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
     let trial_spec = cell.trial_spec(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;

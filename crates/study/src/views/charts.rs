@@ -72,7 +72,7 @@ impl ErrorMeasure {
         }
     }
 
-    /// Whether it is an error of K and T.
+    /// `true` if it is an error of K and T.
     fn is_of_errors(self) -> bool {
         matches!(self, Self::Rms | Self::OverBound)
     }
@@ -102,7 +102,7 @@ pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true val
 pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 
 /// The methods that can be compared in some cells, and whether they are held against a first-order response that is
-/// only the nearest to the ship. Nothing where K and T are not one thing in all cells and the study is about
+/// only the nearest to the ship. Nothing if K and T are not one thing in all cells and the study is about
 /// predictions, and where intervals would be of a response that is no truth. A trace is held against the ship's own K
 /// and T.
 pub fn comparable<'a>(
@@ -135,14 +135,14 @@ struct ComparedMethods<'a> {
     design: &'a Design,
     summary: &'a Summary,
     measure: ErrorMeasure,
-    /// Whether errors are differences from a first-order response that is nearest to the ship.
+    /// `true` if errors are differences from a first-order response that is nearest to the ship.
     to_nearest: bool,
     /// Methods that can be compared.
     methods: Vec<usize>,
 }
 
 impl<'a> ComparedMethods<'a> {
-    /// `None` where nothing can be compared.
+    /// `None` if nothing can be compared.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
         let (mut methods, to_nearest) = comparable(design, measure, cells())?;
@@ -222,7 +222,7 @@ impl<'a> ComparedMethods<'a> {
         Some(if is_worthless { (f64::INFINITY, None) } else { (figure.value, figure.ci95) })
     }
 
-    /// The bound in the unit of the panel; `None` where it is not shown.
+    /// The bound in the unit of the panel; `None` if it is not shown.
     fn shown_bound(&self, cell: usize, panel: usize) -> Option<f64> {
         if self.measure == ErrorMeasure::OverBound {
             Some(1.0)
@@ -256,7 +256,7 @@ const MIN_LOG_AXIS_RATIO: f64 = 12.0;
 
 /// Charts of a measure over the last axis that is a number and leaves few points of the other axes, else over the last
 /// number, else over the names of the last axis; points of the other axes side by side where they are few, else one
-/// chart each, with the names of these points. Nothing where there is no
+/// chart each, with the names of these points. Nothing if there is no
 /// axis or nothing to show. With each the name of its points and what a person should see.
 pub fn over_axes(
     design: &Design,
@@ -329,7 +329,7 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
 
 /// Colour and mark of a method.
 pub fn origin(design: &Design, method: usize) -> CurveOrigin {
-    curves::origin(&design.methods, &design.methods[method].label)
+    curves::curve_origin(&design.methods, &design.methods[method].label)
 }
 
 fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels {

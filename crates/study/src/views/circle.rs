@@ -116,7 +116,7 @@ pub fn from_above(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
 }
 
 /// What is said of the lines that measure a circle.
-pub const MEASURES: &str = "Dotted: advance and transfer at 90° of heading, tactical diameter at 180°.";
+pub const DIMENSION_LINES_NOTE: &str = "Dotted: advance and transfer at 90° of heading, tactical diameter at 180°.";
 
 /// How a predicted circle is drawn.
 pub fn predicted_pen() -> Pen {
@@ -149,7 +149,7 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
             .push(format!("{rudder}° of rudder: advance {advance} L, tactical diameter {diameter} L are predicted"));
     }
     let caption = format!(
-        "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {MEASURES}"
+        "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {DIMENSION_LINES_NOTE}"
     );
     Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(from_above(&circles, Vec::new()))))
 }

@@ -46,7 +46,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// Decisions on every criterion of IMO, over all cells; `None` where no figure has a limit.
+/// Decisions on every criterion of IMO, over all cells; `None` if no figure has a limit.
 pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
     let limited = grouped(limited, |(line, criterion)| (criterion.name.clone(), line.method));

@@ -24,7 +24,7 @@ fn finite(curve: &PlotCurve) -> impl Iterator<Item = (f64, f64)> {
     curve.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
 }
 
-/// All columns over the times that any of them has, which ascend in each; empty where a column has no value.
+/// All columns over the times that any of them has, which ascend in each; empty if a column has no value.
 fn table(columns: Vec<NamedCurve>) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use document::TrialParticularsEntry;
 use report::number::{MISSING, optional};
 use report::{Table, TableHead};
 
-/// A row for every record, and one for all where they say the same; `None` where nothing is known.
+/// A row for every record, and one for all where they say the same; `None` if nothing is known.
 pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticularsEntry)>) -> Option<Table> {
     let records: Vec<(String, &TrialParticularsEntry)> = records.collect();
     let (_, first) = records.first()?;

@@ -49,7 +49,7 @@ pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageF
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
 }
 
-/// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` where there are none.
+/// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` if there are none.
 pub fn errors(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {

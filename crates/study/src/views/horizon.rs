@@ -79,7 +79,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
     layers
 }
 
-/// The figure; `None` where every record was fitted, and where the document does not hold the errors.
+/// The figure; `None` if every record was fitted, and where the document does not hold the errors.
 pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let records: Vec<&[HorizonEntry]> =

@@ -8,7 +8,7 @@ use report::{Table, TableHead};
 
 use super::method_table::estimate;
 
-/// Sentence on the amplitude at which K and T are valid; empty where the records are not zig-zags.
+/// Sentence on the amplitude at which K and T are valid; empty if the records are not zig-zags.
 pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
     amplitude.map_or_else(String::new, |Amplitude { rudder_deg, heading_deg }| {
         let [rudder, heading] = [rudder_deg, heading_deg].map(|angle| fixed(*angle, 0));

@@ -58,7 +58,7 @@ fn paled(layer: Layer) -> Layer {
     Layer { name: None, kind, ..layer }.within(ASIDE)
 }
 
-/// Whether an axis is of errors or intervals of K.
+/// `true` if an axis is of errors or intervals of K.
 fn is_of_k(title: &str) -> bool {
     title.contains(" K ")
 }
@@ -119,8 +119,10 @@ fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
                 written.push(text);
             }
         }
-        let is_above = values.len() % 2 == 0;
-        values.push(Layer::new("", curve, LayerKind::Words(look.colour, is_above, texts)));
+        if !texts.is_empty() {
+            let is_above = values.len() % 2 == 0;
+            values.push(Layer::new("", curve, LayerKind::Words(look.colour, is_above, texts)));
+        }
     }
     values
 }

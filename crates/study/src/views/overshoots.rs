@@ -18,10 +18,10 @@ pub struct ReplayedOvershoot<'a> {
     record: &'a RecordEntry,
     word: &'static str,
     measured: f64,
-    /// By the models before and after; `None` where a replay has none.
+    /// By the models before and after; `None` if a replay has none.
     replayed: [Option<f64>; 2],
     limit: Option<f64>,
-    /// Largest rudder of the record, rad.
+    /// Maximum rudder of the record, rad.
     rudder: f64,
 }
 
@@ -52,7 +52,7 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
 
 /// Error of the overshoots of a replay.
 pub struct OvershootError {
-    /// Median distance, degrees; `None` where the replay has none of them.
+    /// Median distance, degrees; `None` if the replay has none of them.
     pub median_deg: Option<f64>,
     /// Measured overshoots.
     pub measured: usize,
@@ -72,7 +72,7 @@ pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] 
 }
 
 /// The first two overshoots of every zig-zag with those of both replays, on a ground where the rudder is no larger than
-/// in the fitted records; `None` where no record is a zig-zag.
+/// in the fitted records; `None` if no record is a zig-zag.
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     // One mark above the other, so that neither hides the other.
     let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {

@@ -20,7 +20,7 @@ pub const KEY_FIGURE: &str = "hero";
 
 /// Draws the figures of a page and writes it in both forms; without a theme it is a page of words and tables.
 ///
-/// Fails when the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
+/// Fails if the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
 /// the first failure in the order of the page.
 pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> Result<(), Failure> {
     let page = if theme.is_some() { page } else { page.without_figures() };
@@ -62,7 +62,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
              or a style of its own for this page"
         )));
     }
-    first_failure(figures.par_iter().map(|PageFigure { stem, finding, plot, .. }| {
+    run_all(figures.par_iter().map(|PageFigure { stem, finding, plot, .. }| {
         let figure = plot.draw(finding, theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
@@ -70,7 +70,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
 }
 
 /// Does all of it in parallel and fails with the first failure in order, whichever came first in time.
-pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+pub fn run_all(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
     work.collect::<Vec<_>>().into_iter().collect()
 }
 
@@ -89,6 +89,6 @@ mod tests {
             }
             _ => Ok(()),
         });
-        assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
+        assert_eq!(run_all(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
     }
 }

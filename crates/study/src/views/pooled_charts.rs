@@ -1,5 +1,5 @@
 //! Maps over two axes, and distributions of errors: of all trials of a study with one cell, or of cells whose detail
-//! was asked for.
+//! was requested.
 
 use campaign::design::Design;
 use campaign::statistics::{distinct, grouped};
@@ -64,7 +64,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
 /// Whiskers further out than this many times the middle one are cut.
 const MAX_SPREADS: f64 = 4.0;
 
-/// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
+/// Distributions of the errors in the cells whose detail was requested; nothing for fewer than ten trials.
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
@@ -104,7 +104,7 @@ const FAR: f64 = 3.0;
 /// What ends the name of a method in the head of its panel.
 pub const HEAD_END: &str = ": ";
 
-/// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
+/// Clouds of errors in the cells whose detail was requested, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
         let covariance_bound = design.cells[detail.cell].bound_percent2;
@@ -158,7 +158,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
 /// K and T that the reference method finds at the named points of the last axis, over those of the first point, one
 /// series for every point of the other axes; nothing unless some ships are not first order and have no K and T of their
 /// own for all trials.
-pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
+pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
     if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
@@ -199,7 +199,7 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(NamedRows, String)
 /// Name of the row of all cells together.
 pub const ALL: &str = "all";
 
-/// Most rows of predictions of single cells; of more cells the points of the longest axis are the rows.
+/// Maximum number of rows of predictions of single cells; of more cells the points of the longest axis are the rows.
 const MAX_ROWS: usize = 10;
 
 /// Cells that are one row of predictions, with the name of the row.

@@ -19,7 +19,7 @@ use ship::angle::to_deg;
 use trial::Manoeuvre;
 use trial::imo::Unit;
 
-use super::circle::{self, CircleTrack, MEASURES, predicted_pen};
+use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
@@ -40,7 +40,7 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
         figures.extend(replayed.tracks.as_ref().map(|tracks| {
             let caption = format!(
                 "{}: recorded and predicted track of the turn from the execute on; nothing is fitted to it, and its current is removed. \
-                 {MEASURES} Thin: {} drawn ships.",
+                 {DIMENSION_LINES_NOTE} Thin: {} drawn ships.",
                 names::record(&replayed.name),
                 tracks.drawn.len()
             );

@@ -20,7 +20,7 @@ fn cells(interval: &PredictionInterval) -> [String; 3] {
 }
 
 /// Every figure of every manoeuvre and of every record.
-pub fn figures(document: &PredictDocument) -> Table {
+pub fn characteristics_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
     let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {

@@ -89,7 +89,7 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
     parts.join("; ")
 }
 
-/// The named effects that fewer odds leave without a name, in a sentence; `None` where there are none.
+/// The named effects that fewer odds leave without a name, in a sentence; `None` if there are none.
 pub fn sentence(document: &TraceDocument) -> Option<String> {
     let prior = &document.trace.prior;
     unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
@@ -109,7 +109,7 @@ fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<Stri
     })
 }
 
-/// The figure; `None` where the document does not hold the probabilities.
+/// The figure; `None` if the document does not hold the probabilities.
 pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let prior = &document.trace.prior;
     let lines = lines(document);

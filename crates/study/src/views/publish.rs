@@ -60,7 +60,7 @@ fn table(summary: &Summary, design: &Design) -> Table {
     }
 }
 
-/// JSON document of a published study. Fails where it cannot be written as JSON.
+/// JSON document of a published study. Fails if it cannot be written as JSON.
 pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
     documents::answer_text(&StudyAnswer {
         folder: folder.path().display().to_string(),

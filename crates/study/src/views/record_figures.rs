@@ -70,7 +70,7 @@ pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOve
 /// Drawn ships whose steady curves are shown.
 const MAX_CURVES: usize = 40;
 
-/// Whether the most probable of some ships is stable on a straight course.
+/// `true` if the most probable of some ships is stable on a straight course.
 pub fn stability(curves: &[SteadyCurve]) -> String {
     match curves.first().and_then(SteadyCurve::instability) {
         Some(instability) => {

@@ -244,7 +244,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
 
 /// Makes the tables, the figure and the page in a folder; returns what they are made from.
 ///
-/// Fails when rows are missing, and when something cannot be written.
+/// Fails if rows are missing, and when something cannot be written.
 pub fn put(
     stored: &StoredStudy,
     folder: &ResultFolder,

@@ -20,7 +20,7 @@ pub fn sentence(steps: &[StairEntry]) -> String {
     steps.iter().map(step_words).collect::<Vec<_>>().join(" → ")
 }
 
-/// The figure; `None` where the model adds nothing to the base.
+/// The figure; `None` if the model adds nothing to the base.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let steps = &document.staircase;
     let [times, residuals] = &curves.staircase;

@@ -43,7 +43,7 @@ struct StudiesPage {
     sections: Vec<Section>,
 }
 
-/// Fails where a folder is not that of a study, and where a page of somebody else lies in the place of this one.
+/// Fails if a folder is not that of a study, and where a page of somebody else lies in the place of this one.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
         let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
@@ -59,7 +59,7 @@ pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
 
 /// Writes the page over studies into a folder; returns its path.
 ///
-/// Fails where [`is_possible`] does, when a figure that a scenario names is not there, and when it cannot be written.
+/// Fails if [`is_possible`] does, when a figure that a scenario names is not there, and when it cannot be written.
 pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Failure> {
     is_possible(studies, target.path())?;
     let place = target.path().canonicalize().on("find", target.path())?;

@@ -155,7 +155,7 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         );
         under_its_finding(stem, caption, Plot::Cells(map))
     };
-    let power = traces::power(&lines).map(|data| {
+    let power = traces::detection_power(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
                        statistic 2 ln Λ against the best first-order response that it has on average, with 95 % \
                        intervals; of many kinds of trial those in a \
@@ -219,7 +219,7 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
     figures.extend(predictions(design, summary));
-    figures.extend(pooled_charts::indices(design, summary).map(|(data, method)| {
+    figures.extend(pooled_charts::ratios_to_first_point(design, summary).map(|(data, method)| {
         let caption = format!(
             "Mean K and T of {method}, over those of the first row: where they change from row to row, K and T depend on the trial, \
              not on the ship alone."

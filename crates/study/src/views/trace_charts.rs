@@ -184,7 +184,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     Panels { note: Some(String::from("Best is top left. Bars: 95 % intervals.")), ..Panels::of(stack) }
 }
 
-/// Smallest expected likelihood ratio that is drawn.
+/// Minimum expected likelihood ratio that is drawn.
 const MIN_RATIO: f64 = 1.0;
 
 /// Points of a curve of theory.
@@ -232,8 +232,8 @@ const MAX_SERIES: usize = 6;
 const RANGES_PER_DECADE: f64 = 3.0;
 
 /// Power over the expected likelihood ratio, for cells with one missing effect: each by its name where they are few,
-/// else all in a range of that ratio together. Nothing where every one is named in every trial.
-pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
+/// else all in a range of that ratio together. Nothing if every one is named in every trial.
+pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
         line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
     };
@@ -296,7 +296,7 @@ pub fn kept(lines: &[TraceSummary]) -> String {
 /// Effects from which a share is drawn as one of many.
 const MANY: u64 = 30;
 
-/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` where no effect was
+/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` if no effect was
 /// ever there.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let point = |range: &CalibrationBin| {
@@ -372,7 +372,7 @@ mod tests {
         assert_eq!((&clean.names[..], clean.columns[0].rows.len()), (&[String::from("long"), "short".into()][..], 2));
     }
 
-    /// Few kinds of trial by their names, many by ranges; nothing where every effect is always named, or none is there.
+    /// Few kinds of trial by their names, many by ranges; nothing if every effect is always named, or none is there.
     #[test]
     fn power_is_drawn_where_something_is_missed() {
         let line = |cell: usize, complete| TraceSummary {
@@ -380,7 +380,7 @@ mod tests {
             ..TraceSummary { cell, trials: 4, complete, expected: Some(20.0), ..TraceSummary::default() }
         };
         let marks = |lines: Vec<TraceSummary>| -> Option<Vec<(String, Vec<f64>)>> {
-            let layers = power(&lines)?.stacks.remove(0).panels.remove(0).layers.split_off(PARAMETERS.len());
+            let layers = detection_power(&lines)?.stacks.remove(0).panels.remove(0).layers.split_off(PARAMETERS.len());
             Some(layers.into_iter().map(|layer| (layer.name.unwrap_or_default(), layer.curve.y)).collect())
         };
         let named = |name: &str, y: &[f64]| (name.to_owned(), y.to_vec());

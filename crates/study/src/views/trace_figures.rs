@@ -234,7 +234,7 @@ fn residual(record: &TracedRecord) -> Panels {
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
     let frequency = Ruler::new("frequency [Hz]", Division::Factors);
     let density = Ruler::new("power [°²/Hz]", Division::Factors);
-    let spectrum = stack(frequency, density, true, &|replay| power(&series(replay)));
+    let spectrum = stack(frequency, density, true, &|replay| power_spectrum(&series(replay)));
     let mark = period.map(|period| AxisLine { at: period.recip(), label: String::from("period") });
     let stacks = vec![
         against("heading [°]", &|replay| degrees(&replay.heading)),
@@ -253,7 +253,7 @@ fn thinned(x: Vec<f64>, y: Vec<f64>) -> PlotCurve {
 }
 
 /// Power spectral density of a residual in degrees, neighbouring lines averaged.
-fn power(residual: &GappedSeries) -> PlotCurve {
+fn power_spectrum(residual: &GappedSeries) -> PlotCurve {
     let count = residual.values.len().max(1) as f64;
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
     let lines = spectrum(residual);

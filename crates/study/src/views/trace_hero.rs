@@ -68,7 +68,7 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
     Stack { is_half: true, x: vec![Ruler::time()], rows: rows.collect(), panels, ..Stack::default() }
 }
 
-/// The figure; `None` where no record was held out.
+/// The figure; `None` if no record was held out.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let error = &document.trace.error;
     let number = nearest(&error.validation)?;

@@ -76,7 +76,7 @@ fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String
 /// Minimum departure of a hull coefficient that is reported, in standard deviations.
 const MIN_DEPARTURE: f64 = 2.0;
 
-/// Largest departure of a coefficient from its prior, in the hull made from the ship's dimensions, else in the first.
+/// Maximum departure of a coefficient from its prior, in the hull made from the ship's dimensions, else in the first.
 fn odd(document: &TraceDocument) -> String {
     let hulls = &document.ship.hulls;
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };

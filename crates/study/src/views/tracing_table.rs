@@ -85,7 +85,7 @@ fn percent(figure: Option<Statistic>, all_digits: bool) -> Vec<String> {
     Statistic::flat(figure).into_iter().take(count).map(value).collect()
 }
 
-/// Whether more than one method of a study is a trace.
+/// `true` if more than one method of a study is a trace.
 pub fn has_several(design: &Design) -> bool {
     design.methods.iter().filter(|method| method.id == TRACE).count() > 1
 }

@@ -15,7 +15,7 @@ use crate::records::read_all;
 pub struct LogFit {
     /// The file as it was named.
     pub file: PathBuf,
-    /// Whether it is a record.
+    /// `true` if it is a record.
     pub is_read: bool,
     /// The answer to take.
     pub verdict: Option<VerdictEntry>,

@@ -29,7 +29,7 @@ pub struct EarlierModel {
 }
 
 impl EarlierModel {
-    /// The models of some files. Fails when one cannot be read, and as [`of_document`](Self::of_document) does.
+    /// The models of some files. Fails if one cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
             let shown = file::display_path(path).display().to_string();
@@ -40,7 +40,7 @@ impl EarlierModel {
 
     /// The model in the text of a `fit.json` or `trace.json`; `shown` is its name in messages.
     ///
-    /// Fails when the text is no such document, and when it holds no hull.
+    /// Fails if the text is no such document, and when it holds no hull.
     pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
         let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
         let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
@@ -74,7 +74,7 @@ pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails where a record is in two models, or in one and among those `seen`, given as files by SHA-256.
+/// Fails if a record is in two models, or in one and among those `seen`, given as files by SHA-256.
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(hash, file)| Some((file, seen.get(hash.as_str())?))) {
@@ -89,7 +89,7 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
 
 /// Checks models beside records; warnings where the ships sail at other Froude numbers.
 ///
-/// Fails where a record counts twice, and where models are given and no hull can be fitted to the records.
+/// Fails if a record counts twice, and where models are given and no hull can be fitted to the records.
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
@@ -140,7 +140,7 @@ pub struct ShipAfterTrials {
 
 /// A ship whose hulls are updated with the models.
 ///
-/// Fails where she has no hull, where a record would count twice, and where the models have no form of hers.
+/// Fails if she has no hull, where a record would count twice, and where the models have no form of hers.
 pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;

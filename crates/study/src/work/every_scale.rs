@@ -19,7 +19,7 @@ pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 /// A method with its label.
 pub type Named = (String, Box<dyn Identifier>);
 
-/// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
+/// Every method on the records of every scale alone, against its answer for all; `None` if all have one scale.
 pub fn compared(
     methods: &[Named],
     answers: &[(MethodEntry, Option<Estimate>)],

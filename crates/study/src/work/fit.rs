@@ -107,7 +107,7 @@ impl FitResult {
 /// Identifies the records together by every method and replays the answers on `validation`; the hull has
 /// `priors`. The document has `warnings` of the records and those of the fit.
 ///
-/// Fails when the records cannot be brought to one scale, when no method can identify them, and when there are priors
+/// Fails if the records cannot be brought to one scale, when no method can identify them, and when there are priors
 /// and no hull can be fitted: that is wrong input, not a result.
 pub fn fit(
     [records, validation]: [&[Trial]; 2],
@@ -197,7 +197,7 @@ fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEnt
     }
 }
 
-/// The form of MSC/Circ.1053 with what the records measure; nothing where they measure nothing of it.
+/// The form of MSC/Circ.1053 with what the records measure; nothing if they measure nothing of it.
 fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
     let records: Vec<(Trial, Option<Current>)> =
         records.iter().map(|trial| turn::without_current(trial.clone(), None)).collect();

@@ -21,7 +21,7 @@ pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records:
     times that of another hull, or its \
                                 replay fails";
 
-/// Whether records speak against a hull of this form: where one is fitted, all are.
+/// `true` if records speak against a hull of this form: where one is fitted, all are.
 pub fn speak_against_form(hulls: &[IdentifiedHull]) -> bool {
     !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
@@ -154,7 +154,7 @@ impl DescribedLoading {
 /// The ship with no other hull than the one that can be taken to another loading; `shown` is what messages call her
 /// model.
 ///
-/// Fails where there is none, and where its draught, beam or block coefficient is not known.
+/// Fails if there is none, and where its draught, beam or block coefficient is not known.
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
     if speak_against_form(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";

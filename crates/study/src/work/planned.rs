@@ -41,7 +41,7 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
         .collect()
 }
 
-/// The fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` where it does not
+/// The fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` if it does not
 /// come to the end of it.
 fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);

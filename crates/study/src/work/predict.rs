@@ -63,7 +63,7 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 impl StoredModel {
     /// The identified ship in a file, by the method and weather of the request.
     ///
-    /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
+    /// Fails if it cannot be read, and as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
         Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
@@ -72,7 +72,7 @@ impl StoredModel {
     /// What is known of the ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the
     /// one whose intervals hold most. `calm` leaves the weather of the records out. `shown` is what messages call it.
     ///
-    /// Fails when the text is no such document, and when it holds no answer with a covariance.
+    /// Fails if the text is no such document, and when it holds no answer with a covariance.
     pub fn of_document(
         shown: &str,
         text: &str,
@@ -128,7 +128,7 @@ pub struct PredictInput<'a> {
     pub models: &'a [StoredModel],
     /// Earlier trials of the ship, which the models have not seen.
     pub earlier: &'a [EarlierModel],
-    /// The same ship in the loading of the records; empty where they need no correction.
+    /// The same ship in the loading of the records; empty if they need no correction.
     pub ballast: &'a [StoredModel],
     /// Records that are held against their prediction.
     pub records: Vec<Trial>,
@@ -138,7 +138,7 @@ pub struct PredictInput<'a> {
     pub declared: Declared<'a>,
 }
 
-/// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
+/// The manoeuvres that were requested; those of the IMO criteria where nothing is; those of the form beside them.
 fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
         ([], true) => standard::imo_manoeuvres(),
@@ -199,7 +199,7 @@ impl SteeredShips<'_> {
 
 /// Predicts the manoeuvres and replays the records.
 ///
-/// Fails when a model cannot be brought to the scale or loading that is asked for, when a record does not say how the
+/// Fails if a model cannot be brought to the scale or loading that is requested, when a record does not say how the
 /// ship began, and when hardly any drawn ship comes to the end of every manoeuvre.
 pub fn predict(
     request: &PredictRequest,
@@ -318,7 +318,7 @@ fn at_loading(
 struct ReplayedModels<'a> {
     /// Models at the loading of the prediction.
     full: &'a [StoredModel],
-    /// Models in the condition of the records; empty where they need no correction.
+    /// Models in the condition of the records; empty if they need no correction.
     ballast: &'a [StoredModel],
     /// The name of the loading.
     loading: &'a str,

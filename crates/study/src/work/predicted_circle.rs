@@ -21,7 +21,7 @@ pub struct PredictedCircle {
 
 impl PredictedCircle {
     /// The circle of the answer to take, with the rudder of the first recorded circle, else with 35° to starboard.
-    /// `None` where no K and T can be taken, where the records tell neither speed nor drift, and where the draws do not
+    /// `None` if no K and T can be taken, where the records tell neither speed nor drift, and where the draws do not
     /// tell its size.
     pub fn of(document: &FitDocument) -> Option<Self> {
         let verdict = document.verdict.as_ref().filter(|verdict| verdict.believe == Belief::Yes)?;

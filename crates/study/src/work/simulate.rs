@@ -14,9 +14,9 @@ use crate::options::{Replicates, SimulateRequest};
 /// Maximum number of records of one call; more are a study, which keeps them as rows.
 const MAX_RECORDS: u64 = 100_000;
 
-/// The trials that are asked for, in their order.
+/// The trials that are requested, in their order.
 ///
-/// Fails when no such cell or trial is there, and for too many.
+/// Fails if no such cell or trial is there, and for too many.
 pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
@@ -72,7 +72,7 @@ pub struct RecordFiles {
 
 /// The records of one trial; the first is called `name`, further ones of the same ship after it.
 ///
-/// Fails when the trial cannot be made.
+/// Fails if the trial cannot be made.
 pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
         Failure::work(format!(

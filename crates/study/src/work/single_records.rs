@@ -84,7 +84,7 @@ impl<'a> RecordedZigZags<'a> {
 /// Significance level of the difference between records.
 const SIGNIFICANCE: f64 = 0.05;
 
-/// Whether K and T of some records are the same: the sum of their squared distances from the weighted means, in
+/// `true` if K and T of some records are the same: the sum of their squared distances from the weighted means, in
 /// standard deviations, is χ² of 2 (n − 1) degrees of freedom.
 fn agree(records: &[SingleRecord]) -> Option<bool> {
     let deviation = |pick: fn(&SingleRecord) -> Quantity| -> Option<f64> {

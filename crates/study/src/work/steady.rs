@@ -15,7 +15,7 @@ const RUDDER_RATIO: f64 = 1.3;
 const RUDDER_RANGE_DEG: [f64; 2] = [10.0, 35.0];
 
 /// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in
-/// which the records show her; `None` where no steady turn is found.
+/// which the records show her; `None` if no steady turn is found.
 pub fn of_ship(identified: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
     // Those of the traced response, whatever a hull beside it would do.
     let ship = IdentifiedShip { hulls: Vec::new(), ..identified.in_calm().ok()? };

@@ -29,14 +29,14 @@ pub struct StoredAnswer {
     pub records: BTreeMap<String, String>,
 }
 
-/// The text of a model. Fails when it cannot be read.
+/// The text of a model. Fails if it cannot be read.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
     name::of_file(path)?;
     let shown = file::display_path(path).display().to_string();
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 
-/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails when it is no such document,
+/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails if it is no such document,
 /// and for one of another version.
 pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     let refuse = |problem: String| Failure::about(shown, problem);

@@ -30,7 +30,7 @@ impl TargetScale {
         Self { length, speed: Some(speed), is_asked: false }
     }
 
-    /// The scale of a prediction: the one that is asked for, else that of the records, else that of the ship that a
+    /// The scale of a prediction: the one that is requested, else that of the records, else that of the ship that a
     /// sidecar declares. `None` is that of the model.
     ///
     /// Fails for records of ships of several lengths.
@@ -48,7 +48,7 @@ impl TargetScale {
         }
     }
 
-    /// The scale that a record is replayed at: its own, unless a ship of its length is asked for. A speed that is not
+    /// The scale that a record is replayed at: its own, unless a ship of its length is requested. A speed that is not
     /// given is that of Froude, not that of the record, which loses speed from its first rows on.
     pub fn of_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
@@ -69,7 +69,7 @@ pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Part
     Failure::about(other, format!("its ship is {of_other}, that of {first} {of_first}; {cure}"))
 }
 
-/// Whether ships are of one length and Froude number, as those of earlier trials are compared.
+/// `true` if ships are of one length and Froude number, as those of earlier trials are compared.
 pub fn is_alike(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
@@ -93,7 +93,7 @@ pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Ide
     }
 }
 
-/// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
+/// A record at the scale that its sidecar declares, where another one is requested: a model is replayed as a model.
 pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
     let is_other =
         |other: &Particulars| record.particulars().is_some_and(|given| !is_same_length(other.length, given.length));

@@ -40,7 +40,7 @@ impl TraceResult {
         })
     }
 
-    /// Writes document and tables; the text of the document. Fails when a file cannot be written.
+    /// Writes document and tables; the text of the document. Fails if a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
         let text = documents::keep(folder, TRACE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
@@ -80,7 +80,7 @@ pub const STOPPED: &str = "stopped before every record had been left out in turn
 
 /// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
 ///
-/// Fails when the records cannot be brought to one scale, when the base cannot be fitted, when what is asked for
+/// Fails if the records cannot be brought to one scale, when the base cannot be fitted, when what is requested
 /// cannot be in the model, and when there are priors and no hull can be fitted.
 pub fn trace(
     [records, validation]: [&[Trial]; 2],

@@ -48,7 +48,7 @@ impl Desk {
         name
     }
 
-    /// Runs the program to its end. Of records and predictions no figures are made unless they are asked for: drawing
+    /// Runs the program to its end. Of records and predictions no figures are made unless they are requested: drawing
     /// takes most of the time of these commands.
     pub fn run(&self, arguments: &[&str]) -> Run {
         self.draw(&undrawn(arguments))

@@ -147,7 +147,7 @@ fn a_prior_that_cannot_be_used_is_refused() {
     fit("f/fit.json", &[]).is_refused(2, &needed);
     let text = desk.text("f/fit.json");
     for (from, to, part) in [
-        ("\"key\": \"Nv\"", "\"key\": \"magic\"", "odd.json: the hull `"),
+        ("\"key\": \"Nv\"", "\"key\": \"magic\"", "odd.json: the hull model `"),
         ("fit/2", "fit/7", "odd.json: schema = \"fit/7\", expected \"fit/2\" or \"trace/4\""),
         ("\"length_m\": 320.0", "\"length_m\": -7.0", "odd.json: length-m = -7: expected"),
         ("\"weight\": ", "\"weight\": -", "odd.json: weight = -"),

@@ -47,7 +47,8 @@ fn a_report_begins_with_ship_day_and_draughts() {
     assert_eq!(*of_stamps, serde_json::json!({ "date": "2026-11-20" }));
 }
 
-/// A fixed schema; the same for the same seed, whatever else is asked; the mean and the scatter are those of the answer.
+/// A fixed schema; the same for the same seed, whatever else is asked; the mean and the scatter are those of the
+/// answer.
 #[test]
 fn draws_of_an_answer_are_a_table_on_request() {
     let desk = Desk::new();

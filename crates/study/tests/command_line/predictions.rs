@@ -222,7 +222,7 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     // Without the sidecar beside it nobody knows how long the ship is.
     desk.file("plain.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
     desk.run(&["fit", "plain.csv", "--out", "g", "--quiet"]).is_done();
-    refused("g/fit.json --length-m 300", &["length and speed", "give them to fit or trace"]);
+    refused("g/fit.json --length-m 300", &["length and speed", "give them to `study fit` or `study trace`"]);
 }
 
 /// The ship of a fit at another load: a share of her damping in yaw and of her gain; no chance in yaw.

@@ -133,7 +133,7 @@ fn what_goes_wrong_is_an_object_for_programs() {
     // In words it stays what it was.
     desk.run(&["fit", "none.csv"]).is_refused(2, &["none.csv"]);
     desk.run(&["check", "bad.toml", "--format", "text"]).is_refused(2, &["seed"]);
-    desk.run(&["fit", "bad.csv", "--draws", "1"]).is_refused(2, &["--draws", "Usage: study fit"]);
+    desk.run(&["fit", "bad.csv", "--replicates", "1"]).is_refused(2, &["--replicates", "Usage: study fit"]);
 }
 
 /// A command that waits for the rest of its input ends by Ctrl-C, with the exit code that shells give.
@@ -154,7 +154,7 @@ fn ctrl_c_is_exit_code_130_in_every_command() {
     }
 }
 
-/// Quiet is about people: notes and warnings go, and so does the table, unless a form of it was asked for.
+/// Quiet is about people: notes and warnings go, and so does the table, unless a form of it was requested.
 #[test]
 fn quiet_silences_all_but_what_was_asked_for() {
     let desk = Desk::new();

@@ -132,7 +132,7 @@ fn a_path_that_is_no_record_is_refused() {
     refused(&["good.csv", "missing.csv"], &["missing.csv: there is no such file"]);
     refused(
         &["good.csv", "--from", "500"],
-        &["good.csv: no row lies from 500 s, the rows", "between 0 s and 300 s", "--until"],
+        &["good.csv: no row lies from 500 s; the rows", "between 0 s and 300 s", "--until"],
     );
     refused(&["good.csv", "--columns", "missing.toml"], &["missing.toml", "no such file"]);
 }
@@ -169,7 +169,7 @@ fn the_message_about_a_replayed_record_does_not_show_it() {
     for content in ["secret:1:2\n", "1,2,secret\n", "t_s,heading_deg,rudder_deg\n0,0,secret\n", "t_s,secret\n0,1\n"] {
         desk.file("other", content);
         let run = desk.run(&["check", "case.toml"]);
-        run.is_refused(2, &["other: this file is no record", "study fit"]);
+        run.is_refused(2, &["other: this file is not a usable record", "study fit"]);
         assert!(!run.err.contains("secret"), "{}", run.err);
     }
     desk.file("other", zig_zag_csv());

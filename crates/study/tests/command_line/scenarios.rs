@@ -152,7 +152,7 @@ fn a_value_out_of_range_is_shown_with_the_range() {
         ("replicates = 2", "replicates = 99999999999999999999", 3, "not valid TOML", "too many digits"),
         ("duration-s = 270.0", "duration-s = 1e18", 16, "is 1e18", "expected at most 1000000"),
         ("after-execute = 1", "after-execute = 0", 17, "is 0", "count the executes from 1"),
-        ("after-execute = 1", "after-execute = 90000", 17, "is 90000", "this one may take 6.5e8"),
+        ("after-execute = 1", "after-execute = 90000", 17, "is 90000", "this one can take 6.5e8"),
         ("heading-deg = 20.0", "heading-deg = 20.0\nexecutes = 1000000000", 10, "is 1000000000", "from 1 to 100000"),
         ("[ship.yukun]", "[approach]\nlead-in-s = 1e300\n[ship.yukun]", 6, "is 1e300", "expected at most 10000000"),
         ("output-error = {}", "output-error.iterations = 0", 23, "output-error.iterations` is 0", "expected 1 to 1000"),

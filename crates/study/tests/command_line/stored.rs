@@ -146,7 +146,7 @@ fn two_reruns_and_a_report_at_once_leave_a_whole_study() {
     }
 }
 
-/// A scenario says which of its figures are made, and which stands for it; all there are can be asked for.
+/// A scenario says which of its figures are made, and which stands for it; all there are can be requested.
 #[test]
 fn figures_are_chosen() {
     let desk = Desk::new();

@@ -25,10 +25,10 @@ const COEFFICIENTS: usize = 3 + KNOTS.len();
 /// Number of points of a curve.
 const POINTS: usize = 61;
 
-/// Smallest range of a channel over its largest magnitude.
+/// Minimum range of a channel over its largest magnitude.
 const MIN_RELATIVE_RANGE: f64 = 5e-3;
 
-/// Smallest pivot of the normalised normal equations for which the rows determine the curve.
+/// Minimum pivot of the normalised normal equations for which the rows determine the curve.
 const MIN_PIVOT: f64 = 1e-10;
 
 /// Bounds of the level of the walk: heading variance over σ² at the end of the record for a ship without damping.
@@ -56,7 +56,7 @@ pub(super) fn variance(square: f64, rows: usize, coefficients: usize) -> f64 {
     square / (rows - STATES - coefficients) as f64 + MIN_HEADING_SD * MIN_HEADING_SD
 }
 
-/// Smallest number of rows for a curve.
+/// Minimum number of rows for a curve.
 pub(super) const MIN_ROWS: usize = 4 * (STATES + COEFFICIENTS);
 
 /// Spline basis on the range of a channel, each spline with mean zero over the rows.
@@ -140,7 +140,7 @@ pub struct MomentCurve {
 
 impl MomentCurve {
     /// Curve of a record over a channel, with those of explanations from their heading responses beside the base (rad).
-    /// `None` where the channel does not vary or the rows do not determine the curve.
+    /// `None` if the channel does not vary or the rows do not determine the curve.
     pub(super) fn new(
         rows: &MomentRows,
         gain: f64,
@@ -188,13 +188,13 @@ impl MomentCurve {
         })
     }
 
-    /// Whether another curve lies inside the band everywhere.
+    /// `true` if another curve lies inside the band everywhere.
     pub fn contains(&self, other: &[f64]) -> bool {
         let rows = self.moment.iter().zip(&self.half_width).zip(other);
         rows.fold(true, |all, ((moment, half), other)| all && (moment - other).abs() <= *half)
     }
 
-    /// Whether zero lies inside the band everywhere.
+    /// `true` if zero lies inside the band everywhere.
     pub fn contains_zero(&self) -> bool {
         self.contains(&[0.0; POINTS])
     }

@@ -68,9 +68,9 @@ pub struct Panel {
     pub over: MomentChannel,
     /// Curve with its band.
     pub curve: MomentCurve,
-    /// Share of the variance per second of the walk that the curve explains; `None` where the moment is constant.
+    /// Share of the variance per second of the walk that the curve explains; `None` if the moment is constant.
     pub share: Option<f64>,
-    /// Indices of the explanations inside the band everywhere; empty where zero is inside as well.
+    /// Indices of the explanations inside the band everywhere; empty if zero is inside as well.
     pub inside: Vec<usize>,
 }
 
@@ -103,7 +103,7 @@ fn spread(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - mean).powi(2)).sum()
 }
 
-/// Smallest variance of a varying moment, rad² of rudder.
+/// Minimum variance of a varying moment, rad² of rudder.
 const MIN_VARIANCE: f64 = 1e-12;
 
 impl MissingMoment {

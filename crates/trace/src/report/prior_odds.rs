@@ -13,10 +13,10 @@ pub fn from_gain(gain: f64, factor: f64) -> f64 {
 }
 
 impl TraceParts<'_> {
-    /// Probability that one of the terms selected by `matches` is present, for each of [`FACTORS`]; empty where no
+    /// Probability that one of the terms selected by `matches` is present, for each of [`FACTORS`]; empty if no
     /// structure has one. The odds of a required effect are not changed.
     pub fn by_prior_odds(&self, matches: impl Fn(&TermName) -> bool) -> Vec<f64> {
-        let is_weighed = |name: &TermName| !self.settings.selection.asks_for(name.0);
+        let is_weighed = |name: &TermName| !self.settings.selection.requires(name.0);
         let with = |factor: f64| self.structures.probability_with_odds(factor, is_weighed, &matches);
         let all = FACTORS.map(with);
         if all.iter().any(|probability| *probability > 0.0) { all.into() } else { Vec::new() }

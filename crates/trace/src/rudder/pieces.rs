@@ -5,10 +5,10 @@
 //! Jackson et al. 2005, Killick et al. 2012; penalties as Schwarz 1978). Levels of rests, and rates of strokes, that do
 //! not differ significantly are pooled; a stroke meets a rest where their lines intersect.
 
-/// Smallest number of readings of a stroke.
+/// Minimum number of readings of a stroke.
 const MIN_STROKE_ROWS: usize = 3;
 
-/// Largest shift of an end to the intersection with the next piece, rows; pieces of less than twice as many rows keep
+/// Maximum shift of an end to the intersection with the next piece, rows; pieces of less than twice as many rows keep
 /// their ends.
 const MAX_SHIFT_ROWS: usize = 2;
 
@@ -30,7 +30,7 @@ pub struct RudderPiece {
     rate: f64,
     /// Σ (t − t_k)², s².
     spread: f64,
-    /// Whether the rudder moves.
+    /// `true` if the rudder moves.
     pub is_stroke: bool,
 }
 

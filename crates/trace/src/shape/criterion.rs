@@ -12,7 +12,7 @@ use estimation::column::dot;
 use crate::linear::{HeadingSensitivities, Linear};
 use crate::weights::Weights;
 
-/// Smallest share of its square that is linearly independent of the columns before, for a usable column.
+/// Minimum share of its square that is linearly independent of the columns before, for a usable column.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-7;
 
 /// Heading response to one coefficient by record, rad per rad of rudder.
@@ -73,7 +73,7 @@ pub struct WhitenedStructure {
 
 /// Products of appended columns with the columns of a structure, with each other, and with its residual.
 #[derive(Debug, Clone)]
-pub struct ColumnProducts {
+pub struct GramProducts {
     /// With the columns of the structure, by appended column.
     pub cross: Vec<Vec<f64>>,
     gram: Vec<Vec<f64>>,
@@ -95,7 +95,7 @@ struct Extension {
 }
 
 impl WhitenedStructure {
-    /// Structure under a law with `law_freedom` parameters; `None` where its columns are dependent.
+    /// Structure under a law with `law_freedom` parameters; `None` if its columns are dependent.
     pub fn new(structure: &LinearisedStructure, weights: &Weights, law_freedom: usize) -> Option<Self> {
         let blocks = structure.linear.blocks.iter().enumerate();
         let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, weights)).collect();
@@ -163,7 +163,7 @@ impl WhitenedStructure {
         (self.square - dot(solution, solution)).max(1e-9 * self.square)
     }
 
-    /// Structure with whitened columns appended; `None` where they are linearly dependent.
+    /// Structure with whitened columns appended; `None` if they are linearly dependent.
     pub fn extended(&self, columns: &[HeadingColumn]) -> Option<Self> {
         let extension = self.extension(&self.products(columns))?;
         let mut next = self.clone();
@@ -180,9 +180,9 @@ impl WhitenedStructure {
     }
 
     /// Products of whitened columns with the structure, with each other, and with the residual.
-    pub fn products(&self, columns: &[HeadingColumn]) -> ColumnProducts {
+    pub fn products(&self, columns: &[HeadingColumn]) -> GramProducts {
         let count = self.factor.len();
-        let mut all = ColumnProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
+        let mut all = GramProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
             let (mut cross, mut gradient) = (vec![0.0; count], 0.0);
             for (record, values) in column {
@@ -198,13 +198,13 @@ impl WhitenedStructure {
     }
 
     /// Criterion with columns of these products appended; infinite where they are linearly dependent.
-    pub fn criterion_of_products(&self, products: &ColumnProducts) -> f64 {
+    pub fn criterion_of_products(&self, products: &GramProducts) -> f64 {
         let Some(Extension { solution, .. }) = self.extension(products) else { return f64::INFINITY };
         self.criterion_with(&solution, self.square_with(&solution))
     }
 
-    /// Rows of factor and solution for appended columns; `None` where they are linearly dependent.
-    fn extension(&self, products: &ColumnProducts) -> Option<Extension> {
+    /// Rows of factor and solution for appended columns; `None` if they are linearly dependent.
+    fn extension(&self, products: &GramProducts) -> Option<Extension> {
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
         let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
         let solution = solved(&factor, &products.gradient, &self.solution);
@@ -243,7 +243,7 @@ impl WhitenedStructure {
     }
 }
 
-/// Rows of the lower Cholesky factor of a symmetric matrix after the rows `leading`; `None` where it is singular.
+/// Rows of the lower Cholesky factor of a symmetric matrix after the rows `leading`; `None` if it is singular.
 fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
     for (k, source) in matrix.iter().enumerate() {

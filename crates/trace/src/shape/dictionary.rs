@@ -158,7 +158,7 @@ pub enum Shape {
     Chirp(f64, f64),
 }
 
-/// Smallest rudder rate that counts as a change of |δ|, rad/s.
+/// Minimum rudder rate that counts as a change of |δ|, rad/s.
 const MIN_RATE: f64 = 0.005;
 
 impl Shape {
@@ -173,7 +173,7 @@ impl Shape {
         }
     }
 
-    /// Whether it depends on time, and so belongs to one record.
+    /// `true` if it depends on time, and so belongs to one record.
     pub fn is_of_time(&self) -> bool {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
@@ -265,7 +265,7 @@ impl Shape {
         self.clone().places(1.0).len()
     }
 
-    /// Shape with one continuous parameter moved by a share of its step; `None` where it leaves its range for a record
+    /// Shape with one continuous parameter moved by a share of its step; `None` if it leaves its range for a record
     /// of this duration and row spacing, s.
     pub fn moved(&self, place: usize, share: f64, [duration, spacing]: [f64; 2]) -> Option<Self> {
         let mut moved = *self;
@@ -289,7 +289,7 @@ impl Shape {
         }
     }
 
-    /// Whether the response of the ship changes at an instant.
+    /// `true` if the response of the ship changes at an instant.
     pub fn is_change(&self) -> bool {
         self.class() == Self::ResponseChange(0.0).class()
     }
@@ -329,7 +329,7 @@ impl Shape {
         }
     }
 
-    /// Formula with its coefficient c, as a user can type it; `None` where it has none.
+    /// Formula with its coefficient c, as a user can type it; `None` if it has none.
     pub fn formula(&self) -> Option<String> {
         let Self::Powers(_, (signal, power), factor) = *self else { return None };
         let factor = factor.map(|(signal, power)| format!(" * {}", power.formula(signal.names()[1])));

@@ -12,7 +12,7 @@ const WAVE_PERIODS: [f64; 4] = [5.0, 7.0, 9.0, 12.0];
 const WAVE_DAMPING: f64 = 0.1;
 const WAVE_SIZES: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 
-/// Smallest number of rows per period of waves.
+/// Minimum number of rows per period of waves.
 const MIN_ROWS_PER_WAVE: f64 = 2.5;
 
 /// Random law with its size.
@@ -46,7 +46,7 @@ impl RandomLaw {
         Self { colour, freedom: kind.freedom(), size }
     }
 
-    /// Whether it includes a random moment.
+    /// `true` if it includes a random moment.
     pub fn is_moment(&self) -> bool {
         self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
     }

@@ -18,7 +18,7 @@ const SQUALL: f64 = 1.6;
 /// Durations of ramps, as shares of the record.
 const RAMPS: [f64; 3] = [0.08, 0.15, 0.3];
 
-/// Smallest number of rows in the shortest period of a shape.
+/// Minimum number of rows in the shortest period of a shape.
 const MIN_ROWS_PER_CYCLE: f64 = 6.0;
 
 /// All shapes with the number of places at which their kind is tried, for a record of this duration and row spacing;

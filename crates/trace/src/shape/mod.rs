@@ -30,13 +30,13 @@ use search::ShapeSearch;
 pub use dictionary::Shape;
 pub use search::{Candidate, Explanation};
 
-/// Smallest significant gain of shapes, nats.
+/// Minimum significant gain of shapes, nats.
 pub const MIN_GAIN: f64 = 4.0;
 
-/// Largest difference of two equivalent explanations, nats.
+/// Maximum difference of two equivalent explanations, nats.
 pub const EQUIVALENT_GAIN: f64 = 3.0;
 
-/// Smallest significant gain of a smooth moment of unknown shape, nats.
+/// Minimum significant gain of a smooth moment of unknown shape, nats.
 const MIN_SMOOTH_GAIN: f64 = 1.5;
 
 /// Maximum number of updates of the response under the best law, and the relative change of 1/T that ends them.
@@ -58,7 +58,7 @@ pub struct NamedShape {
     pub size: f64,
 }
 
-/// Smallest loss of a listed shape over that of the clearest one.
+/// Minimum loss of a listed shape over that of the clearest one.
 const MIN_LOSS_RATIO: f64 = 0.25;
 
 /// Distance, as a share of the record, within which a moment that begins near a change of the ship belongs to it.
@@ -91,7 +91,7 @@ pub struct ShapeAnalysis {
     /// Power of the likelihood: below one where the noise includes a model error. Gain and losses include it, criteria
     /// do not.
     pub power: f64,
-    /// Whether a smooth moment of unknown shape is significant, where no shape is.
+    /// `true` if a smooth moment of unknown shape is significant, where no shape is.
     pub is_smooth: bool,
     /// Random moment beside the shapes.
     pub moment: Option<MomentSize>,
@@ -104,7 +104,7 @@ pub struct ShapeAnalysis {
 }
 
 impl ShapeAnalysis {
-    /// Whether the gain of the shapes is significant.
+    /// `true` if the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
         self.gain >= MIN_GAIN
     }
@@ -156,7 +156,7 @@ impl ShapeAnalysis {
     }
 }
 
-/// Shape analysis of the residual of a fit, with the waves of its noise law; `None` where its columns are dependent.
+/// Shape analysis of the residual of a fit, with the waves of its noise law; `None` if its columns are dependent.
 pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
     let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..MAX_ROUNDS {
@@ -187,7 +187,7 @@ struct ShapeProblem<'a> {
 }
 
 impl<'a> ShapeProblem<'a> {
-    /// Problem at a point, with motions predicted under a colour; `None` where its columns are dependent.
+    /// Problem at a point, with motions predicted under a colour; `None` if its columns are dependent.
     fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
         let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);

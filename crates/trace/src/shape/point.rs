@@ -9,7 +9,7 @@ use crate::weights::{NoiseLaw, Weights};
 use super::criterion::LinearisedStructure;
 use super::motion::PredictedMotion;
 
-/// Smallest gap, in usual steps between headings, behind which heading and yaw rate restart, and the largest number of
+/// Minimum gap, in usual steps between headings, behind which heading and yaw rate restart, and the largest number of
 /// such gaps per record.
 const MIN_GAP_STEPS: f64 = 3.5;
 const MAX_GAPS: usize = 4;

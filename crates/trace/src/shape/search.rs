@@ -6,7 +6,7 @@ use std::sync::Arc;
 use estimation::column::dot;
 use rayon::prelude::*;
 
-use super::criterion::{ColumnProducts, HeadingColumn, WhitenedStructure, product};
+use super::criterion::{GramProducts, HeadingColumn, WhitenedStructure, product};
 use super::dictionary::Shape;
 use super::laws::{RandomLaw, screening};
 use super::library::shapes;
@@ -60,17 +60,17 @@ pub struct ShapeSearch<'a> {
     pub laws: &'a [RandomLaw],
     /// Whitening weights under each law.
     pub weights: &'a [Weights],
-    /// Structure under each law; `None` where its columns are dependent.
+    /// Structure under each law; `None` if its columns are dependent.
     pub structure: &'a [Option<WhitenedStructure>],
     /// Number of unknowns of the structure.
     pub unknowns: usize,
 }
 
-/// Smallest root mean square of a nonzero moment.
+/// Minimum root mean square of a nonzero moment.
 const MIN_RMS: f64 = 1e-12;
 
 impl ShapeSearch<'_> {
-    /// Candidate in all records, or in one; `None` where its moment is zero there.
+    /// Candidate in all records, or in one; `None` if its moment is zero there.
     fn candidate(&self, shape: Shape, only: Option<usize>, penalty: f64) -> Option<Candidate> {
         let acting = || self.motions.iter().filter(|motion| only.is_none_or(|only| only == motion.number));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
@@ -152,7 +152,7 @@ impl ShapeSearch<'_> {
     }
 
     /// Products of all candidates with the structure, under some laws.
-    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<ColumnProducts>> {
+    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<GramProducts>> {
         let products = |chunk: &[Arc<Candidate>]| {
             let candidates: Vec<&Candidate> = chunk.iter().map(Arc::as_ref).collect();
             let mut all = vec![Vec::with_capacity(laws.len()); chunk.len()];
@@ -174,11 +174,11 @@ impl ShapeSearch<'_> {
         structures: &[Option<WhitenedStructure>],
         laws: &[usize],
         library: &[Arc<Candidate>],
-        products: &mut [Vec<ColumnProducts>],
+        products: &mut [Vec<GramProducts>],
     ) -> Vec<f64> {
         let laws: Vec<usize> = laws.iter().copied().filter(|law| self.structure[*law].is_some()).collect();
         let weighted: Vec<Vec<HeadingColumn>> = laws.iter().map(|&law| self.weighted(law, chosen)).collect();
-        let criterion = |(candidate, products): (&Arc<Candidate>, &mut Vec<ColumnProducts>)| {
+        let criterion = |(candidate, products): (&Arc<Candidate>, &mut Vec<GramProducts>)| {
             let mut lowest = f64::INFINITY;
             for ((products, &law), weighted) in products.iter_mut().zip(&laws).zip(&weighted) {
                 for (cross, column) in products.cross.iter_mut().zip(&candidate.columns) {
@@ -280,7 +280,7 @@ impl ShapeSearch<'_> {
     }
 
     /// Explanation with the continuous parameters refined by coordinate search under its law, then under its best law;
-    /// `None` where no parameter moves.
+    /// `None` if no parameter moves.
     fn refined(&self, from: &Explanation) -> Option<Explanation> {
         let structure = self.structure[from.law].as_ref()?;
         let mut shapes = from.shapes.clone();
@@ -344,7 +344,7 @@ pub fn residual_square(linear: &Linear, shapes: &[Arc<Candidate>], step: &[f64])
 /// Criterion and index without any law.
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
-/// Criterion and index of the best law of structures; `None` where all are `None`.
+/// Criterion and index of the best law of structures; `None` if all are `None`.
 pub fn best(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
     let criteria = structures.iter().enumerate().filter_map(|(law, s)| Some((s.as_ref()?.criterion(), law)));
     criteria.min_by(|a, b| a.0.total_cmp(&b.0))

@@ -37,7 +37,7 @@ pub(super) struct QuadraticPosterior {
 }
 
 impl QuadraticPosterior {
-    /// Approximation about a point of the full structure; `None` where the precision is singular.
+    /// Approximation about a point of the full structure; `None` if the precision is singular.
     pub fn new(normal: &Normal, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
         let unknowns = structure.unknowns();
         let count = normal.gradient.len();
@@ -50,7 +50,7 @@ impl QuadraticPosterior {
         let factor = normal.matrix.clone().cholesky()?;
         let mut covariance = factor.inverse();
         let mut mean = &at + factor.solve(&normal.gradient);
-        let ranges = structure.ranges();
+        let ranges = structure.term_ranges();
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));

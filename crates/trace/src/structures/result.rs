@@ -7,7 +7,7 @@ use crate::candidates::PROBABILITY;
 use crate::fit::StructureFit;
 use crate::model::{Structure, TermName};
 
-/// Largest odds against a member of the average, relative to the best structure.
+/// Maximum odds against a member of the average, relative to the best structure.
 const MAX_MEMBER_ODDS: f64 = 20.0;
 
 /// Fitted structure with its posterior weight.
@@ -80,7 +80,7 @@ impl Structures {
         self.probability_of_any(|name| name.0 == id && name.2 == only)
     }
 
-    /// Mean square residual of the most probable structure without moments of time, rad²; infinite where there is none.
+    /// Mean square residual of the most probable structure without moments of time, rad²; infinite if there is none.
     pub fn mean_square_of_ship(&self) -> f64 {
         let is_ship =
             |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_time_dependent());

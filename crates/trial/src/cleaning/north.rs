@@ -78,7 +78,7 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     )))
 }
 
-/// Range of headings from the last before a sweep, `at`, to the first behind it; `None` where no sweep begins.
+/// Range of headings from the last before a sweep, `at`, to the first behind it; `None` if no sweep begins.
 fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -> Option<Range<usize>> {
     let begin = heading[read[at]];
     let from_north = |psi: f64| (psi + PI).rem_euclid(TAU) - PI;

@@ -76,7 +76,7 @@ pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<DetectedMa
     list
 }
 
-/// Largest difference between holds to one side of a zig-zag, rad; 0 for other manoeuvres.
+/// Maximum difference between holds to one side of a zig-zag, rad; 0 for other manoeuvres.
 fn spread(pattern: &Pattern) -> f64 {
     if !matches!(pattern.manoeuvre, Manoeuvre::ZigZag { .. }) {
         return 0.0;
@@ -161,7 +161,7 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
-/// First row of the movement into the only hold of a manoeuvre, whose rate no other movement shows; `None` where the
+/// First row of the movement into the only hold of a manoeuvre, whose rate no other movement shows; `None` if the
 /// record does not show the movement.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
@@ -224,7 +224,7 @@ impl ApproachSegment {
     }
 }
 
-/// First row from which the rudder stays about amidships until row `start`; `None` where it is not amidships there.
+/// First row from which the rudder stays about amidships until row `start`; `None` if it is not amidships there.
 fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
     let (time, angle) = (record.log.time, &record.rudder.angle);
     let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
@@ -245,7 +245,7 @@ fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: u
     (earliest..start).rev().take_while(is_steady).last()
 }
 
-/// Change of a channel from the first to the last third of some rows, as a share; `None` where it was not recorded.
+/// Change of a channel from the first to the last third of some rows, as a share; `None` if it was not recorded.
 fn change(channel: Option<&[f64]>, first: usize, end: usize) -> Option<f64> {
     let values = channel?.get(first..end)?;
     let third = values.len().div_ceil(3);

@@ -38,14 +38,14 @@ pub enum Approach {
 pub struct Quality {
     /// Share of the rows without a heading, 0 to 1.
     pub missing_headings: f64,
-    /// Longest gap of the heading, s; `None` where it is not much longer than the usual time step.
+    /// Maximum gap of the heading, s; `None` if it is not much longer than the usual time step.
     pub longest_gap: Option<f64>,
-    /// Largest difference between the rudder angles held to one side of a zig-zag, rad.
+    /// Maximum difference between the rudder angles held to one side of a zig-zag, rad.
     pub rudder_spread: f64,
     /// Approach; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
     /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
-    /// larger; positive where it grew; `None` where no speed was recorded.
+    /// larger; positive where it grew; `None` if no speed was recorded.
     pub speed_change: Option<f64>,
 }
 
@@ -95,7 +95,7 @@ impl Quality {
 #[derive(Debug, Clone, PartialEq)]
 pub struct DetectedManoeuvre {
     /// Kind of manoeuvre with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds
-    /// to each side, its heading the median over the executes; `None` where the ship keeps her course.
+    /// to each side, its heading the median over the executes; `None` if the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
     /// First row of the part to analyse, s: the first execute, or before it where the approach was steady.
     pub from: f64,

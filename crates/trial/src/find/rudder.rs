@@ -154,7 +154,7 @@ impl RudderHolds {
         merged
     }
 
-    /// The rows of a cut without the ends of the adjacent movements; `None` where the rudder moved all the time.
+    /// The rows of a cut without the ends of the adjacent movements; `None` if the rudder moved all the time.
     fn hold(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Hold> {
         if last + 1 - first < MIN_ROWS {
             return None;

@@ -189,7 +189,7 @@ fn heading_at_end(record: &Prepared, hold: &Hold) -> Option<f64> {
     record.course.near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
 }
 
-/// Zig-zag of holds whose swings agree, with the headings at their ends; `None` where the holds are not a zig-zag.
+/// Zig-zag of holds whose swings agree, with the headings at their ends; `None` if the holds are not a zig-zag.
 fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Option<Pattern> {
     let mut sizes = Vec::new();
     for pair in headings[..headings.len() - 1].windows(2) {

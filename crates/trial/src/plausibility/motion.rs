@@ -1,12 +1,12 @@
 //! Movement of a channel: range, reversals and mean rate. Ratios of these figures hold for ships of every size.
 
-/// Smallest and largest finite value; ∞ and −∞ without finite values.
+/// Minimum and largest finite value; ∞ and −∞ without finite values.
 pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Largest minus smallest finite value; 0 without finite values.
+/// Maximum minus smallest finite value; 0 without finite values.
 pub(crate) fn range(values: &[f64]) -> f64 {
     let (low, high) = extremes(values.iter().copied());
     if low <= high { high - low } else { 0.0 }

@@ -22,7 +22,7 @@ pub(crate) struct PartialSlope {
 /// b = K/T (1/s²) of the first-order response by regression on integrals.
 ///
 /// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
-/// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
+/// and rudder bias need not be known. `None` if nothing is left to explain, or numbers overflow.
 pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice) = (0.0, vec![0.0]);

@@ -15,7 +15,7 @@ use crate::manoeuvre::Manoeuvre;
 const MAX_SURPLUS_SHARE: f64 = 0.02;
 
 impl Log {
-    /// The manoeuvres of the log, in order of time; none where it has no heading.
+    /// The manoeuvres of the log, in order of time; none if it has no heading.
     pub fn manoeuvres(&self) -> Vec<DetectedManoeuvre> {
         let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
             return Vec::new();

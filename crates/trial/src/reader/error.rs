@@ -230,7 +230,7 @@ pub enum Problem {
         end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
-    /// No manoeuvre has the number that was asked for.
+    /// No manoeuvre has the number that was requested.
     #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
     ManoeuvreParseError { file: String, number: usize, count: usize },
     /// Several zig-zags, of which one has to be chosen: a line for each.

@@ -28,7 +28,7 @@ pub struct ChannelRelation {
     pub reference: Channel,
     /// Factor from the channel to the reference; negative for opposite signs.
     pub scale: f64,
-    /// Lag behind the reference, s; `None` where the best lag is at the end of the range.
+    /// Lag behind the reference, s; `None` if the best lag is at the end of the range.
     pub lag: Option<f64>,
 }
 
@@ -37,7 +37,7 @@ pub struct ChannelRelation {
 pub struct ChannelInspection {
     /// Statistics of the readings.
     pub readings: ChannelReadings,
-    /// `true` where positive values turn the ship to starboard; `None` where the log does not show it.
+    /// `true` where positive values turn the ship to starboard; `None` if the log does not show it.
     pub to_starboard: Option<bool>,
     /// Relation of the yaw rate to the heading, or of the rudder to its order.
     pub relation: Option<ChannelRelation>,
@@ -63,7 +63,7 @@ impl Log {
         self.readings().into_iter().map(inspection).collect()
     }
 
-    /// `true` where positive rudder turns the ship to starboard; `None` where the log does not show it.
+    /// `true` where positive rudder turns the ship to starboard; `None` if the log does not show it.
     fn turns_with_rudder(&self) -> Option<bool> {
         let origin = Origin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("", origin, self.columns.clone()).ok()?;

@@ -3,7 +3,7 @@
 use estimation::statistics::upper_median;
 
 /// Spreads rows that share a stamp evenly over the time to the next stamp. Returns the typical number of rows per
-/// stamp; `None` where no rows share a stamp.
+/// stamp; `None` if no rows share a stamp.
 ///
 /// `time` (s) does not fall. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
 /// first and the last stamp may be incomplete: their rows take the end and the beginning of their width.

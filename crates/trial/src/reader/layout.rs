@@ -70,9 +70,9 @@ pub(super) struct RawColumn {
     pub zero: f64,
     /// Last number, as in the file.
     pub last: Option<f64>,
-    /// Largest absolute number.
+    /// Maximum absolute number.
     pub largest: f64,
-    /// Largest step between two numbers.
+    /// Maximum step between two numbers.
     pub largest_step: f64,
     /// `true` while all numbers are whole.
     pub is_whole: bool,
@@ -124,7 +124,7 @@ pub(super) struct Layout {
 impl Layout {
     /// Layout of a table by its head and its sidecar.
     ///
-    /// A sidecar goes before the names, and a `quantity_unit` name before any other. Fails when the sidecar describes a
+    /// A sidecar goes before the names, and a `quantity_unit` name before any other. Fails if the sidecar describes a
     /// column that is absent, when two columns claim the same quantity with equal certainty, when time is absent, and
     /// when the table of a `whole` record has no rudder or neither heading nor yaw rate.
     pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {

@@ -141,8 +141,8 @@ impl<R: Read> Lines<R> {
 
     /// Bytes of the next line without its end, text or not: for logs, where noise spoils a line and not the file.
     ///
-    /// A line longer than [`MAX_LINE_BYTES`] is cut one byte beyond that, and its remainder is skipped; `None` at the end
-    /// of the file.
+    /// A line longer than [`MAX_LINE_BYTES`] is cut one byte beyond that, and its remainder is skipped; `None` at the
+    /// end of the file.
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
         let Some((_, whole)) = self.take_line()? else { return Ok(None) };
         if !whole {

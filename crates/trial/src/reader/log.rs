@@ -157,7 +157,7 @@ impl Log {
 
     /// Adds derived channels, fills the rudder, and applies the keys of [rudder] in the sidecar.
     ///
-    /// Fails where the rudder is moved by more than the length of the log.
+    /// Fails if the rudder is moved by more than the length of the log.
     fn complete(&mut self) -> Result<(), ReadError> {
         if matches!(self.readings, Readings::InColumns) && !self.is_complete() {
             self.readings = Readings::Columns(self.columns.clone());
@@ -214,7 +214,7 @@ impl Log {
         part.start().is_finite() || part.end().is_finite()
     }
 
-    /// The part between two times, s, both included. Fails where it holds no row.
+    /// The part between two times, s, both included. Fails if it holds no row.
     pub fn part(mut self, from: f64, until: f64) -> Result<Self, ReadError> {
         let time = &self.columns.time;
         let rows = time.partition_point(|&t| t < from)..time.partition_point(|&t| t <= until);
@@ -239,7 +239,7 @@ impl Log {
 
     /// The record of the log; `ship` overrides the particulars of the sidecar.
     ///
-    /// Fails when the log has too few rows, or is implausible ([`plausibility`]).
+    /// Fails if the log has too few rows, or is implausible ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
         let date = self.date();
         let Self { path, columns, sha256, rows, mut sidecar, mut warnings, part, mut rejected, names, .. } = self;

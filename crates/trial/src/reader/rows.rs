@@ -276,7 +276,7 @@ impl<'a> Rows<'a> {
     }
 
     /// `true` for a row that follows the last one in time. An exact copy of the last row and a single row with a stray
-    /// time do not; fails where time continues from an earlier time.
+    /// time do not; fails if time continues from an earlier time.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;
         let Some((last, row)) = &mut self.before.last else {

@@ -77,9 +77,9 @@ pub struct ChannelReadings {
     pub interval: Option<f64>,
     /// Beginning and length of the longest gap between readings, s.
     pub longest: Option<[f64; 2]>,
-    /// Smallest and largest reading.
+    /// Minimum and largest reading.
     pub range: [f64; 2],
-    /// Smallest change between two readings.
+    /// Minimum change between two readings.
     pub step: Option<f64>,
     /// Number of times a heading crosses north.
     pub wraps: Option<usize>,

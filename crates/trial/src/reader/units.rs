@@ -49,13 +49,13 @@ pub(super) struct UnitlessColumn {
     pub channel: Channel,
     /// Name of its column.
     pub name: String,
-    /// Largest absolute number.
+    /// Maximum absolute number.
     pub largest: f64,
 }
 
 /// Settles the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
 ///
-/// Fails where heading, rudder, a yaw rate used for the heading, or time could have two units.
+/// Fails if heading, rudder, a yaw rate used for the heading, or time could have two units.
 pub(super) fn settle(
     log: &mut Log,
     mut open: Vec<UnitlessColumn>,

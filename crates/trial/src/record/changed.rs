@@ -32,7 +32,7 @@ impl Trial {
         self
     }
 
-    /// The same record with other rudder angles, rad; `None` where these are not one finite angle for every row.
+    /// The same record with other rudder angles, rad; `None` if these are not one finite angle for every row.
     pub fn with_rudder(mut self, angles: Vec<f64>) -> Option<Self> {
         self.rudder = RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?);
         Some(self)
@@ -42,7 +42,7 @@ impl Trial {
     /// (L₂/V₂)/(L₁/V₁), yaw rate and propeller rate divided by it, speeds multiplied by V₂/V₁ and lengths by L₂/L₁.
     /// Angles and unknown columns stay.
     ///
-    /// Dimensionless quantities (K', T') are invariant. `None` where length and speed of this ship are not declared
+    /// Dimensionless quantities (K', T') are invariant. `None` if length and speed of this ship are not declared
     /// or a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
     pub fn scaled_to(&self, particulars: Particulars) -> Option<Self> {
         let ship = self.particulars?;

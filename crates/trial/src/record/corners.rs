@@ -128,7 +128,7 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
     if (bent.len() - corners.len()) as f64 <= MAX_UNRESOLVED_SHARE * bent.len() as f64 { corners } else { Vec::new() }
 }
 
-/// Rate of the gear, rad/s: the common rate of successive intervals of equal slope. `None` where there are no such
+/// Rate of the gear, rad/s: the common rate of successive intervals of equal slope. `None` if there are no such
 /// intervals or their rates differ.
 fn rate(slopes: &[f64]) -> Option<f64> {
     let steady = slopes.windows(2).filter(|pair| {

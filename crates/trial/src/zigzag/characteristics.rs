@@ -39,7 +39,7 @@ const MIN_APPROACH_ROWS: usize = 3;
 impl ZigZag {
     /// Characteristics of the zig-zag of a record.
     ///
-    /// Fails when the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to
+    /// Fails if the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to
     /// both sides with two reversals, is not held there, or the heading moves against it; or when headings are missing
     /// at an execute.
     pub fn of(trial: &Trial) -> Result<Self, ZigZagError> {
@@ -187,7 +187,7 @@ fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
     execute.time.value - heading.half_width >= heading.time[0]
 }
 
-/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` where the noise leaves the
+/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` if the noise leaves the
 /// rate with more than the standard deviation `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
     let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;

@@ -21,7 +21,7 @@ pub struct Movement {
     pub after: f64,
     /// Last row at the level before.
     pub foot: usize,
-    /// Rate of the rudder, rad/s; `None` where the movement is too fast for the sampling.
+    /// Rate of the rudder, rad/s; `None` if the movement is too fast for the sampling.
     pub rate: Option<f64>,
     /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; `None` for other movements.
     least_rate: Option<f64>,
@@ -52,7 +52,7 @@ pub struct RudderMovements<'a> {
     /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
     noise: f64,
     /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound where a ramp is
-    /// about as long as a sampling interval, `None` where it is shorter.
+    /// about as long as a sampling interval, `None` if it is shorter.
     pub rate: Option<f64>,
     /// `true` where the rate is a lower bound.
     rate_is_bound: bool,
@@ -103,7 +103,7 @@ impl<'a> RudderMovements<'a> {
         self.movement(before, to)
     }
 
-    /// The movement into the first hold from the steering before it; `None` when the record starts in the hold.
+    /// The movement into the first hold from the steering before it; `None` if the record starts in the hold.
     pub fn first(&self) -> Option<Movement> {
         let to = &self.holds[0];
         if to.first == 0 {

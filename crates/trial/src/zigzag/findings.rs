@@ -117,7 +117,7 @@ pub struct Execute {
     pub time: Quantity,
     /// Heading at that time (execute heading angle, ITTC), rad, not relative to the base course.
     pub heading: Quantity,
-    /// Yaw rate at that time, rad/s; `None` where headings are missing around it.
+    /// Yaw rate at that time, rad/s; `None` if headings are missing around it.
     pub yaw_rate: Option<Quantity>,
     /// Rudder angle before, rad.
     pub rudder_before: f64,
@@ -153,15 +153,15 @@ pub struct Overshoot {
 /// Characteristics of a zig-zag trial. Angles in rad, times in s; `None` or empty where a record does not show them.
 ///
 /// A record that begins within the trial has no first execute, and all that counts from it is `None`. Times from a
-/// first execute are `None` where the record begins within its movement.
+/// first execute are `None` if the record begins within its movement.
 ///
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZigZag {
-    /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` where those headings differ by more
+    /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` if those headings differ by more
     /// than half their size.
     pub pair: Option<Pair>,
-    /// Side of the first execute; `None` when the record begins within the trial.
+    /// Side of the first execute; `None` if the record begins within the trial.
     pub side: Option<Side>,
     /// Base course of the trial.
     pub base_course: BaseCourse,
@@ -169,7 +169,7 @@ pub struct ZigZag {
     pub executes: Vec<Execute>,
     /// Initial turning time t_a, s: from the first execute to a change of heading by the nominal ψ.
     pub initial_turning_time: Option<Quantity>,
-    /// Distance travelled in that time, m: integral of the recorded speed; `None` where the record has none.
+    /// Distance travelled in that time, m: integral of the recorded speed; `None` if the record has none.
     pub initial_turning_distance: Option<f64>,
     /// `true` where the record begins too near to its first reversal for the heading there to be measured.
     pub begins_at_reversal: bool,
@@ -182,11 +182,11 @@ pub struct ZigZag {
     pub reach: Option<Quantity>,
     /// Time of a complete cycle t_B, s: from the first execute to the base course after the third execute.
     pub complete_cycle_time: Option<Quantity>,
-    /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the maximum of many noisy
+    /// Maximum |yaw rate| between the first execute and the end of the last hold, rad/s. As the maximum of many noisy
     /// slopes it is biased upwards by about one standard deviation.
     pub largest_yaw_rate: Option<Quantity>,
     /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is
-    /// about as long as a sampling interval; `None` where it is shorter.
+    /// about as long as a sampling interval; `None` if it is shorter.
     pub rudder_rate: Option<f64>,
     /// Standard deviation of the heading noise behind the uncertainties, rad: declared, or a robust estimate from the
     /// record ([`super::noise_sd`]).
@@ -200,8 +200,8 @@ pub const MAX_APPROACH_RATE_SHARE: f64 = 0.1;
 const TOLERANCE_SDS: f64 = 3.0;
 
 impl ZigZag {
-    /// Yaw rate at the first execute after a straight approach, rad/s: at most [`MAX_APPROACH_RATE_SHARE`] of the largest yaw
-    /// rate, within its error. `None` for a record that begins in a turn or within the trial.
+    /// Yaw rate at the first execute after a straight approach, rad/s: at most [`MAX_APPROACH_RATE_SHARE`] of the
+    /// largest yaw rate, within its error. `None` for a record that begins in a turn or within the trial.
     pub fn straight_yaw_rate(&self) -> Option<Quantity> {
         self.side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
@@ -220,18 +220,18 @@ impl ZigZag {
     }
 
     /// `true` where the record begins within the trial, without its first execute.
-    pub fn begins_within_trial(&self) -> bool {
+    pub fn lacks_first_execute(&self) -> bool {
         self.side.is_none()
     }
 
-    /// The n-th overshoot of the trial, counted from 1 at the second execute; `None` when the record begins within the
+    /// The n-th overshoot of the trial, counted from 1 at the second execute; `None` if the record begins within the
     /// trial (nothing can be counted) or does not show that peak.
     pub fn nth_overshoot(&self, n: usize) -> Option<&Overshoot> {
         self.side?;
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
 
-    /// Overshoots in the order of their executes, from the first of the record on; `None` where a peak was not seen.
+    /// Overshoots in the order of their executes, from the first of the record on; `None` if a peak was not seen.
     pub fn swings(&self) -> impl Iterator<Item = Option<&Overshoot>> {
         let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
         (usize::from(self.side.is_some())..end)

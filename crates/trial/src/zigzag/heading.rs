@@ -29,7 +29,7 @@ const MAX_FITS: usize = 2000;
 ///
 /// Every value is compared with the cubic fitted to the samples within `half_width` (s) of it; the result is 1.4826
 /// times the median absolute residual, each residual divided by √(1 − leverage). Jumps and outliers in less than a few
-/// tenths of the rows do not matter. NaN values are skipped. `None` when fewer than 8 windows hold 6 values or more.
+/// tenths of the rows do not matter. NaN values are skipped. `None` if fewer than 8 windows hold 6 values or more.
 pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
     // A median over some rows is as good; over all of a densely sampled record it would cost their square.
     let every = time.len().div_ceil(MAX_FITS);
@@ -102,7 +102,7 @@ impl Heading {
         WIDENINGS[WIDENINGS.len() - 1] * self.half_width
     }
 
-    /// The local cubic at time `t`; widened where headings are missing, `None` where the gap is longer than that.
+    /// The local cubic at time `t`; widened where headings are missing, `None` if the gap is longer than that.
     fn local(&self, t: f64, half_width: f64) -> Option<Cubic> {
         WIDENINGS.iter().find_map(|widening| Cubic::fit(&self.time, &self.relative, t, widening * half_width))
     }
@@ -133,7 +133,7 @@ impl Heading {
 
     /// Time and heading of the peak towards `side` (+1 or −1) between two times.
     ///
-    /// `None` where the record does not show the peak: the heading is largest at the end of the span, or nearer to it
+    /// `None` if the record does not show the peak: the heading is largest at the end of the span, or nearer to it
     /// than half a fit, or beside a gap longer than a fit.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
         let rows = self.rows(from, to);

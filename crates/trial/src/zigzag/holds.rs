@@ -32,7 +32,7 @@ pub struct Hold {
 
 /// The holds of a record, alternating between the sides.
 ///
-/// Fails when the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
+/// Fails if the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
 pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     let starboard = level(rudder, 1.0);
     let port = level(rudder, -1.0);

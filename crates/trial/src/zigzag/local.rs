@@ -30,7 +30,7 @@ pub(super) type Cubic = Local<4>;
 impl<const N: usize> Local<N> {
     /// Fits the samples within `half_width` of `centre`; NaN values are skipped.
     ///
-    /// `None` when the window holds fewer than `N` values or they do not determine the polynomial. `time` must
+    /// `None` if the window holds fewer than `N` values or they do not determine the polynomial. `time` must
     /// increase.
     pub fn fit(time: &[f64], value: &[f64], centre: f64, half_width: f64) -> Option<Self> {
         // Times such as 0.1 k have rounding errors: a sample on the rim of the window counts as inside.
@@ -115,7 +115,7 @@ impl<const N: usize> Local<N> {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
-    /// The time near the centre at which the polynomial has the value `level`; `None` where Newton's iteration leaves
+    /// The time near the centre at which the polynomial has the value `level`; `None` if Newton's iteration leaves
     /// the window.
     pub fn crossing(&self, level: f64) -> Option<f64> {
         let mut t = self.centre;

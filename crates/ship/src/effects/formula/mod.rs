@@ -26,7 +26,7 @@ use parse::MAX_CHARS;
 use points::{SignalSizes, way_speed};
 use program::{FormulaProgram, FormulaSignal, OF_RECORD, OfRecord};
 
-/// Largest number of characters in the name of an effect.
+/// Maximum number of characters in the name of an effect.
 const MAX_NAME_CHARS: usize = 40;
 
 /// Cache of formulas by name and text.

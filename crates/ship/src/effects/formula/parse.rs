@@ -4,11 +4,11 @@
 
 use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
 
-/// Largest number of characters in a formula.
+/// Maximum number of characters in a formula.
 pub(super) const MAX_CHARS: usize = 400;
-/// Largest nesting depth of brackets, signs and powers.
+/// Maximum nesting depth of brackets, signs and powers.
 const MAX_DEPTH: usize = 24;
-/// Largest number of fitted constants.
+/// Maximum number of fitted constants.
 const MAX_CONSTANTS: usize = 4;
 
 /// Syntax error of a formula, with its position.

@@ -7,7 +7,7 @@ use crate::dynamics::{Measured, Regressor};
 use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
-/// Largest number of values on the stack, and the number that suffices for most formulas (also of signals).
+/// Maximum number of values on the stack, and the number that suffices for most formulas (also of signals).
 pub(super) const STACK: usize = 16;
 const SMALL_STACK: usize = 3;
 
@@ -277,7 +277,7 @@ pub struct FormulaProgram {
     pub(super) constants: Vec<String>,
     /// Signals in the order of their first use.
     pub(super) signals: Vec<FormulaSignal>,
-    /// Largest number of values on the stack.
+    /// Maximum number of values on the stack.
     pub(super) waiting: usize,
 }
 

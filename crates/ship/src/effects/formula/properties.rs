@@ -123,7 +123,7 @@ impl Formula {
         (0..shapes.len()).map(|place| consistent.as_ref().map(|all| all[place])).collect()
     }
 
-    /// Dimension of a size, given the dimension of the shapes; `None` where it is no power of second and metre.
+    /// Dimension of a size, given the dimension of the shapes; `None` if it is no power of second and metre.
     fn size_dimension(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
             let mut ratios = SignalPoint::all(&SignalSizes::ones()).filter_map(|point| {
@@ -171,7 +171,7 @@ impl Formula {
 
     /// Priors of the constants. A size is normal about zero, with the expected value as its standard deviation, else
     /// with that of a moment of a fifth of the largest rudder angle. A shape is normal about its expected value, with
-    /// half of it as standard deviation. `None` where a prior is not finite.
+    /// half of it as standard deviation. `None` if a prior is not finite.
     pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
         let scales = SignalSizes::of(records);
         let shapes = self.shapes(&scales);

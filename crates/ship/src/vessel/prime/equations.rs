@@ -4,13 +4,13 @@ use estimation::number::Real;
 
 use crate::vessel::mmg::Mmg;
 
-/// Smallest surge, in U₀, at which the equations are evaluated.
+/// Minimum surge, in U₀, at which the equations are evaluated.
 const MIN_SURGE: f64 = 0.15;
 
-/// Largest speed or yaw rate, in U₀ and U₀/L, at which the equations are evaluated: a diverging state stays finite.
+/// Maximum speed or yaw rate, in U₀ and U₀/L, at which the equations are evaluated: a diverging state stays finite.
 pub const MAX_SPEED: f64 = 2.0;
 
-/// Smallest inflow to the rudder, in U₀.
+/// Minimum inflow to the rudder, in U₀.
 const MIN_INFLOW: f64 = 0.05;
 
 /// Coefficient of a polynomial: name in files, symbol and bounds.

@@ -49,7 +49,7 @@ fn begin(term: &PolynomialTerm) -> f64 {
 /// Mean of the coefficients and their covariance.
 type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 
-/// Priors of the quadratic and the cubic polynomial; `None` where the prior of the hull is not valid.
+/// Priors of the quadratic and the cubic polynomial; `None` if the prior of the hull is not valid.
 pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     let of_mmg = |parameters: &Parameters| {
         let hull = Mmg::at_speed(parameters.at_unit_length(), 1.0).ok()?;

@@ -46,7 +46,7 @@ pub struct Particular {
     pub unit: &'static str,
     /// Meaning.
     pub meaning: &'static str,
-    /// Smallest and largest valid value, in its unit.
+    /// Minimum and largest valid value, in its unit.
     pub range: [f64; 2],
     get: fn(&HullParticulars) -> Option<f64>,
     set: fn(&mut HullParticulars, f64),
@@ -60,7 +60,7 @@ impl Particular {
         PARTICULARS.iter().find(|particular| particular.key == key)
     }
 
-    /// Value in its unit; `None` where it is not given.
+    /// Value in its unit; `None` if it is not given.
     pub fn get(&self, particulars: &HullParticulars) -> Option<f64> {
         (self.get)(particulars)
     }
@@ -196,7 +196,7 @@ const DISPLACEMENT_TOLERANCE: f64 = 0.05;
 pub(super) const GRAVITY: f64 = 9.81;
 const SEA_WATER: f64 = 1025.0;
 const FRESH_WATER: f64 = 1000.0;
-/// Smallest length of a ship in sea water, m; a shorter one is a model in fresh water.
+/// Minimum length of a ship in sea water, m; a shorter one is a model in fresh water.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
 
 /// Complete dimensions of a hull; the propeller revolutions are optional.

@@ -41,7 +41,7 @@ impl Kind {
 
     /// Table of a file of this kind as text: names in the first line, a tab between two cells.
     ///
-    /// Fails when the file is damaged, uses an unsupported compression, or holds no table.
+    /// Fails if the file is damaged, uses an unsupported compression, or holds no table.
     pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         match self {
             #[cfg(feature = "parquet")]

@@ -292,7 +292,7 @@ fn bytes(text: &mut String, bytes: &[u8], meaning: Meaning) {
     }
 }
 
-/// Writes the next `length` rows of a column into cells; `false` where it has fewer.
+/// Writes the next `length` rows of a column into cells; `false` if it has fewer.
 fn read<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     length: usize,

@@ -198,7 +198,7 @@ impl NmeaLog {
         true
     }
 
-    /// `true` for a stamp that follows those before. A single stamp that does not is left out; fails where time starts
+    /// `true` for a stamp that follows those before. A single stamp that does not is left out; fails if time starts
     /// again, as in two joined logs.
     fn follows(&mut self, at: f64, number: usize) -> Result<bool, Problem> {
         let (latest, before, lines) = self.latest;

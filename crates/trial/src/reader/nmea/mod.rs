@@ -52,7 +52,7 @@ pub(super) fn is_sentence(line: &str) -> bool {
 
 /// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails where more than half of the lines are damaged, where time is absent or goes back, where a date has two
+/// Fails if more than half of the lines are damaged, where time is absent or goes back, where a date has two
 /// readings, and where no sentence holds a quantity that is used.
 pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), Problem> {
     let (mut begin, mut sentences) = (Vec::new(), 0);

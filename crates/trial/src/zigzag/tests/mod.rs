@@ -113,7 +113,7 @@ fn a_record_that_begins_within_the_trial() {
         let turned: Vec<f64> = heading.iter().map(|psi| psi + 2.0).collect();
         let record = trial(every_second(&time), every_second(&turned), every_second(&rudder));
         let zigzag = ZigZag::of(&record).expect("a zig-zag");
-        assert!(zigzag.begins_within_trial(), "cut at {start} s");
+        assert!(zigzag.lacks_first_execute(), "cut at {start} s");
         assert_eq!(zigzag.base_course.source, BaseCourseSource::Executes);
         assert_relative_eq!(to_deg(zigzag.base_course.heading.value - 2.0), 0.0, epsilon = 0.02);
         assert!(zigzag.pair.expect("headings agree").is_deg(10.0, 20.0));
@@ -138,7 +138,7 @@ fn a_record_that_begins_at_a_reversal_does_not_tell_its_overshoot() {
         let every_second = |values: &[f64]| values[from..].iter().step_by(10).copied().collect::<Vec<f64>>();
         let noisy = every_second(&heading).into_iter().map(|psi| psi + from_deg(0.1 * gaussian.draw())).collect();
         let zigzag = ZigZag::of(&trial(every_second(&time), noisy, every_second(&rudder))).expect("a zig-zag");
-        assert!(zigzag.begins_at_reversal && zigzag.begins_within_trial(), "{start} s");
+        assert!(zigzag.begins_at_reversal && zigzag.lacks_first_execute(), "{start} s");
         assert_eq!(zigzag.swings().next(), Some(None), "{start} s");
         let next = zigzag.overshoots[0].angle;
         assert!((next.value - second.angle.value).abs() < 4.0 * next.sd.expect("noise"), "{start} s: {next:?}");

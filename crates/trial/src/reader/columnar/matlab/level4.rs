@@ -25,7 +25,7 @@ struct VariableHead {
 }
 
 impl VariableHead {
-    /// Head at the front of some bytes; `None` where they are not a head.
+    /// Head at the front of some bytes; `None` if they are not a head.
     fn read(scan: &mut Scan) -> Option<Self> {
         let digits = scan.word()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
         let [rows, columns, complex, length] = [scan.word()?, scan.word()?, scan.word()?, scan.word()?];
