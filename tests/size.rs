@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::architecture::{ending, files, read, root};
 
-/// Maximum function, lines.
+/// Longest function, lines.
 const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 68_230,
+    code: 68_238,
     tests: 31_170,
     long_functions: 0,
     shared_types: 8,
@@ -18,7 +18,7 @@ const REACHED: Size = Size {
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 11_110,
+    largest_crate: 11_106,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.
@@ -63,7 +63,7 @@ struct OpenFunction {
     head: String,
 }
 
-/// `true` if a file below the root holds tests alone.
+/// Whether a file below the root holds tests alone.
 fn is_of_tests(file: &str) -> bool {
     let product = file.strip_prefix("tests/src/").and_then(|inside| inside.split_once('/'));
     let is_test = file.starts_with("tests/")
@@ -86,7 +86,7 @@ fn declared_type(line: &str) -> Option<&str> {
     rest.split(|c: char| !c.is_alphanumeric() && c != '_').next()
 }
 
-/// `true` if a line begins a function.
+/// Whether a line begins a function.
 fn begins_function(line: &str) -> bool {
     let before = line.split_once("fn ").map(|(before, _)| before.trim());
     before.is_some_and(|before| before.split(' ').all(|word| ["", "const"].contains(&word) || word.starts_with("pub")))
@@ -186,7 +186,7 @@ fn lines_are_counted_as_what_they_are() {
     assert_eq!(names, BTreeSet::from(["A".to_owned()]));
     let mut size = Size::default();
     size.add("# Text.\nx = 1  # one\n", "py", false, &mut BTreeSet::new());
-    assert_eq!(size, Size { code: 68_230, ..Size::default() });
+    assert_eq!(size, Size { code: 1, ..Size::default() });
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn what_is_to_go_is_seen() {
     let mut size = Size::default();
     size.add(text, "rs", false, &mut BTreeSet::new());
     let seen = Size { tuple_parameters: 1, text_lists: 1, leaks: 1, looked_up: 1, ..Size::default() };
-    assert_eq!(Size { code: 68_230, ..size }, seen);
+    assert_eq!(Size { code: 0, ..size }, seen);
 }
 
 #[test]
