@@ -32,7 +32,9 @@ pub enum IdentifiedShipError {
         value: f64,
     },
     /// Hull whose form or coefficients this program does not have.
-    #[error("the hull model `{0}` has a form or coefficients that this program does not have; fit or trace the record again")]
+    #[error(
+        "the hull model `{0}` has a form or coefficients that this program does not have; fit or trace the record again"
+    )]
     Hull(String),
     /// Ship of unknown length or speed, which cannot be scaled.
     #[error(

@@ -203,7 +203,10 @@ mod tests {
     fn sides_are_mirrored() {
         for [original, mirrored] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
             let [original, mirrored]: [Manoeuvre; 2] = [original, mirrored].map(|text| text.parse().expect("known"));
-            let (a, b) = (characteristics(&original, &yukun(&original), None), characteristics(&mirrored, &yukun(&mirrored), None));
+            let (a, b) = (
+                characteristics(&original, &yukun(&original), None),
+                characteristics(&mirrored, &yukun(&mirrored), None),
+            );
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 let (a, b) = (a.expect(name), b.expect(name));
                 assert!((a - b).abs() < 1e-9, "{name} {a} {b}");

@@ -162,7 +162,7 @@ fn a_value_out_of_range_is_shown_with_the_range() {
     }
     let ship = |numbers: &str| changed("[ship.yukun]", &format!("[ship.first-order]\n{numbers}"));
     refused(&ship("K-per-s = -0.1\nT-s = 16.0"), 6, &["K-per-s` is -0.1", "sign"]);
-    refused(&ship("K-per-s = 0.1\nT-s = 0.0"), 7, &["T-s` is 0.0", "other than zero"]);
+    refused(&ship("K-per-s = 0.1\nT-s = 0.0"), 7, &["T-s` is 0.0", "finite and not zero"]);
     refused(
         &ship("K-per-s = 0.1\nT-s = 16.0\nlength-m = 100.0"),
         8,

@@ -83,7 +83,8 @@ fn answers_to_other_trials_are_refused() {
     let lines = simulated(&desk);
     let wrong = format!("{HEAD}{}{}other.csv,0.1,16,0\n", lines[0], lines[0]);
     desk.file("records/wrong.csv", wrong);
-    desk.run(&["score", "records/wrong.csv"]).is_refused(2, &["line 3: its trial is already answered in line 2", "line 4: \"other.csv\""]);
+    desk.run(&["score", "records/wrong.csv"])
+        .is_refused(2, &["line 3: its trial is already answered in line 2", "line 4: \"other.csv\""]);
     desk.file("elsewhere.csv", HEAD.to_owned() + &lines.concat());
     desk.run(&["score", "elsewhere.csv"]).is_refused(2, &["--scenario"]);
     desk.run(&["score", "elsewhere.csv", "--scenario", "two.toml", "--seed", "7", "--quiet"]).is_done();
