@@ -124,7 +124,7 @@ impl WeightedStructure {
 /// Relative tolerance of equal lengths.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// `true` if two lengths are equal within [`LENGTH_TOLERANCE`].
+/// `true` if two lengths are equal within `LENGTH_TOLERANCE`.
 pub fn is_same_length(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() < LENGTH_TOLERANCE
 }

@@ -368,7 +368,7 @@ pub struct PredictRequest {
     /// MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
-    /// Convert the hulls of MODEL.json to another loading, given by the tables [ship] and [form] as in a sidecar, with
+    /// Convert the hulls of MODEL.json to another loading, given by the tables `ship` and `form` as in a sidecar, with
     /// the formulas of `study list priors` and wider intervals
     #[arg(long, value_name = "LOAD.toml")]
     pub load: Option<PathBuf>,

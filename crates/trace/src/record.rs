@@ -61,8 +61,8 @@ pub struct PreparedRecord {
 }
 
 impl PreparedRecord {
-    /// Record averaged to about [`MIN_ROWS_PER_TIME`] rows per `time` (s, L/U of the ship), within [`MIN_ROWS`] and
-    /// [`MAX_ROWS`].
+    /// Record averaged to about `MIN_ROWS_PER_TIME` rows per `time` (s, L/U of the ship), within `MIN_ROWS` and
+    /// `MAX_ROWS`.
     pub fn averaged(trial: &Trial, time: f64) -> Self {
         let rows =
             trial.observed_rows().last().zip(trial.observed_rows().next()).map_or(0, |(last, first)| last - first + 1);

@@ -98,7 +98,7 @@ fn summary(checks: &[&Check]) -> String {
     format!("{} | {agreeing} | {share} | {what}", checks.len())
 }
 
-fn of_part<'a>(section: &'a Section, is_of: fn(&str) -> bool) -> Vec<&'a Check> {
+fn of_part(section: &Section, is_of: fn(&str) -> bool) -> Vec<&Check> {
     section.checks.iter().filter(|check| is_of(check.source)).collect()
 }
 

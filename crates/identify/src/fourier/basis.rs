@@ -34,7 +34,7 @@ struct OrthogonalPart {
     qr: QR<f64, Dyn, Dyn>,
 }
 
-/// Basis of a single series of [`NestedBases`].
+/// Basis of a single series of `NestedBases`.
 #[derive(Debug, Clone)]
 pub struct Basis {
     harmonics: usize,

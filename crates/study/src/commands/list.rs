@@ -25,7 +25,7 @@ use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 pub struct ListRequest {
     /// What to list
     pub what: Listed,
-    /// For priors: sidecar whose tables [ship] and [form] give the particulars of the ship
+    /// For priors: sidecar whose tables `ship` and `form` give the particulars of the ship
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
     /// For priors: particulars of the ship

@@ -115,7 +115,9 @@ fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
         for (x, y) in layer.curve.finite().filter(|(x, _)| points.contains(x)) {
             let text = (x, significant(y, 2));
             if !written.contains(&text) {
-                (texts.push(text.1.clone()), curve.x.push(x), curve.y.push(y));
+                texts.push(text.1.clone());
+                curve.x.push(x);
+                curve.y.push(y);
                 written.push(text);
             }
         }
