@@ -74,7 +74,7 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
             stack.panels.retain(|panel| !is_quiet(panel.head.as_ref().map(name).as_ref(), about));
             continue;
         }
-        data.names_aside = true;
+        data.names_aside = stack.panels.iter().all(has_distinct_names);
         keep_t(stack);
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
@@ -102,6 +102,12 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
     let note = data.note.take().unwrap_or_default();
     notes.insert(0, if has_arrows { note } else { note.replace(CUT_NOTE, "").trim().to_owned() });
     data.note = Some(notes.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
+}
+
+/// `true` if no two layers of a panel have one name.
+fn has_distinct_names(panel: &LayeredPanel) -> bool {
+    let names: Vec<&String> = panel.layers.iter().filter_map(|layer| layer.name.as_ref()).collect();
+    distinct(names.iter().copied()).len() == names.len()
 }
 
 /// Values of marks at points of the axis, written beside them; of two that read alike the first.
