@@ -1,4 +1,4 @@
-//! The trials that everything is measured on.
+//! Trials on which the benchmarks are measured.
 
 use std::sync::Arc;
 
@@ -17,13 +17,13 @@ pub const T: f64 = 25.0;
 /// Time between rows, s.
 pub const PERIOD: f64 = 0.5;
 
-/// Rows of the record that methods are compared on: 600 s.
+/// Number of rows of the record on which methods are compared: 600 s.
 pub const ROWS: usize = 1201;
 
-/// The key of the one trial that is identified.
+/// Key of the trial that is identified.
 pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
 
-/// A 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro
+/// 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro
 /// noise 0.02 deg/s; `rows` rows half a second apart.
 pub fn first_order_zig_zag(rows: usize) -> Simulation {
     let sensors = Sensors { heading_noise: from_deg(0.1), yaw_rate_noise: Some(from_deg(0.02)), ..Sensors::default() };
@@ -38,17 +38,17 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
     }
 }
 
-/// The same trial of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
+/// 10/10 zig-zag as in [`first_order_zig_zag`], of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
 pub fn damped_zig_zag(rows: usize) -> Simulation {
     let effect: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
     let ship: Response = ResponseModel::new(vec![effect]).with(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
     Simulation { vessel: Vessel::from_response(ship), ..first_order_zig_zag(rows) }
 }
 
-/// The record of a trial.
+/// Record of a trial.
 ///
 /// # Panics
-/// When the trial cannot be made, which none of this module does.
+/// If the trial cannot be made; the trials of this module do not fail.
 pub fn record(simulation: &Simulation) -> Trial {
     simulation.run(&KEY).expect("a regular trial").trial
 }

@@ -1,4 +1,4 @@
-//! A benchmark: the measured work, its reference, and its limit.
+//! Benchmark: the measured work, its reference, and its limit.
 
 use std::hint::black_box;
 use std::sync::OnceLock;
@@ -6,32 +6,32 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-/// Cores that a benchmark uses.
+/// Number of cores of a benchmark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cores {
-    /// A single thread.
+    /// Single thread.
     One,
-    /// As many threads as rayon takes by default.
+    /// Default number of threads of rayon.
     All,
 }
 
-/// Repeatable work.
+/// Repeatable work of a benchmark.
 pub struct Work {
-    /// Unique within its group; part of a path.
+    /// Name, unique within the group; part of a path.
     pub name: String,
-    /// Cores that it uses.
+    /// Cores of the work.
     pub cores: Cores,
-    /// Units of work in one go, so that a time can be quoted per unit.
+    /// Number of units of work per repetition, for times per unit.
     pub units: f64,
-    /// `true` if one go takes so long that few of them have to do.
+    /// `true` if a repetition is so long that only few are measured.
     pub is_slow: bool,
-    /// Share by which the answer may differ from the ship, for work that has an answer.
+    /// Maximum relative error of the estimates of K and T, for work that gives estimates.
     pub tolerance: Option<f64>,
     go: Box<dyn Fn() -> Option<[f64; 2]> + Send + Sync>,
 }
 
 impl Work {
-    /// Work on one core whose result is only kept from the optimiser.
+    /// Work on one core without an estimate; its result is only protected from the optimiser.
     pub fn new<R>(name: impl Into<String>, go: impl Fn() -> R + Send + Sync + 'static) -> Self {
         let go = Box::new(move || {
             black_box(go());
@@ -40,7 +40,7 @@ impl Work {
         Self { name: name.into(), cores: Cores::One, units: 1.0, is_slow: false, tolerance: None, go }
     }
 
-    /// Work on one core that finds K and T, at most `tolerance` (a share) from those of the ship.
+    /// Work on one core that estimates K and T, with a relative error of at most `tolerance`; `None` for no estimate.
     pub fn answering(
         name: impl Into<String>,
         tolerance: f64,
@@ -49,27 +49,27 @@ impl Work {
         Self { tolerance: Some(tolerance), go: Box::new(go), ..Self::new(name, || ()) }
     }
 
-    /// The same on all cores.
+    /// Work on all cores.
     pub fn on_all_cores(self) -> Self {
         Self { cores: Cores::All, ..self }
     }
 
-    /// The same, with so many units in one go.
+    /// Work with this number of units per repetition.
     pub fn of_units(self, units: usize) -> Self {
         Self { units: units as f64, ..self }
     }
 
-    /// The same, known to be slow.
+    /// Work marked as slow.
     pub fn slow(self) -> Self {
         Self { is_slow: true, ..self }
     }
 
-    /// Does it once and returns the answer.
+    /// Estimates of K and T from one repetition; `None` for work without estimates.
     pub fn answer(&self) -> Option<[f64; 2]> {
         (self.go)()
     }
 
-    /// Does it so often and returns the time of all goes together.
+    /// Total time of `goes` repetitions.
     pub fn time(&self, goes: u64) -> Duration {
         let all = || {
             let start = Instant::now();
@@ -85,57 +85,58 @@ impl Work {
     }
 }
 
-/// A pool of one thread, so that nothing inside can use a second one.
+/// Thread pool of one thread, so that the work cannot use a second thread.
 fn one_core() -> &'static ThreadPool {
     static POOL: OnceLock<ThreadPool> = OnceLock::new();
     POOL.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread"))
 }
 
-/// What is to be reached.
+/// Limit of a benchmark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reach {
-    /// Maximum time, relative to that of the reference.
+    /// Maximum time, relative to the reference.
     Ratio(f64),
-    /// Minimum throughput of all cores, relative to the number of cores times that of a single core, the reference.
+    /// Minimum throughput of all cores, relative to the number of cores times the throughput of a single core, the
+    /// reference.
     Scaling(f64),
 }
 
 /// Work with its reference and its limit.
 pub struct TimedWork {
-    /// What is measured.
+    /// Measured work.
     pub work: Work,
-    /// Name of the reference in the group.
+    /// Name of the reference in the group; `None` without a reference.
     pub beside: Option<String>,
-    /// What is to be reached; `None` for work that is only shown.
+    /// Limit; `None` for work that is reported only.
     pub reach: Option<Reach>,
 }
 
-/// Work that belongs together.
+/// Group of related benchmarks.
 pub struct WorkGroup {
-    /// Part of a path.
+    /// Name; part of a path.
     pub name: &'static str,
-    /// Heading of its table.
+    /// Heading of the table.
     pub title: &'static str,
     /// Explanation of the table.
     pub about: &'static str,
-    /// The work, in the order of the table.
+    /// Benchmarks, in the order of the table.
     pub rows: Vec<TimedWork>,
 }
 
 impl WorkGroup {
-    /// A group without work.
+    /// Empty group.
     pub fn new(name: &'static str, title: &'static str, about: &'static str) -> Self {
         Self { name, title, about, rows: Vec::new() }
     }
 
-    /// Adds work with nothing beside it; returns its name.
+    /// Name of work that is added without a reference.
     pub fn alone(&mut self, work: Work, reach: Option<Reach>) -> String {
         let name = work.name.clone();
         self.rows.push(TimedWork { work, beside: None, reach });
         name
     }
 
-    /// Adds work beside other work of the group.
+    /// Adds work with another work of the group as its reference.
     pub fn beside(&mut self, work: Work, beside: &str, reach: Option<Reach>) {
         self.rows.push(TimedWork { work, beside: Some(beside.to_owned()), reach });
     }

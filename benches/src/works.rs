@@ -16,7 +16,7 @@ pub use tracing::tracing;
 
 use crate::work::WorkGroup;
 
-/// Every group of the report, in its order.
+/// All groups, in the order of the report.
 pub fn all() -> Vec<WorkGroup> {
     vec![simulation(), effects(), identification(), tracing(), prediction(), studies()]
 }
@@ -38,7 +38,7 @@ mod tests {
         }
     }
 
-    /// Whoever is fast has to be right as well.
+    /// Estimates of every benchmark against the ship, within their tolerance.
     #[test]
     fn answers_are_those_of_the_ship() {
         for group in all() {

@@ -1,11 +1,11 @@
-//! Support shared by the tests of the whole workspace: reference numbers held against ours, and records to test methods
-//! with. What a single crate can show about itself is tested there.
+//! Shared support for the tests of the workspace: reference numbers compared with our numbers, and records for tests of
+//! methods. Properties of a single crate are tested in that crate.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | every number that is held against a published one | [`validation`] |
-//! | simulated records, and what can be done to a record | [`records`] |
-//! | logs in every format and with every trouble, of one known ship | [`logs`] |
+//! | comparison with published numbers | [`validation`] |
+//! | simulated records, and changes to a record | [`records`] |
+//! | logs of one known ship in every format and with every fault | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
 //! | measured records, which are not part of the project | [`measured`] |
 

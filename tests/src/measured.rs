@@ -1,24 +1,24 @@
-//! Where measured records are looked for. They are not part of the project, because their licences do not allow it; a
-//! test that needs one says in one line that it was skipped.
+//! Location of measured records. They are not part of the project, because their licences do not allow it; a test that
+//! requires a missing record reports in one line that it was skipped.
 
 use std::path::PathBuf;
 
 use trial::channel::column;
 use trial::{Columns, Trial};
 
-/// The measured record `relative` ("kvlcc2_hsva/zigzag_20_10_s.csv"), from the folder named by the environment variable
-/// `KEMPF_DATA` or else from the shared folder beside the project; `None`, and one line on standard error, when it is
-/// not there.
+/// Measured record `relative` ("kvlcc2_hsva/zigzag_20_10_s.csv"), from the folder named by the environment variable
+/// `KEMPF_DATA` or else from the shared folder next to the project; `None`, and one line on standard error, if it is
+/// missing.
 ///
 /// # Panics
-/// When the record is there and cannot be read: that is a failure of the reader, not a missing file.
+/// If the record exists and cannot be read: a failure of the reader, not a missing file.
 pub fn record(relative: &str) -> Option<Trial> {
     let path = place(relative)?;
     let reading = trial::read(&path).unwrap_or_else(|error| panic!("{relative} is there but cannot be read: {error}"));
     Some(reading.trial)
 }
 
-/// Where a measured record is; `None` (and one line) where it is not there.
+/// Path of a measured record; `None` (and one line) if it is missing.
 pub fn place(relative: &str) -> Option<PathBuf> {
     let path = folder().join(relative);
     if !path.is_file() {
@@ -28,10 +28,10 @@ pub fn place(relative: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// The columns of a measured record as they stand in its file, uncleaned; `None` (and one line) where it is not there.
+/// Columns of a measured record as in its file, uncleaned; `None` (and one line) if it is missing.
 ///
 /// # Panics
-/// When the file is no table of numbers.
+/// If the file is not a table of numbers.
 pub fn columns(file: &str) -> Option<Columns> {
     let path = place(file)?;
     let mut table = csv::Reader::from_path(path).expect("a readable file");
@@ -51,7 +51,7 @@ pub fn columns(file: &str) -> Option<Columns> {
     Some(columns)
 }
 
-/// The folder that holds the measured records, whether it is there or not.
+/// Folder of the measured records, existing or not.
 pub fn folder() -> PathBuf {
     std::env::var_os("KEMPF_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from)

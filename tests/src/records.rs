@@ -1,36 +1,36 @@
-//! Simulated zig-zag records of a first-order ship, and what can be done to a record: exchange its sides, shift its
-//! clock or its compass, lose rows. A record made here is what a method sees; nothing here identifies.
+//! Simulated zig-zag records of a first-order ship, and changes to a record: exchange of sides, shift of clock or
+//! compass, loss of rows. The records are inputs of methods; this module does not identify.
 
 use ship::FirstOrder;
 use ship::angle::from_deg;
 use simulate::{Manoeuvre, Side, Simulated, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::{Channel, Columns, Trial};
 
-/// Where a record begins.
+/// Beginning of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Begin {
-    /// At the first execute, the ship running straight.
+    /// At the first execute, on a straight course.
     Rest,
     /// 1.2 s after the second execute, in the middle of the trial.
     Mid,
 }
 
-/// A zig-zag of a first-order ship and its record.
+/// Zig-zag of a first-order ship and its record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
-    /// The ship.
+    /// First-order ship.
     pub ship: FirstOrder,
     /// Rudder angle, deg.
     pub rudder_deg: f64,
     /// Heading at which the rudder is reversed, deg.
     pub heading_deg: f64,
-    /// Rudder rate, deg/s; infinite for a rudder that jumps.
+    /// Rudder rate, deg/s; infinite for an instantaneous rudder.
     pub rate_deg_s: f64,
     /// Side of the first execute.
     pub first: Side,
-    /// Where the record begins.
+    /// Beginning of the record.
     pub begin: Begin,
-    /// Length of the record, s.
+    /// Duration of the record, s.
     pub duration_s: f64,
     /// Time between rows, s.
     pub period_s: f64,
@@ -39,7 +39,7 @@ pub struct Case {
 }
 
 impl Default for Case {
-    /// 10/10 of K = 0.1 1/s, T = 16.3 s at 2.5 deg/s, 271 rows at 1 s from rest, no noise.
+    /// 10/10 zig-zag of K = 0.1 1/s, T = 16.3 s at 2.5 deg/s, 271 rows at 1 s from rest, no noise.
     fn default() -> Self {
         Self {
             ship: FirstOrder::from_indices(0.1, 16.3, 0.0),
@@ -56,7 +56,7 @@ impl Default for Case {
 }
 
 impl Case {
-    /// The trial as a specification.
+    /// Specification of the trial.
     pub fn simulation(&self) -> Simulation {
         let mut simulation = zig_zag(
             Vessel::from_first_order(self.ship),
@@ -74,22 +74,22 @@ impl Case {
         simulation
     }
 
-    /// The record and the truth behind it.
+    /// Record and truth of a replicate.
     ///
     /// # Panics
-    /// When the ship never makes its executes: a mistake of the test.
+    /// If the ship never reaches its executes: a programming error of the test.
     pub fn run(&self, replicate: u64) -> Simulated {
         let key = StreamKey { seed: 1957, cell: 0, replicate };
         self.simulation().run(&key).expect("the ship of a case reaches its executes")
     }
 
-    /// The record.
+    /// Record of a replicate.
     pub fn trial(&self, replicate: u64) -> Trial {
         self.run(replicate).trial
     }
 }
 
-/// A zig-zag (angles in deg, `rate` in rad/s), starboard first, recorded once a second for `duration` s.
+/// Simulation of a zig-zag (angles in deg, `rate` in rad/s), starboard first, recorded once a second for `duration` s.
 pub fn zig_zag(vessel: Vessel, rudder_deg: f64, heading_deg: f64, rate: f64, duration: f64) -> Simulation {
     let (rudder, heading) = (from_deg(rudder_deg), from_deg(heading_deg));
     let manoeuvre = Manoeuvre::zig_zag(rudder, heading);
@@ -99,7 +99,7 @@ pub fn zig_zag(vessel: Vessel, rudder_deg: f64, heading_deg: f64, rate: f64, dur
     simulation
 }
 
-/// The record with other columns; its heading and rudder are in the map under their channels.
+/// Record with altered columns; the map contains heading and rudder under their channels.
 fn altered(trial: &Trial, alter: impl FnOnce(&mut Columns)) -> Trial {
     let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
         trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
@@ -114,7 +114,7 @@ fn altered(trial: &Trial, alter: impl FnOnce(&mut Columns)) -> Trial {
     }
 }
 
-/// Port and starboard exchanged.
+/// Record with port and starboard exchanged.
 pub fn mirrored(trial: &Trial) -> Trial {
     altered(trial, |columns| {
         for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::Sway] {
@@ -123,19 +123,19 @@ pub fn mirrored(trial: &Trial) -> Trial {
     })
 }
 
-/// The clock set forward by `by` s.
+/// Record with the clock set forward by `by` s.
 pub fn delayed(trial: &Trial, by: f64) -> Trial {
     altered(trial, |columns| columns.time.iter_mut().for_each(|t| *t += by))
 }
 
-/// The compass turned by `by` rad.
+/// Record with the compass turned by `by` rad.
 pub fn turned(trial: &Trial, by: f64) -> Trial {
     altered(trial, |columns| {
         columns.channels.get_mut(&Channel::Heading).into_iter().flatten().for_each(|psi| *psi += by);
     })
 }
 
-/// The headings of the rows for which `lost` holds replaced by NaN.
+/// Record without the headings of rows for which `lost` is true: they are NaN.
 pub fn without_headings(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
     altered(trial, |columns| {
         let heading = columns.channels.get_mut(&Channel::Heading).into_iter().flatten().enumerate();
@@ -143,7 +143,7 @@ pub fn without_headings(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
     })
 }
 
-/// The rows for which `lost` holds left out.
+/// Record without the rows for which `lost` is true.
 pub fn without_rows(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
     altered(trial, |columns| {
         for column in std::iter::once(&mut columns.time).chain(columns.channels.values_mut()) {
@@ -156,7 +156,7 @@ pub fn without_rows(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
     })
 }
 
-/// A record of `rows` rows at 1 s with the rudder amidships and a heading that wanders by less than 0.1 deg.
+/// Record of `rows` rows at 1 s with the rudder amidships and a heading that varies by less than 0.1 deg.
 pub fn straight_run(rows: usize) -> Trial {
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let heading = time.iter().map(|t| 0.3 + from_deg(0.05) * (0.7 * t).sin()).collect();

@@ -1,5 +1,5 @@
-//! `ratios FOLDER` writes what `cargo bench -p kempf-benches` has stored as one table, `performance.csv` and
-//! `report.md`: every time of criterion (mean, 95 % interval) beside that of its reference, both measured in one run,
+//! `ratios FOLDER` writes the results of `cargo bench -p kempf-benches` as one table, `performance.csv` and
+//! `report.md`: every time of criterion (mean, 95 % interval) with the time of its reference, both measured in one run,
 //! and whether the ratio is within its limit.
 
 use std::error::Error;
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let Some([value, lower, upper]) = time(&row.work.name, row.work.units) else { continue };
             let units = |name: &str| group.rows.iter().find(|row| row.work.name == name).map(|row| row.work.units);
             let beside = row.beside.as_deref().and_then(|name| time(name, units(name)?));
-            // The interval of a ratio is the worst case of both.
+            // The interval of a ratio is the worst case of both intervals.
             let ratio = beside.map(|[other, least, most]| match row.reach {
                 Some(Reach::Scaling(_)) => [other / value, least / upper, most / lower].map(|times| times / cores),
                 _ => [value / other, lower / most, upper / least],

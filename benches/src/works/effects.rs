@@ -1,4 +1,4 @@
-//! What a formula costs: the replay of a record with an effect of the list, and with its equation written in Rust.
+//! Cost of formulas: replay of a record with an effect of the list, and with the same equation written in Rust.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ impl<R: Real> Action<R> for CubicByHand {
     }
 }
 
-/// The heading at the end of a replay.
+/// Heading at the end of a replay.
 fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
     let values = [1.0 / T, K / T, 0.0, 60.0];
     let response = ResponseModel::new(vec![effect]).with(values.map(R::from).to_vec());
@@ -44,7 +44,7 @@ fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
     state[0]
 }
 
-/// Replays in plain numbers and in numbers that carry derivatives, with a formula and by hand.
+/// Replays in plain numbers and in dual numbers, with a formula and with the equation in Rust.
 pub fn effects() -> WorkGroup {
     let mut group = WorkGroup::new(
         "effects",

@@ -1,4 +1,4 @@
-//! Identifying K, T and δ_r from one record, beside another library.
+//! Identification of K, T and δ_r from one record, compared with another library.
 
 use std::sync::Arc;
 
@@ -11,11 +11,12 @@ use crate::work::{Reach, Work, WorkGroup};
 /// Reference of the comparison.
 const RIVAL: &str = "dsmc SRIVC, heading";
 
-/// Triples of the published method in its second variant, and the name of that variant.
+/// Number of triples of the published method in its second variant, and the name of this variant.
 const TRIPLES: usize = 200;
 const MANY_TRIPLES: &str = "fourier-published, 200 triples";
 
-/// Maximum accepted relative error of K and T. The published Fourier method is 14 to 20 % low in T even without noise.
+/// Maximum accepted relative error of K and T. The published Fourier method gives T 14 to 20 % too low even without
+/// noise.
 fn tolerance(method: &str) -> f64 {
     match method {
         "fourier-published" => 0.6,
@@ -24,7 +25,7 @@ fn tolerance(method: &str) -> f64 {
     }
 }
 
-/// Maximum time, relative to that of the rival.
+/// Maximum time, relative to the rival library; `None` for a method without a limit.
 fn reach(method: &str) -> Option<Reach> {
     let share = match method {
         "output-error" => 0.5,
@@ -32,14 +33,14 @@ fn reach(method: &str) -> Option<Reach> {
         "integral-least-squares" => 0.1,
         "fourier-projected" => 4.0,
         "fourier-published" | MANY_TRIPLES => 8.0,
-        // Four kinds of noise, the gyro among the readings.
+        // Four kinds of noise; the readings include the gyro.
         "maximum-likelihood" => 8.0,
         _ => return None,
     };
     Some(Reach::Ratio(share))
 }
 
-/// A method on a record, under a name.
+/// Work of a method on a record, with a name.
 fn identifying(name: &str, settings: IdentifierSettings, trial: &Arc<Trial>) -> Work {
     let method = settings.build().expect("valid settings");
     let (id, trial) = (method.id(), Arc::clone(trial));
@@ -49,7 +50,7 @@ fn identifying(name: &str, settings: IdentifierSettings, trial: &Arc<Trial>) -> 
     })
 }
 
-/// Every method with its default settings on one record, and the published one with many triples.
+/// Benchmarks of every method with default settings on one record, and of the published method with many triples.
 pub fn identification() -> WorkGroup {
     let mut group = WorkGroup::new(
         "identify",
@@ -72,7 +73,7 @@ pub fn identification() -> WorkGroup {
     group
 }
 
-/// Another library on a record that has a gyro.
+/// Adds the benchmarks of another library on a record with a gyro.
 #[cfg(feature = "rivals")]
 fn by_rivals(group: &mut WorkGroup, trial: &Trial) {
     use crate::records::{PERIOD, T};

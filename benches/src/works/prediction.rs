@@ -1,4 +1,4 @@
-//! Predicting a manoeuvre from a thousand drawn ships.
+//! Prediction of a manoeuvre from a thousand sampled ships.
 
 use document::{
     HeadingNoise, IdentifiedEffect, IdentifiedGear, IdentifiedShip, RandomMoment, ValidityRange, WeightedStructure,
@@ -11,10 +11,10 @@ use simulate::Manoeuvre;
 use crate::records::{K, T};
 use crate::work::{Work, WorkGroup};
 
-/// Ships of a prediction.
+/// Number of sampled ships of a prediction.
 const DRAWS: usize = 1000;
 
-/// Model of a ship of 75 m at 6 m/s, with the covariance of a good 10/10.
+/// Model of a ship of 75 m at 6 m/s, with the covariance of an accurate 10/10 zig-zag.
 fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> IdentifiedShip {
     let damping = effect.map(|effect| IdentifiedEffect {
         id: effect.id().to_owned(),
@@ -47,7 +47,8 @@ fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> Identif
     }
 }
 
-/// A 20/20 zig-zag, figures and bands, of ships in a calm and in gusts, in closed form and integrated.
+/// Benchmarks of a 20/20 zig-zag, characteristics and bands, of ships in a calm and in gusts, in closed form and
+/// integrated.
 pub fn prediction() -> WorkGroup {
     let mut group = WorkGroup::new(
         "predict",

@@ -1,4 +1,4 @@
-//! Simulating trials.
+//! Simulation of trials.
 
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -8,7 +8,7 @@ use simulate::{PreparedSimulation, Purpose, Simulation, Solver, StreamKey, Vesse
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
 use crate::work::{Reach, Work, WorkGroup};
 
-/// The random numbers of a trial alone, from the streams that it uses: heading noise and gyro noise of every row.
+/// Random numbers of a trial, without its simulation: heading noise and gyro noise of every row.
 fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
     [Purpose::Heading, Purpose::YawRate].map(|purpose| {
         let mut rng = key.rng(purpose);
@@ -16,7 +16,7 @@ fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
     })
 }
 
-/// Trials of one ship, and many ships at once.
+/// Benchmarks of trials of one ship, and of many ships at once.
 pub fn simulation() -> WorkGroup {
     let mut group = WorkGroup::new(
         "simulate",

@@ -1,4 +1,4 @@
-//! Studies: trials on one core and on all, resolving scenarios, drawing figures.
+//! Studies: trials on one core and on all cores, resolution of scenarios, drawing of figures.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use trial::ZigZag;
 use crate::records::{ROWS, first_order_zig_zag, record};
 use crate::work::{Reach, Work, WorkGroup};
 
-/// Trials of one go.
+/// Number of trials per repetition.
 const TRIALS: u64 = 256;
 
-/// Share of the cores that a study has to use.
+/// Minimum share of the cores that a study uses.
 const SHARE: f64 = 0.92;
 
-/// Figures that are drawn side by side.
+/// Number of figures that are drawn in parallel.
 const FIGURES: usize = 8;
 
 /// Files of all scenarios of the project, in the order of their names.
@@ -32,7 +32,7 @@ fn scenarios() -> Vec<PathBuf> {
     files
 }
 
-/// Trials of the scenario that trials per second are measured on: 271 samples, seven methods.
+/// Trials of the scenario for the number of trials per second: 271 samples, seven methods.
 fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
     let throughput = Path::new(env!("CARGO_MANIFEST_DIR")).join("throughput.toml");
     let scenario = Scenario::read(&throughput, None).expect("a scenario of the project");
@@ -46,7 +46,7 @@ fn drawing() -> Drawing {
     report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw("A zig-zag", &Theme::screen())
 }
 
-/// Trials, scenarios and figures.
+/// Benchmarks of trials, scenarios and figures.
 pub fn studies() -> WorkGroup {
     let mut group = WorkGroup::new(
         "study",

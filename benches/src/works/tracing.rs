@@ -1,4 +1,4 @@
-//! Tracing what a first-order response lacks.
+//! Traces of effects that a first-order response lacks.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use trial::Trial;
 use crate::records::{first_order_zig_zag, record};
 use crate::work::{Reach, Work, WorkGroup};
 
-/// Zig-zags of KVLCC2, HSVA: those that are fitted together, then the others.
+/// Zig-zags of KVLCC2, HSVA: first the records that are fitted together, then the held-out records.
 const HSVA: [&str; 8] = [
     "zigzag_20_10_s",
     "zigzag_10_10_s",
@@ -20,18 +20,18 @@ const HSVA: [&str; 8] = [
     "zigzag_05_01",
 ];
 
-/// Maximum time for all eight records, each left out in turn, relative to that of a single record.
+/// Maximum time for all eight records, each left out in turn, relative to a single record.
 const MAX_TIME_OF_EIGHT: f64 = 13.0;
 
-/// How many of them are fitted together while the others are held out.
+/// Number of records of [`HSVA`] that are fitted together while the remaining records are held out.
 const TOGETHER: usize = 3;
 
-/// The measured records of a folder, which are not part of the project; `None`, and one line on standard error, when a
-/// record is missing. They are read from the folder named by the environment variable `KEMPF_DATA`, or else in the
-/// shared folder beside the project.
+/// Measured records of a folder, which are not part of the project; `None`, and one line on standard error, if a record
+/// is missing. They are read from the folder named by the environment variable `KEMPF_DATA`, or else from the shared
+/// folder next to the project.
 ///
 /// # Panics
-/// When a record is there and cannot be read.
+/// If a record exists and cannot be read.
 fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
     let project = Path::new(env!("CARGO_MANIFEST_DIR"));
     let data = std::env::var_os("KEMPF_DATA").map_or_else(|| project.join("../../shared/data"), PathBuf::from);
@@ -48,7 +48,7 @@ fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
     names.iter().map(read).collect()
 }
 
-/// Whole traces of a simulated record and of measured ones.
+/// Benchmarks of complete traces of a simulated record and of measured records.
 pub fn tracing() -> WorkGroup {
     let mut group = WorkGroup::new(
         "trace",

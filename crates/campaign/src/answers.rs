@@ -1,4 +1,4 @@
-//! Answers of outside estimators: names of exported records, and the table of answers that comes back.
+//! Estimates of outside estimators: names of exported records, and the table of their estimates, which is read back.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -19,7 +19,7 @@ use crate::scenario::name::{shown, slug};
 use crate::scenario::{Scenario, hex};
 use crate::task::Task;
 
-/// File beside exported records that holds their scenario and seed.
+/// File next to exported records: their scenario and seed.
 pub const TRIALS: &str = "trials.toml";
 
 /// Contents of `trials.toml`. A scenario can be read from it as from a manifest.
@@ -28,9 +28,9 @@ pub const TRIALS: &str = "trials.toml";
 pub struct Trials {
     /// Name of the scenario.
     pub name: String,
-    /// Seed that was used.
+    /// Seed of the run.
     pub seed: u64,
-    /// SHA-256 of all that decides the trials.
+    /// SHA-256 of everything that determines the trials.
     pub design_sha256: String,
     /// The scenario file as it was read.
     pub scenario: String,
@@ -65,10 +65,10 @@ pub fn part_name(record: &str, number: usize) -> String {
     if number == 0 { record.to_owned() } else { format!("{record}-also-{number}") }
 }
 
-/// Limits of a table of answers: one line per trial of a large study.
+/// Limits of a table of outside estimates: one line per trial of a large study.
 const TABLE: Kind = Kind { name: "a table of answers", max_bytes: 1 << 30 };
 
-/// Known columns: those that are read, and those that a table may have kept from the list of trials.
+/// Known columns: those that are read, and those copied from the list of trials.
 const COLUMNS: &str =
     "method record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
@@ -78,13 +78,15 @@ const MAX_NAMED_COLUMNS: usize = 20;
 /// Maximum number of faulty lines that a message names.
 const MAX_NAMED_LINES: usize = 10;
 
-/// Answers from a table, by method in the order of first lines; `None` is the method of a table without that column.
+/// Outside estimates from a table, by method in the order of first lines; `None` is the method of a table without that
+/// column.
 ///
 /// A trial is identified by `record` (for measured records: those fitted together) or by `cell` and `replicate`. The
 /// estimates are `K_per_s` and `T_s`; optional are `delta_r_deg`, the standard deviations `K_sd_per_s`, `T_sd_s` and
-/// `delta_r_sd_deg`, and `failed`, the reason for a missing answer. Warns of unanswered trials and unused columns.
+/// `delta_r_sd_deg`, and `failed`, the reason for a missing estimate. Warns of trials without a line and of unused
+/// columns.
 ///
-/// Fails if a column is missing; one message lists the lines that match no trial or hold no numbers.
+/// Fails if a column is missing; one message lists the lines that match no trial or contain no numbers.
 pub fn read(
     path: &Path,
     scenario: &Scenario,
@@ -142,7 +144,7 @@ pub fn read(
     Ok(answers.into_iter().map(|(method, by_trial)| (method, Answers::new(by_trial, sha256.clone()))).collect())
 }
 
-/// Warns of trials that a method has not answered; with a stopping rule their number is not known in advance.
+/// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
     let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
     let left = trials - answered;
@@ -158,7 +160,7 @@ struct Records<'a> {
     scenario: &'a Scenario,
     /// Cell index by record name; most studies have far fewer cells than trials.
     cells: HashMap<String, u64>,
-    /// In a study of measured records: trials by the names of the records fitted together.
+    /// Trials by the names of the records fitted together, in a study of measured records.
     fits: HashMap<String, Vec<TrialNumber>>,
 }
 
@@ -177,7 +179,7 @@ impl<'a> Records<'a> {
         Self { scenario, cells, fits }
     }
 
-    /// Trials answered by one line: the trial of a simulated record, by its file name, or all trials that share the fit
+    /// Trials of one line: the trial of a simulated record, by its file name, or all trials that share the fit
     /// of measured records, by their names as in `records.csv`.
     fn find(&self, record: &str) -> Option<Vec<TrialNumber>> {
         match self.fits.is_empty() {
@@ -205,7 +207,7 @@ fn stem(name: &str) -> (&str, &str) {
     name.rsplit_once('-').unwrap_or((name, ""))
 }
 
-/// Column indices of a table of answers.
+/// Column indices of a table of outside estimates.
 struct AnswerColumns {
     places: HashMap<String, usize>,
     ignored: Vec<String>,
@@ -215,7 +217,7 @@ impl AnswerColumns {
     fn of(head: &StringRecord) -> Result<Self, String> {
         let mut places = HashMap::new();
         for (place, name) in head.iter().enumerate() {
-            // The first of several columns of one name counts.
+            // Of several columns with one name the first is used.
             places.entry(name.to_owned()).or_insert(place);
         }
         let has = |names: &[&str]| names.iter().all(|name| places.contains_key(*name));

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::scenario::Scenario;
 use crate::task::Task;
 
-/// Consecutive replicates of one cell: one file of rows.
+/// Block: consecutive replicates of one cell, stored as one file of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Block {
     /// Index of the cell.
@@ -35,17 +35,17 @@ impl Block {
         Self { cell: (place / of_cell) as usize, number: place % of_cell }
     }
 
-    /// Its index among all blocks of a scenario, the inverse of [`Block::at`].
+    /// Index among all blocks of a scenario, the inverse of [`Block::at`].
     pub fn place(self, scenario: &Scenario) -> u64 {
         self.cell as u64 * Self::of_cell(scenario.replicates) + self.number
     }
 
-    /// The block of a trial.
+    /// Block of a trial.
     pub fn of(task: Task) -> Self {
         Self { cell: task.cell, number: task.replicate / Self::REPLICATES }
     }
 
-    /// Its replicates in a cell that has `replicates` of them.
+    /// Replicates of the block in a cell with `replicates` replicates.
     pub fn range(self, replicates: u64) -> Range<u64> {
         let start = self.number * Self::REPLICATES;
         start..replicates.min(start + Self::REPLICATES)

@@ -1,4 +1,4 @@
-//! The blocks of a result folder: which are present and complete, and how they are written.
+//! The blocks of a result folder: their presence, completeness and writing.
 //!
 //! A block is a file of rows and a file of timings. Each is written under a temporary name and renamed when it is
 //! complete, the rows last. Every program computes the same rows for a block, so several programs may share a folder,
@@ -23,7 +23,7 @@ use crate::timings::Timings;
 /// Maximum size of a file of a block, bytes.
 const MAX_BLOCK_BYTES: u64 = 1 << 30;
 
-/// The blocks of one study in a folder.
+/// Blocks of one study in a folder.
 pub struct BlockStore<'a> {
     folder: PathBuf,
     design_sha256: String,
@@ -51,7 +51,7 @@ impl<'a> BlockStore<'a> {
         BlockLabel { design, seed: self.seed, program, cell: block.cell, block: block.number }
     }
 
-    /// The file of a block.
+    /// File of a block.
     pub fn path(&self, block: Block) -> PathBuf {
         self.folder.join(ROWS).join(rows_name(block))
     }
@@ -59,7 +59,7 @@ impl<'a> BlockStore<'a> {
     /// Rows of a block, of complete trials from its first on; empty without a file. The inner error describes a damaged
     /// file.
     ///
-    /// Fails if the file cannot be read, and when it is a block of another study, seed or program.
+    /// Fails if the file cannot be read, and if it is a block of another study, seed or program.
     pub fn read(&self, block: Block) -> Result<Result<Vec<StudyRow>, String>, Failure> {
         let path = self.path(block);
         let Some(bytes) = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)? else { return Ok(Ok(Vec::new())) };
@@ -70,9 +70,9 @@ impl<'a> BlockStore<'a> {
         }
     }
 
-    /// Rows of a block that has been read before in this run.
+    /// Rows of a block that was read before in this run.
     ///
-    /// Fails as [`BlockStore::read`] does, and when the file has been damaged since.
+    /// Fails as [`BlockStore::read`] does, and if the file was damaged since.
     pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
         self.read(block)?.map_err(|problem| {
             Failure::work(format!("{problem}; the file changed during this run; run the study again"))
@@ -94,9 +94,9 @@ impl<'a> BlockStore<'a> {
     }
 
     /// Number of stored trials of each requested block. Warns of a damaged block and counts it as missing; `becomes`
-    /// says what happens to its trials.
+    /// describes what happens to its trials.
     ///
-    /// Fails if a file cannot be read, and when one is a block of another study, seed or program.
+    /// Fails if a file cannot be read, and if one is a block of another study, seed or program.
     pub fn survey(
         &self,
         is_asked: impl Fn(Block) -> bool + Sync,
@@ -173,12 +173,12 @@ fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
     Ok(names.iter().filter_map(|name| stem_of(name, "parquet")).collect())
 }
 
-/// `true` if a folder holds blocks.
+/// `true` if a folder contains blocks.
 pub fn is_in(folder: &Path) -> Result<bool, Failure> {
     Ok(!blocks_in(folder)?.is_empty())
 }
 
-/// Removes all blocks of a folder, whatever study they belong to.
+/// Removes all blocks of a folder, of any study.
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS, "parquet"), (BLOCK_TIMINGS, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {

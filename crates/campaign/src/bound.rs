@@ -16,8 +16,8 @@ use coloured::CompassError;
 /// Cramér–Rao bound of all records of one trial together: standard deviations of K (1/s), T (s) and K/T (1/s²), and the
 /// covariance of the relative errors of K and T, %².
 ///
-/// The noise law covers compass, recorded rudder, gyro, and one random moment: a random walk or gusts. Wind, waves and
-/// drift are model errors and do not enter; spikes, which only remove information, are ignored. `None` without heading
+/// The noise law includes compass, recorded rudder, gyro, and one random moment: a random walk or gusts. Wind, waves
+/// and drift are model errors and excluded; spikes, which only remove information, are ignored. `None` without heading
 /// noise, for two random moments at once, for a compass with white and coloured error combined with another noise, and
 /// for a record that does not determine the ship.
 ///
@@ -68,14 +68,14 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
     })
 }
 
-/// Noise law of a simulation in the terms of the first-order likelihood: the errors of its `compass`, and all other
+/// Noise law of a simulation in the terms of the first-order likelihood: its `compass` errors, and all other
 /// noise.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
     let is_right =
         [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|error| error.unwrap_or(0.0) == 0.0);
     let read = recording.rudder == RudderSource::Feedback;
-    // Moments are given as the rudder angle that has the same one.
+    // A moment is expressed as the rudder angle of equal moment.
     let b = truth.K_over_T;
     let (moment, moment_level, moment_correlation) = match (disturbances.random_walk, disturbances.gusts) {
         (0.0, None) => (MomentKind::None, 0.0, f64::INFINITY),

@@ -1,4 +1,4 @@
-//! Runs the trials of a study or a shard of it. Stored trials are kept; missing ones are computed in parallel and
+//! Runner of the trials of a study or a shard. Stored trials are kept; missing trials are computed in parallel and
 //! stored as they finish. When all rows are stored, the folder is completed as [`crate::store`] expects it.
 
 use std::collections::{HashMap, HashSet};
@@ -29,7 +29,7 @@ use crate::task::{Shard, Task};
 use crate::timings::Timings;
 use crate::writer::BlockWriter;
 
-/// Target duration of a batch: long against the wait for its last trial, short against a second.
+/// Target duration of a batch, s: long compared with the wait for its last trial, short compared with a second.
 const BATCH_TIME: Duration = Duration::from_millis(250);
 
 /// Maximum number of trials in a batch, all of which are held in memory.
@@ -37,7 +37,7 @@ const MAX_BATCH: usize = 2048;
 
 /// Runs a scenario into a folder, except for trials that are stored there; returns the stored study.
 ///
-/// Fails if the folder holds another study, when stored rows come from another version of the program and some are
+/// Fails if the folder contains another study, if stored rows are of another version of the program and some are
 /// missing, and on interruption; stored rows are kept.
 pub fn collect(
     scenario: &Scenario,
@@ -69,7 +69,7 @@ pub fn collect_shard(
     Ok(run(scenario, shard, folder, restart, observer)?.manifest)
 }
 
-/// Completes a study whose blocks are all in a folder, wherever they were computed; a finished study is read.
+/// Completes a study whose blocks are all in a folder, computed anywhere; a finished study is read.
 ///
 /// Fails if blocks are missing; the message names the first.
 pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
@@ -136,7 +136,7 @@ fn run(
     let start = Instant::now();
     let progress = Progress { most, before, folder: folder.path() };
     let computed = run_all(scenario, &mut plan, &store, &progress, observer);
-    // Other shards of the study may have added their wall time meanwhile.
+    // Another process may have added the wall time of its shards meanwhile.
     let before = Manifest::read(&folder.path().join(files::MANIFEST))?.unwrap_or_else(|| manifest.clone());
     let wall_time_s = before.machine.wall_time_s + start.elapsed().as_secs_f64();
     let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
@@ -152,7 +152,7 @@ fn no_records(scenario: &Scenario) -> Failure {
     Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
 }
 
-/// Warns of absent records and of decisions made in reading, once per record.
+/// Warns of absent records and of decisions of the reader, once per record.
 fn warn_of_records(scenario: &Scenario, observer: &dyn Observer) {
     let mut seen = HashSet::new();
     for set in scenario.cells.iter().filter_map(DesignCell::record_set) {
@@ -162,7 +162,7 @@ fn warn_of_records(scenario: &Scenario, observer: &dyn Observer) {
     }
 }
 
-/// Manifest of a folder in which a study is about to run; written unless rows of the study are stored there.
+/// Manifest of the folder of a study before its run; written unless rows of the study are stored there.
 fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Manifest, Failure> {
     let current = Manifest::new(scenario);
     if !restart && let Some(stored) = store::manifest_of_rows(folder.path())? {
@@ -170,7 +170,7 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
         return Ok(stored);
     }
     if restart {
-        // The manifest first: rows without one belong to no study.
+        // The manifest is written first: rows without a manifest belong to no study.
         folder.remove_all(|name| [files::MANIFEST, files::LEGACY_ROWS].contains(&name))?;
         blocks::discard(folder)?;
     } else if blocks::is_in(folder.path())? {
@@ -199,7 +199,7 @@ fn check_same_study(stored: &Manifest, current: &Manifest, folder: &Path) -> Res
     )))
 }
 
-/// Refuses to combine stored rows of another version of the program with new ones.
+/// Refuses to combine stored rows of another version of the program with new rows.
 fn check_same_program(stored: &Manifest, current: &Manifest, folder: &Path) -> Result<(), Failure> {
     let [there, here] = [stored, current].map(Manifest::program_label);
     if there == here {
@@ -220,10 +220,10 @@ struct Progress<'a> {
     folder: &'a Path,
 }
 
-/// How a run of trials ended.
+/// End of a run of trials.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum RunEnd {
-    /// All trials were run, or the receiver wants no more.
+    /// All trials were run, or the receiver accepts no more.
     Done,
     /// Stopped on request; no trial is running.
     Interrupted,
@@ -281,7 +281,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// Interval at which a request to stop is polled.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Runs batches until the plan is done, a batch is incomplete, or `take` wants no more.
+/// Runs batches until the plan is done, a batch is incomplete, or `take` accepts no more.
 fn run_batches(
     plan: &mut TrialPlan,
     mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
@@ -310,7 +310,7 @@ fn runner<'a>(scenario: &'a Scenario, tasks: &[Task]) -> TrialRunner<'a> {
     TrialRunner::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
 }
 
-/// Runs a batch on a separate thread, so that an interruption need not wait for a trial that does not end. Returns the
+/// Runs a batch on a separate thread, so that an interruption need not wait for a trial without end. Returns the
 /// outcomes up to the first missing one.
 fn watched<'scope>(
     scope: &'scope Scope<'scope, '_>,
@@ -326,7 +326,7 @@ fn watched<'scope>(
             shared_fit::units(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
                 if !observer.is_asked_to_stop() {
                     for (index, outcome) in unit.clone().zip(shared_fit::run_unit(&runner, scenario, &tasks[unit])) {
-                        // The receiver is gone after the wait for a trial was given up.
+                        // The receiver is dropped after the wait for a trial was given up.
                         let _ = send.send((index, outcome));
                     }
                 }

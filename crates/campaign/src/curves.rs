@@ -12,7 +12,7 @@ use trial::{Quantity, Trial, ZigZag};
 use crate::scenario::MethodName;
 use crate::stored_figures::ReplayCurves;
 
-/// Plot origin of a method: the method itself where its label is its id, otherwise a numbered variant.
+/// Plot origin of a method: the method itself if its label is its id, otherwise a numbered variant.
 pub fn curve_origin(names: &[MethodName], label: &str) -> CurveOrigin {
     match names.iter().find(|name| name.label == label) {
         Some(method) if method.id != label => {
@@ -29,7 +29,7 @@ pub fn degrees(values: &[f64]) -> Vec<f64> {
     values.iter().copied().map(to_deg).collect()
 }
 
-/// Plot curve in degrees over seconds, from radians over seconds.
+/// Plot curve: angle, deg, against time, s, from radians.
 pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
@@ -48,7 +48,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         Some(TimeSpan { from_s: begin, to_s: begin + length.value })
     };
     let check_yaw = |peak: &Overshoot| from(zigzag.executes.get(peak.execute), Some(peak.time_to_check_yaw));
-    // The cycle from the second execute on contains the starting transient: drawn only if there is no later one.
+    // The cycle from the second execute on contains the starting transient: plotted only if there is no later one.
     let settled = if zigzag.lacks_first_execute() { 0 } else { 2 };
     let cycle_start = match zigzag.executes.len() > settled + 2 {
         true => zigzag.executes.get(settled),
@@ -56,7 +56,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     };
     ZigzagTrial {
         heading: curve(trial.time(), trial.heading()),
-        // A thinned record keeps only its extremes, which drawn as points would look like the record.
+        // A thinned record keeps only its extremes; as points they would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
@@ -69,7 +69,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     }
 }
 
-/// Replays of all answers on a trial; failed methods are left out.
+/// Replays of all estimates on a trial; failed methods are omitted.
 pub fn replay_curves(
     trial: &Trial,
     answers: &[(MethodEntry, Option<Estimate>)],

@@ -8,56 +8,57 @@ use serde::{Deserialize, Serialize};
 use crate::scenario::records::{RecordSet, RecordSplit};
 use crate::scenario::{DesignCell, MethodName, MissingPhysics, Prose, Scenario, name};
 
-/// Design of a study: the part of a scenario that tables and figures need.
+/// Design of a study: the part of a scenario required by tables and plots.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Names of the axes.
     pub axes: Vec<String>,
-    /// The methods.
+    /// Methods.
     pub methods: Vec<MethodName>,
-    /// Keys that are drawn anew in every trial.
+    /// Keys that are sampled anew in every trial.
     pub draws: Vec<String>,
-    /// `true` if manoeuvres are predicted from every answer.
+    /// `true` if manoeuvres are predicted from every estimate.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub predicts: bool,
-    /// The cells, in their order.
+    /// Cells, in their order.
     pub cells: Vec<CellFacts>,
     /// Prose and presentation. They may change while the rows do not, so only the manifest stores them.
     #[serde(skip)]
     pub prose: Prose,
 }
 
-/// Facts about a cell that do not depend on its rows.
+/// Facts of a cell that do not depend on its rows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellFacts {
-    /// Labels of its points, one an axis.
+    /// Labels of the points, one per axis.
     pub labels: Vec<String>,
-    /// Values of its points, where an axis is a number.
+    /// Values of the points; `null` for an axis of labels.
     pub values: Vec<Option<f64>>,
     /// Replicates whose rows are stored: all of them, or those of a shard.
     pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
     pub missing: Vec<String>,
-    /// The physics that the first-order base lacks, in a study whose ships state it.
+    /// Physics that the first-order base lacks, in a study whose scenario states it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub physics: Option<MissingPhysics>,
-    /// `true` if the ship has a K and T of its own beside those of the first-order response nearest to it: a response
+    /// `true` if the ship has K and T of its own in addition to those of the nearest first-order response: a response
     /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub has_own_indices: bool,
     /// `true` if K and T are compared with those of the first-order response nearest to a ship that is not first order.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_nearest: bool,
-    /// L/V, s, on which IMO limits depend; where manoeuvres are predicted and neither length nor speed is drawn.
+    /// L/V, s, on which IMO limits depend; `null` unless manoeuvres are predicted and neither length nor speed is
+    /// sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_over_speed_s: Option<f64>,
     /// Fitted records and validation record of each trial, in a study of measured records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<JudgedRecord>,
-    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` if every trial has a
-    /// bound of its own, and if there is none.
+    /// Cramér–Rao covariance of the relative errors of K and T, %²; `null` if every trial has its own
+    /// bound, or if there is no bound.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
 }
 
@@ -67,7 +68,7 @@ pub struct CellFacts {
 pub struct JudgedRecord {
     /// Names of the records that were fitted together, joined by commas.
     pub fitted: String,
-    /// Name of the validation record; none if there is none.
+    /// Name of the validation record; `null` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judge: Option<String>,
 }
@@ -107,7 +108,7 @@ impl Design {
         }
     }
 
-    /// The design with cell facts renewed from a scenario; trials and bounds stay.
+    /// Design with cell facts renewed from a scenario; trials and bounds stay.
     pub(crate) fn with_descriptions_of(&self, scenario: &Scenario) -> Self {
         let mut design = Self::of(scenario);
         for (cell, stored) in design.cells.iter_mut().zip(&self.cells) {
@@ -118,7 +119,7 @@ impl Design {
 
     /// Design from the text of a `cells.json`.
     ///
-    /// Fails if the text is no design or is inconsistent; the message says where.
+    /// Fails if the text is no design or is inconsistent; the message names the place.
     pub fn of_text(text: &[u8]) -> Result<Self, String> {
         let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         design.check().map(|()| design)
@@ -158,7 +159,7 @@ impl Design {
     /// Indices of the cells shown in detail.
     pub fn detail(&self) -> Vec<usize> {
         if self.cells.len() == 1 {
-            // A study of one cell is about that cell.
+            // A study of one cell shows that cell.
             return vec![0];
         }
         let place = |title: &String| self.cells.iter().position(|cell| cell.labels.join(", ") == *title);

@@ -14,7 +14,7 @@ fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T
     operation()
 }
 
-/// An open file.
+/// Open file.
 #[derive(Debug)]
 pub struct File {
     file: fs::File,
@@ -26,12 +26,12 @@ impl File {
         Ok(Self { file: at(path, open)?, path: path.to_owned() })
     }
 
-    /// Waits until the content is on the disk, where the file system supports it.
+    /// Waits until the content is on the disk, if the file system supports it.
     pub fn sync(&self) {
         let _ = self.file.sync_all();
     }
 
-    /// Opens a regular file to read. Fails for anything else: opening a pipe would block for ever.
+    /// Opens a regular file for reading. Fails for any other kind: opening a pipe would block for ever.
     pub fn open(path: &Path) -> io::Result<Self> {
         Self::of(path, || regular(path).and_then(|_| fs::File::open(path)))
     }
@@ -72,7 +72,7 @@ fn regular(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Result of an operation, with `None` in place of "not found".
+/// Result of an operation; "not found" becomes `None`.
 fn if_present<T>(result: io::Result<T>) -> io::Result<Option<T>> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -80,7 +80,7 @@ fn if_present<T>(result: io::Result<T>) -> io::Result<Option<T>> {
     }
 }
 
-/// `true` if anything has this path, a dangling link included. Unlike `Path::exists`, fails if that cannot be
+/// `true` if the path exists, even as a dangling link. Unlike `Path::exists`, fails if that cannot be
 /// determined.
 pub fn is_there(path: &Path) -> io::Result<bool> {
     at(path, || Ok(if_present(fs::symlink_metadata(path))?.is_some()))
@@ -91,7 +91,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
     Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
 
-/// Reads a file of at most `largest` bytes; `None` if there is none.
+/// Content of a file up to a maximum size (`largest`), bytes; `None` if there is no file.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
     let Some(mut file) = if_present(File::open(path))? else { return Ok(None) };
@@ -131,7 +131,7 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Time since a file was last written; `None` if the system does not provide it.
+/// Time since the last write of a file; `None` if the system does not provide it.
 pub fn age(path: &Path) -> Option<Duration> {
     fs::metadata(path).ok()?.modified().ok()?.elapsed().ok()
 }

@@ -1,7 +1,7 @@
-//! The engine: simulates one trial and runs every method on it, one row each. [`crate::plan`] decides which trials are
+//! Engine: simulates one trial and runs every method on it, one row each. [`crate::plan`] determines which trials are
 //! run and in what order, [`crate::blocks`] stores the rows.
 //!
-//! All random draws follow from the key of the trial, so rows depend neither on threads nor on the order of trials.
+//! Random numbers depend on the key of the trial alone, so rows depend neither on threads nor on the order of trials.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -31,11 +31,11 @@ use crate::timings::TrialTiming;
 pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
     pub rows: Vec<StudyRow>,
-    /// Time to simulate, and of every method.
+    /// Time of the simulation and of every method.
     pub timing: TrialTiming,
 }
 
-/// Prefixes of a failure that concerns the trial itself and not a method.
+/// Prefixes of failures of the trial itself, not of a method.
 const NO_TRIAL: [&str; 2] = ["specification:", "simulation:"];
 
 /// `true` if a failure is that of a method on a trial that could be simulated.
@@ -43,7 +43,7 @@ pub fn is_method_failure(failure: &str) -> bool {
     !NO_TRIAL.iter().any(|begin| failure.starts_with(begin))
 }
 
-/// Key of all random draws of one trial.
+/// Key of all random numbers of one trial.
 pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
     StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
@@ -59,13 +59,13 @@ pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, Strin
 /// True first-order responses of a trial, against which estimates are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truths {
-    /// First-order response nearest to the ship; the ship itself where it is first order.
+    /// First-order response nearest to the ship; the ship itself if it is first order.
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects.
     pub base: Option<FirstOrder>,
 }
 
-/// True responses of one trial. Fails if its drawn values define no ship.
+/// True responses of one trial. Fails if its sampled values define no ship.
 pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     let key = key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
@@ -79,7 +79,7 @@ pub struct TrialRunner<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
     references: Vec<OnceLock<TrialReference>>,
-    /// Prepared simulations of cells whose trials differ by noise alone; empty if preparation does not pay.
+    /// Prepared simulations of cells whose trials differ by noise alone; empty if preparation would take longer.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
@@ -239,7 +239,7 @@ impl TrialInput<'_> {
         }
     }
 
-    /// Row of the null model, a ship that keeps her heading; the initial heading is fitted, as for every method.
+    /// Row of the null model, a ship that keeps her heading; the initial heading is fitted, as in every method.
     pub fn straight_on(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
             let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
@@ -262,14 +262,14 @@ impl TrialInput<'_> {
         self.traced(blank, analysis, validation.as_ref())
     }
 
-    /// Row of a trace: K, T and δ_r of the augmented model, replay errors, and effects named.
+    /// Row of a trace: K, T and δ_r of the augmented model, replay errors, and named effects.
     pub fn traced(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
         let end = self.trials.iter().filter_map(|trial| trial.time().last().copied()).fold(0.0, f64::max);
         let probability =
             |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
-        // Effects may need a speed and a sway.
+        // An effect may require speed and sway.
         let identified = |facts: &RecordFacts| {
             Some(identified_ship::from_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])))
         };
@@ -312,7 +312,7 @@ fn located(entry: &LocatedEntry, end: f64) -> LocatedMoment {
     }
 }
 
-/// Root mean square heading error of a traced model over all rows of its records, rad.
+/// Root mean square heading error of a traced model over all rows of the records, rad.
 fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
     let errors = analysis.identification.iter().map(|judged| judged.after.errors.heading);
     let rows = trials.iter().map(|trial| trial.len() as f64);
@@ -339,7 +339,8 @@ const MIN_PROBABILITY: f64 = 0.005;
 /// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
 const DIGITS: f64 = 1000.0;
 
-/// Log evidence of the one missing effect less that of the best other effect; `None` unless exactly one is missing.
+/// Difference of log evidence between the one missing effect and the best other effect; `None` unless exactly one is
+/// missing.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {
@@ -366,8 +367,8 @@ fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
     }
 }
 
-/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` if the bound varies between trials,
-/// and if there is none.
+/// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` if the bound varies between trials, or
+/// if there is no bound.
 pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
     let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).bound;
     scenario.cells[cell].is_fixed().then(bound).flatten().map(|(_, percent2)| percent2)
@@ -397,8 +398,8 @@ method.output-error = {}
         TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
     }
 
-    /// Information of separate records adds: two records of one manoeuvre have a bound smaller by √2, and the spread of
-    /// the estimates from both follows it.
+    /// Information of separate records adds: two records of one manoeuvre have a bound smaller by √2, and so is the
+    /// spread of the estimates from both.
     #[test]
     fn further_records_of_the_ship_are_identified_together() {
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
@@ -427,7 +428,7 @@ method.output-error = {}
         assert_ne!(records[0].heading(), records[1].heading(), "each has a chance of its own");
     }
 
-    /// The true response does not depend on the methods: a trace beside a method leaves the reference of the method
+    /// The true response does not depend on the methods: with a trace in addition, the reference of a method is
     /// unchanged.
     #[test]
     fn a_ship_has_one_truth_whoever_asks() {

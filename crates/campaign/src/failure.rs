@@ -1,4 +1,4 @@
-//! Failures as a user sees them: one message, and who has to act.
+//! Failure as shown to a user: one message, and who has to act.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -13,37 +13,37 @@ use serde::Serialize;
 /// Prefix of the message of a failure.
 const ERROR: &str = "error: ";
 
-/// A failure: its message, its parts, and its kind.
+/// Failure: its message, its parts, and its kind.
 #[derive(Debug)]
 pub struct Failure {
     /// Kind of failure: wrong input, failed work, or a request to stop.
     pub blame: Blame,
-    /// The whole message, without the word "error" before it.
+    /// Whole message, without the word "error" in front.
     pub message: String,
-    /// The parts of the message, for programs.
+    /// Parts of the message, for programs.
     pub parts: Box<FailureParts>,
 }
 
-/// Parts of a message; a part that a failure does not have is none.
+/// Parts of a message; a part that a failure does not have is `None`.
 #[derive(Debug, Default, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 pub struct FailureParts {
     /// Error code.
     pub code: ErrorCode,
-    /// The file it is about.
+    /// File at fault.
     pub file: Option<String>,
-    /// The line of the file, from 1.
+    /// Line of the file, from 1.
     pub line: Option<usize>,
-    /// The character of the line, from 1.
+    /// Character of the line, from 1.
     pub column: Option<usize>,
-    /// What is wrong, without the name of the file.
+    /// Description of the fault, without the name of the file.
     pub problem: String,
-    /// What was expected in its place.
+    /// Expected text in its place.
     pub expected: Option<String>,
-    /// What to do.
+    /// Remedy.
     pub help: Option<String>,
 }
 
-/// Kind of failure, which decides the exit code.
+/// Kind of failure, which determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Blame {
@@ -51,7 +51,7 @@ pub enum Blame {
     Input,
     /// The work could not be done: a full disk, a folder that cannot be written.
     Work,
-    /// Somebody asked to stop: Ctrl-C, or a signal to end.
+    /// Stopped on request: Ctrl-C, or a signal to end.
     Interrupted,
 }
 
@@ -60,38 +60,38 @@ impl Failure {
         Self { blame, message, parts: Box::new(parts) }
     }
 
-    /// The input is wrong.
+    /// Failure of wrong input.
     pub fn input(message: impl fmt::Display) -> Self {
         let message = message.to_string();
         Self::new(Blame::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
     }
 
-    /// The input is wrong, and a file of this name holds it.
+    /// Failure of wrong input in a file of this name.
     pub fn about(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
         let (file, problem) = (file.as_ref().display().to_string(), problem.to_string());
         let message = format!("{file}: {problem}");
         Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
     }
 
-    /// The work could not be done.
+    /// Failure of work that could not be done.
     pub fn work(message: impl fmt::Display) -> Self {
         Self { blame: Blame::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
     }
 
-    /// Somebody asked to stop.
+    /// Failure of a stop on request.
     pub fn interrupted(message: impl fmt::Display) -> Self {
         Self { blame: Blame::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
     }
 
-    /// The failure with an error code.
+    /// Failure with an error code.
     #[must_use]
     pub fn with_code(mut self, code: ErrorCode) -> Self {
         self.parts.code = code;
         self
     }
 
-    /// Wrong input at a byte range of a text file: the message shows the line, underlines the range with `expected`,
-    /// and ends with `advice`, what to do.
+    /// Wrong input at a byte range of a text file: the message quotes the line, underlines the range with `expected`,
+    /// and ends with `advice`, the remedy.
     pub fn at(file: &Path, text: &str, span: Range<usize>, problem: &str, expected: &str, advice: &str) -> Self {
         let name = file.display().to_string();
         let span = span.start.min(text.len())..span.end.min(text.len());
@@ -118,7 +118,7 @@ impl Failure {
 /// Maximum length of a sentence in a message, characters; it may quote a key of any length.
 const MAX_SENTENCE_CHARACTERS: usize = 1000;
 
-/// A sentence, with `…` for its middle where it is too long.
+/// Sentence with `…` for its middle if it is too long.
 fn shortened(sentence: &str) -> Cow<'_, str> {
     let count = sentence.chars().count();
     if count <= MAX_SENTENCE_CHARACTERS {

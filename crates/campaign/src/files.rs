@@ -1,4 +1,4 @@
-//! Names of the primary files of a result folder, from which all tables and figures are made.
+//! Names of the primary files of a result folder, from which all tables and plots are made.
 
 /// Folder of the rows, one file per block.
 pub const ROWS: &str = "rows";
@@ -6,11 +6,11 @@ pub const ROWS: &str = "rows";
 pub const BLOCK_TIMINGS: &str = "timings";
 /// Durations of simulation and methods.
 pub const TIMINGS: &str = "timings.csv";
-/// Manifest: program, machine and scenario; written first, and again when the study is finished.
+/// Manifest: program, machine and scenario; written first, and again at the end of the study.
 pub const MANIFEST: &str = "manifest.toml";
-/// The design: axes, methods, cells.
+/// Design: axes, methods, cells.
 pub const DESIGN: &str = "cells.json";
-/// The first trial of every cell in detail.
+/// First trial of every cell in detail.
 pub const SHOWCASES: &str = "showcase.json";
 /// Rows in one file, as versions before 0.3 stored them.
 pub const LEGACY_ROWS: &str = "rows.parquet";

@@ -1,6 +1,6 @@
 //! A folder of results with atomic writes. Every file is written under a temporary name unique to this process and
-//! renamed when it is complete. So a reader finds the old file or the new one, a link in the folder is replaced and not
-//! followed, and several programs may write into one folder at once.
+//! renamed when it is complete. So a reader finds either the old or the new file, a link in the folder is replaced and
+//! not followed, and several programs may write into one folder at once.
 
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, BufWriter, Write};
@@ -11,20 +11,20 @@ use std::time::Duration;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
 
-/// Prefix of temporary files, which other programs ignore.
+/// Prefix of temporary files, which any program ignores.
 const UNDER_WAY: &str = ".kempf-";
 
-/// Age from which a temporary file counts as left behind by a killed program.
+/// Age of a temporary file from which it counts as left behind by a killed program.
 const MAX_AGE: Duration = Duration::from_secs(3600);
 
-/// A folder of results.
+/// Folder of results.
 #[derive(Debug)]
 pub struct ResultFolder {
     path: PathBuf,
 }
 
 impl ResultFolder {
-    /// Result folder at a path, created if it is missing.
+    /// Result folder at a path, created if missing.
     ///
     /// Fails if it cannot be created.
     pub fn make(path: &Path) -> Result<Self, Failure> {
@@ -34,9 +34,9 @@ impl ResultFolder {
         Ok(Self { path: path.to_owned() })
     }
 
-    /// Subfolder, created if it is missing.
+    /// Subfolder, created if missing.
     ///
-    /// Fails if the name is that of a link, whose target does not belong to the study.
+    /// Fails if the name is a link, whose target does not belong to the study.
     pub fn subfolder(&self, name: &str) -> Result<Self, Failure> {
         let path = self.place(name)?;
         if disk::is_link(&path).on("look for", &path)? {
@@ -62,7 +62,7 @@ impl ResultFolder {
         }
     }
 
-    /// Temporary file, which takes the given name on [`TemporaryFile::put`].
+    /// Temporary file, renamed to the given name on [`TemporaryFile::put`].
     pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
         let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;
@@ -79,7 +79,7 @@ impl ResultFolder {
         file.put()
     }
 
-    /// Writes a file and waits until it is on the disk: for content that cannot be computed again.
+    /// Writes a file and flushes it to the disk: for content that cannot be computed again.
     pub fn write_synced(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let mut file = self.create(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
@@ -131,7 +131,7 @@ impl TemporaryFile {
         Ok(())
     }
 
-    /// Its temporary path, for messages.
+    /// Temporary path, for messages.
     pub fn path(&self) -> &Path {
         &self.path
     }

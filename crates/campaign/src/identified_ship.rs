@@ -17,10 +17,10 @@ use trace::analysis::PlausibleStructure;
 use trial::zigzag::MAX_APPROACH_RATE_SHARE;
 use trial::{Channel, Trial, ZigZag};
 
-/// Reason for a prediction without a track.
+/// Reason for a prediction without track.
 const NO_MOTION: &str = "these records do not determine speed loss and drift, so no track can be predicted";
 
-/// Facts that records show of a ship independently of the fitted model, computed once for all methods.
+/// Facts of a ship from her records independent of the fitted model, computed once for all methods.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
     trials: &'a [Trial],
@@ -31,12 +31,12 @@ pub struct RecordFacts<'a> {
     zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
     speed: Option<f64>,
-    /// Fitted hulls, smallest replay error first.
+    /// Fitted hulls, in the order of replay errors.
     pub hulls: Vec<IdentifiedHull>,
-    /// Consistency checks of the records with the priors from earlier trials, one per form of hull, smallest replay
-    /// error first; hulls that are too far off to take part are included.
+    /// Consistency checks of the records with the priors from earlier trials, one per form of hull, in the order of
+    /// replay errors; rejected hulls are included.
     pub checks: Vec<(&'static str, PriorCheck)>,
-    /// Why records with speed or positions allow no predicted track; `None` if they do, or have neither.
+    /// Reason for no track from records with speed or positions; `None` if they give a track, or contain neither.
     pub no_track: Option<String>,
 }
 
@@ -58,15 +58,15 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// The facts with hulls fitted to the records. Needs length and speed, records that begin under way, and a measured
-    /// speed or positions, or else hulls of an analysis or of earlier trials.
+    /// Facts with hulls fitted to the records. Requires length and speed, records that begin under way, and
+    /// measured speed or positions, otherwise hulls of an analysis or of earlier trials.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|channel| trial.channel(*channel).is_some());
         let sources = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
         let has_speed = |trial: &Trial| sources.iter().any(|channels| has_all(trial, channels));
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
-        // Structures may replay the records better, but have no speed in a manoeuvre that was not made.
+        // Structures may replay the records better, but give no speed in another manoeuvre.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
         let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
@@ -107,7 +107,7 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Stored form of a fitted hull; its weight is one over the `count` of hulls.
+    /// Stored form of a fitted hull with weight 1/`count`, the number of hulls.
     fn stored(&self, hull: &HullEstimate, count: usize) -> IdentifiedHull {
         let expected = &hull.expected;
         let coefficient = |(prior, value): (&HullCoefficient, &f64)| IdentifiedCoefficient {
@@ -136,7 +136,7 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Root mean square of the initial yaw rates of hull replays less those of the straight approaches, rad/s.
+    /// Root mean square of the initial yaw rates of hull replays minus those of the straight approaches, rad/s.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
         let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
             Some((record.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
@@ -147,7 +147,7 @@ impl<'a> RecordFacts<'a> {
 
     /// Root mean square yaw rate at the end of straight approaches, rad/s: for a zig-zag at its first execute,
     /// corrected for reading errors; for another record at the start of its replay. Records that begin in a turn are
-    /// excluded; 0 without any other.
+    /// excluded; 0 if no record is left.
     fn approach_yaw_rate(&self, replays: &[&[f64]]) -> f64 {
         let square = |(zigzag, rates): (&Option<ZigZag>, &&[f64])| match zigzag {
             Some(zigzag) => {
@@ -172,7 +172,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 /// Identified ship of a first-order estimate; `None` without a covariance.
 ///
 /// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is that of the readings, or
-/// the rms residual of the replay where the records are not zig-zags.
+/// the rms residual of the replay if the records are not zig-zags.
 pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
@@ -195,7 +195,7 @@ pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identif
 
 /// Identified ship of a trace.
 ///
-/// Where no effect is missing but a random moment acts, the first-order member is that of `maximum-likelihood`, whose
+/// If no effect is missing but a random moment acts, the first-order member is that of `maximum-likelihood`, whose
 /// covariance includes the uncertainty of the noise law.
 pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible_structures().iter().map(member).collect();
@@ -208,7 +208,7 @@ pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip
     }
 }
 
-/// The ship with first-order member and noise of `maximum-likelihood`, if that also estimates a random moment.
+/// Ship with first-order member and noise of `maximum-likelihood`, if it also estimates a random moment.
 fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| from_estimate(&estimate, facts))
@@ -224,8 +224,8 @@ fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedS
     ship
 }
 
-/// Root mean square standard deviation of the heading readings, rad, independent of a model; `None` if a record does
-/// not show it.
+/// Root mean square standard deviation of the heading readings, rad, independent of any model; `None` if a record does
+/// not determine it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
     let sum: Option<f64> = zigzags.iter().map(square).sum();
@@ -256,15 +256,15 @@ const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 /// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.
 const BETWEEN_ROWS: f64 = 0.29;
 
-/// Minimum ratio of neighbouring steps to a step at full rate.
+/// Minimum ratio of neighbouring steps to a full-rate step.
 const FULL: f64 = 0.7;
 
-/// Minimum number of full-rate steps from which the rate is estimated.
+/// Minimum number of full-rate steps for an estimate of the rate.
 const MIN_STEPS: usize = 4;
 
 /// Rate of the steering gear from the reversals of zig-zags; `None` if no record resolves them.
 ///
-/// The rate is the mean over steps inside movements, with the standard error of that mean. Where movements are about as
+/// The rate is the mean over steps inside movements, with the standard error of that mean. If movements are about as
 /// long as a sampling interval, the error is that of a duration whose ends lie between two rows.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> {
     let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
@@ -399,7 +399,7 @@ mod tests {
     /// Time of the ship KVLCC2, L/U, s.
     const KVLCC2: f64 = 320.0 / 7.97;
 
-    /// KVLCC2 in a manoeuvre, by a gear of 2.34°/s.
+    /// KVLCC2 in a manoeuvre, with a gear of 2.34°/s.
     fn tanker(kind: &str) -> Simulation {
         let manoeuvre = predict::standard::steered(&kind.parse().expect("known"), KVLCC2).expect("steered");
         let mut simulation = Simulation::new(Vessel::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
@@ -408,7 +408,7 @@ mod tests {
         simulation
     }
 
-    /// Her record, with her particulars.
+    /// Record of a simulation, with the particulars of the ship.
     fn described(simulation: &Simulation) -> Trial {
         let trial = simulation.run(&StreamKey::default()).expect("a trial").trial;
         let hull = HullParticulars {
@@ -432,7 +432,7 @@ mod tests {
         let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
         let ship = from_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
-        // She begins straight: the yaw rate of replays is an error, less than a twentieth of her rate in the circle.
+        // The ship begins straight: the yaw rate of replays is an error, less than a twentieth of that in the circle.
         assert!(
             facts.hulls.iter().all(|hull| (1e-6..1e-3).contains(&hull.beginning_yaw_rate_rad_s)),
             "{:?}",

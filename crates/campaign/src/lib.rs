@@ -1,13 +1,13 @@
 //! A Monte-Carlo campaign: runs the trials of a scenario, stores their rows and summarises them.
 //!
-//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. Nothing here draws, prints
-//! or reads the command line; an [`Observer`] receives progress and warnings.
+//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. This crate neither plots,
+//! prints nor reads the command line; an [`Observer`] receives progress and warnings.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | one trial, simulated or of measured records | [`engine`], `shared_fit` |
 //! | many of them, in order | [`task`], [`block`], [`plan`], [`stopping`], [`collect`] |
-//! | answers of outside estimators | [`answers`] |
+//! | estimates of outside estimators | [`answers`] |
 //! | stored files | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | writing to disk | [`files`], [`folder`], [`disk`] |
 //! | summaries and their statistics | [`summary`], [`statistics`] |

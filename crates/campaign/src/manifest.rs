@@ -1,4 +1,4 @@
-//! `manifest.toml`: all that is needed to repeat a study, and the machine it ran on.
+//! `manifest.toml`: everything required to repeat a study, and the machine of the run.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,13 +13,13 @@ use crate::folder::ResultFolder;
 use crate::scenario::hex;
 use crate::scenario::{Prose, Scenario, identity};
 
-/// The manifest of a study: the same whichever shards of it are in the folder.
+/// Manifest of a study, the same for any shards in the folder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Manifest {
     /// Name of the scenario.
     pub name: String,
-    /// Seed that was used.
+    /// Seed of the run.
     pub seed: u64,
     /// SHA-256 of the scenario text.
     pub scenario_sha256: String,
@@ -27,26 +27,26 @@ pub struct Manifest {
     pub design_sha256: String,
     /// Version of the program.
     pub version: String,
-    /// The last git revision in which the program's source changed, where it was built in a repository.
+    /// Last git revision in which the source of the program changed; `null` unless built in a repository.
     pub git_revision: Option<String>,
-    /// `true` if that source had been changed since.
+    /// `true` if the source had uncommitted changes.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub git_dirty: bool,
-    /// The machine. No row depends on it.
+    /// Machine of the run. No row depends on it.
     pub machine: Machine,
-    /// Assumptions of the scenario that can influence its result, one sentence each.
+    /// Assumptions of the scenario with an influence on its result, one sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumptions: Vec<String>,
-    /// Versions of the crates that decide the numbers.
+    /// Versions of the crates that determine the numbers.
     pub crates: Vec<String>,
-    /// SHA-256 of the files written on completion, by name; empty before.
+    /// SHA-256 of the files written on completion, by name; empty until then.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
     /// The scenario file as it was read.
     pub scenario: String,
 }
 
-/// The machine of a study.
+/// Machine of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Machine {
@@ -73,7 +73,7 @@ const MAX_MANIFEST_BYTES: u64 = 1 << 22;
 const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n";
 
 impl Manifest {
-    /// Manifest of a scenario that is about to run.
+    /// Manifest of a scenario before its run.
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             name: scenario.name.clone(),
@@ -95,7 +95,7 @@ impl Manifest {
         }
     }
 
-    /// Label of the program and of its numerical crates, which every block carries as its origin.
+    /// Label of the program and its numerical crates, which every block states as its origin.
     pub fn program_label(&self) -> String {
         let revision = self.git_revision.as_deref().map_or_else(String::new, |revision| format!(" {revision}"));
         let changed = if self.git_dirty { " (changed)" } else { "" };
@@ -103,18 +103,18 @@ impl Manifest {
         format!("kempf {}{revision}{changed} with crates {}", self.version, &crates[..8])
     }
 
-    /// The manifest with program and machine of another.
+    /// Manifest with program and machine of `other`.
     pub(crate) fn of_program_and_machine(self, other: &Self) -> Self {
         let Self { version, git_revision, git_dirty, crates, machine, .. } = other.clone();
         Self { version, git_revision, git_dirty, crates, machine, ..self }
     }
 
-    /// `true` if the study is finished: design, showcases and timings are stored beside its rows.
+    /// `true` if the study is finished: design, showcases and timings are stored next to its rows.
     pub fn is_finished(&self) -> bool {
         self.sha256.contains_key(DESIGN)
     }
 
-    /// Differences in design and seed, one sentence each; empty when both manifests have the same rows.
+    /// Differences in design and seed, one sentence each; empty if both manifests have the same rows.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.design_sha256 != other.design_sha256 {

@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 /// Receiver of progress, notes and warnings, which may also request a stop.
 pub trait Observer: Sync {
-    /// Start of the trials: at most `most`, of which `done` are already stored.
+    /// Start of the trials: at most `most`, of which `done` are stored.
     fn begin(&self, _most: u64, _done: u64) {}
 
     /// End of one trial.
@@ -15,10 +15,10 @@ pub trait Observer: Sync {
     /// End of all trials.
     fn end(&self) {}
 
-    /// A note for the user.
+    /// Note for the user.
     fn note(&self, _line: &str) {}
 
-    /// A warning for the user.
+    /// Warning for the user.
     fn warn(&self, _line: &str) {}
 
     /// `true` to stop between two trials; finished trials are kept.
@@ -26,13 +26,13 @@ pub trait Observer: Sync {
         false
     }
 
-    /// Thread pool for the trials; `None` for that of the whole program.
+    /// Thread pool for the trials; `None` for the global pool.
     fn threads(&self) -> Option<&ThreadPool> {
         None
     }
 
-    /// A running trial does not end after a request to stop. All trials before it are stored, so a program may exit
-    /// here with this failure. If the call returns, the trial is waited for.
+    /// Event: a running trial does not end after a request to stop. All trials before it are stored, so a program may
+    /// exit here with this failure. If the call returns, the run waits for the trial.
     fn give_up(&self, _failure: &Failure) {}
 }
 

@@ -32,14 +32,14 @@ impl Values {
     }
 }
 
-/// A column of a schema.
+/// Column of a schema.
 pub(crate) fn field(name: &str, physical: Physical, repetition: Repetition, logical: Option<LogicalType>) -> TypePtr {
     let field =
         Type::primitive_type_builder(name, physical).with_repetition(repetition).with_logical_type(logical).build();
     Arc::new(field.expect("kinds and logical types fit together"))
 }
 
-/// The schema of some columns.
+/// Schema of some columns.
 pub(crate) fn schema(fields: Vec<TypePtr>) -> TypePtr {
     Arc::new(Type::group_type_builder("rows").with_fields(fields).build().expect("a group of columns"))
 }

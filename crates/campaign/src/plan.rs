@@ -1,4 +1,4 @@
-//! The plan of a study: which trials are run, in what order, and when a cell stops.
+//! The plan of a study: trials to run, their order, and the end of a cell.
 //!
 //! The order is cell by cell and replicate by replicate. A shard is a range of consecutive blocks, or of whole cells
 //! under a stopping rule. The rule is evaluated after complete blocks in order, so the same trials are run for any
@@ -20,7 +20,7 @@ type BlockReader<'a> = dyn Fn(Block) -> Result<Vec<StudyRow>, Failure> + 'a;
 /// Missing trials of a study or a shard, issued in order.
 pub struct TrialPlan<'a> {
     scenario: &'a Scenario,
-    /// Number of stored trials by block, from its first on.
+    /// Number of stored trials by block, from its first trial on.
     stored: &'a HashMap<Block, u64>,
     read: &'a BlockReader<'a>,
     /// Indices of the blocks not yet begun.
@@ -80,13 +80,13 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// The next trial without issuing it; `None` if the shard is done.
+    /// Next trial, without issuing it; `None` if the shard is done.
     pub fn peek(&mut self) -> Result<Option<Task>, Failure> {
         let is_left = !self.open.is_empty() || self.begin()?;
         Ok(is_left.then_some(Task { cell: self.cell, replicate: self.open.start }))
     }
 
-    /// The next trials, at most `most` and for measured records whole blocks; empty when the shard is done. The rows of
+    /// Next trials, at most `most` and for measured records whole blocks; empty if the shard is done. The rows of
     /// all trials issued before must have been passed to [`TrialPlan::add`].
     pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
         let mut tasks = Vec::new();
@@ -98,7 +98,7 @@ impl<'a> TrialPlan<'a> {
             let taken = self.open.start..self.open.start + count;
             tasks.extend(taken.map(|replicate| Task { cell: self.cell, replicate }));
             self.open.start += count;
-            // The rule needs all rows of a block before the next one is decided.
+            // The rule requires all rows of a block before the next block is decided.
             let is_enough = tasks.len() as u64 >= most || self.rule.is_some() && !tasks.is_empty();
             if is_enough || !self.begin()? {
                 return Ok(tasks);
@@ -106,7 +106,7 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// Begins the next block with missing trials; `false` when there is none.
+    /// Begins the next block with missing trials; `false` if there is none.
     fn begin(&mut self) -> Result<bool, Failure> {
         while let Some(place) = self.blocks.next() {
             let block = Block::at(place, self.scenario);
@@ -154,7 +154,8 @@ mod tests {
         Ok(Vec::new())
     }
 
-    /// Shards begin where the one before ended, the first at the first block, the last ends with the last.
+    /// A shard begins at the end of the previous one, the first at the first block, and the last ends at the last
+    /// block.
     #[test]
     fn a_thousand_million_trials_belong_to_one_of_ten_thousand_shards_each() {
         const SHARDS: u64 = 10_000;
@@ -209,7 +210,7 @@ mod tests {
         let first = plan.next(1000).expect("readable");
         assert_eq!((first.len(), first[255]), (256, Task { cell: 0, replicate: 255 }));
         first.iter().for_each(|task| plan.add(&row(0, task.replicate)));
-        // One block is enough for the rule in the first cell, and in the second it is stored.
+        // The rule is met after one block of the first cell; that of the second is stored.
         assert_eq!((plan.next(1000).expect("readable"), plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
     }
 }

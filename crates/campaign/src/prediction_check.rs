@@ -1,4 +1,4 @@
-//! Check of predictions: figures of manoeuvres predicted from an estimate, and those of the true ship.
+//! Check of predictions: characteristics of manoeuvres predicted from an estimate, and those of the true ship.
 
 use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;
@@ -13,21 +13,21 @@ use crate::scenario::Predictions;
 /// True manoeuvres of the ship of a trial, with the facts of its records.
 pub struct PredictionCheck<'a> {
     asked: &'a Predictions,
-    /// True figures by name, per manoeuvre; `None` if the ship does not complete it.
+    /// True characteristics by name, per manoeuvre; `None` if the ship does not complete it.
     true_manoeuvres: Vec<Option<figures::Figures>>,
     facts: RecordFacts<'a>,
 }
 
-/// Time scale of a ship without particulars and closed form, in sampling periods of its record.
+/// Time scale of a ship without particulars or closed form, in sampling periods of its record.
 const TIMESCALE_PERIODS: f64 = 10.0;
 
-/// `true` if a figure in metres is also given in ship lengths, so that it counts once.
+/// `true` if a length in metres is also given in ship lengths, so that it counts once.
 pub fn is_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bool {
     name.strip_suffix("_m").is_some_and(|name| is_there(&format!("{name}_lengths")))
 }
 
 impl<'a> PredictionCheck<'a> {
-    /// Simulates the manoeuvres with the ship, gear and weather of a trial, and random draws independent of its
+    /// Simulates the manoeuvres with the ship, gear and weather of a trial, and random numbers independent of its
     /// records.
     pub fn new(asked: &'a Predictions, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
         let closed = simulation.vessel.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
@@ -48,7 +48,7 @@ impl<'a> PredictionCheck<'a> {
         Self { asked, true_manoeuvres: asked.kinds.iter().map(true_figures).collect(), facts: RecordFacts::of(records) }
     }
 
-    /// Predicted and true figures of the manoeuvres; figures that either side lacks are left out.
+    /// Predicted and true characteristics of the manoeuvres; those missing on either side are omitted.
     pub fn figures(&self, identified: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>) -> Box<[PredictedFigure]> {
         let mixture = identified(&self.facts).and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
         let Some(mixture) = mixture else { return Box::default() };

@@ -13,7 +13,7 @@ use crate::scenario::{Specification, TrialSpecification};
 /// Reference against which the estimates of a trial are compared.
 #[derive(Default)]
 pub struct TrialReference {
-    /// First-order response nearest to the ship; the ship itself where it is first order.
+    /// First-order response nearest to the ship; the ship itself if it is first order.
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects.
     pub base: Option<FirstOrder>,
@@ -27,7 +27,7 @@ pub struct TrialReference {
 }
 
 impl TrialReference {
-    /// Reference of the trial of a key; `traces` if a trace is among the methods.
+    /// Reference of the trial with a key; `traces` if a trace is among the methods.
     pub fn of(trial_spec: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*trial_spec.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&trial_spec.specification, key) } else { None };
@@ -37,7 +37,7 @@ impl TrialReference {
         let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
         let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        // Defined for white heading noise only.
+        // The ratio is defined for white heading noise only.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
         let white = sd.filter(|_| heading_wander.is_none());
         let ratio = |(near, sd): (NearestResponse, f64)| {
@@ -50,7 +50,7 @@ impl TrialReference {
 
 /// Output-error fit of a first-order response to undisturbed, noise-free records of a trial.
 pub struct NearestResponse {
-    /// The response.
+    /// Response.
     pub response: FirstOrder,
     /// Mean square heading error, rad².
     mean_square: f64,

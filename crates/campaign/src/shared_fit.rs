@@ -55,11 +55,11 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
 /// Fit of a method to the records of a unit.
 struct RecordFit {
     answer: FitAnswer,
-    /// Identified ship for predictions; none if nothing is predicted, and where the answer has no covariance.
+    /// Identified ship for predictions; `None` in a study without predictions, and without a covariance.
     ship: Option<IdentifiedShip>,
 }
 
-/// The answer of a method.
+/// Result of a method on the fitted records.
 enum FitAnswer {
     Response(Box<Estimate>),
     Trace(Box<Analysis>),
@@ -71,13 +71,13 @@ struct SharedTrials<'a> {
     scenario: &'a Scenario,
     tasks: &'a [Task],
     fitted: &'a [Trial],
-    /// The fitted records without heading spikes, which are excluded from all errors.
+    /// Fitted records without heading spikes, which are excluded from all errors.
     cleaned: &'a [Trial],
     /// Validation record of each trial, as read and without heading spikes.
     judges: Vec<Option<[&'a Trial; 2]>>,
 }
 
-/// Runs trials that share a fit, in order.
+/// Runs the trials of a shared fit, in order.
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
     let split = |task: &Task| &set.splits[task.replicate as usize];
     let both = [&set.trials, set.without_spikes()];
@@ -117,7 +117,7 @@ impl SharedTrials<'_> {
             }
             Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
-            // Answers of outside estimators are looked up by trial.
+            // Estimates of outside estimators are looked up by trial.
             Procedure::Answers(_) => None,
         };
         let row = |(trial, task): (usize, &Task)| {
@@ -141,14 +141,14 @@ impl SharedTrials<'_> {
         self.judges[trial].filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
-    /// The first-order response of the records; `None` for a trace.
+    /// First-order response of the records; `None` for a trace.
     fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
         let answer = procedure.identify(self.fitted, key)?;
         let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)), None);
         Some(answer.map(fit).map_err(|error| error.row_text().into_owned()))
     }
 
-    /// An answer with the identified ship for predictions; `settings` are those of a trace.
+    /// Fit with the identified ship for predictions; `settings` are those of a trace.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
@@ -182,9 +182,9 @@ impl SharedTrials<'_> {
     }
 }
 
-/// Identified ship of an answer; none without a covariance.
+/// Identified ship of a fit; `None` without a covariance.
 ///
-/// A trace whose model needs measured speed or sway cannot predict; the records are then traced again without them.
+/// A trace whose model requires measured speed or sway gives no prediction; the records are then traced without them.
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
@@ -204,8 +204,8 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
     }
 }
 
-/// Figures of the validation record, predicted by replaying its rudder with drawn ships at its scale, after removing
-/// the current that its track shows.
+/// Characteristics of the validation record, predicted by replaying its rudder with sampled ships at its scale, after
+/// removing the current determined from its track.
 fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
     let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
         (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),

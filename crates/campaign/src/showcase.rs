@@ -1,5 +1,5 @@
-//! Showcase of a cell: the first trial in detail, with its characteristics, Fourier fit, and the answers and replays of
-//! all methods, as plot data. It is computed when a study runs, and drawn from the stored file.
+//! Showcase of a cell: the first trial in detail, with its characteristics, Fourier fit, and the estimates and replays
+//! of all methods, as plot data. It is computed in the run of a study, and plotted from the stored file.
 
 use document::method::MethodEntry;
 use identify::answer::entry;
@@ -24,27 +24,27 @@ use crate::task::Task;
 pub struct Showcase {
     /// Title of the cell.
     pub title: String,
-    /// The trial with its characteristic points; absent when it is not a zig-zag.
+    /// Trial with its characteristic points; absent if it is not a zig-zag.
     pub trial: Option<ZigzagTrial>,
-    /// The Fourier fit with its residual.
+    /// Fourier fit with its residual.
     pub fourier_fit: Option<CurveFit>,
     /// Heading, yaw rate and yaw acceleration of the fits against the truth.
     pub derivatives: Option<DerivativeCurves>,
-    /// Every method's replay.
+    /// Replays of the methods.
     pub replays: Replays,
     /// K and T of every method.
     pub intervals: Intervals,
-    /// The answers of the methods.
+    /// Results of the methods.
     pub methods: Vec<ShowcaseAnswer>,
 }
 
-/// The answer of one method, with the texts of its warnings.
+/// Result of one method, with the texts of the warnings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ShowcaseAnswer {
-    /// The answer.
+    /// Entry of the method.
     #[serde(flatten)]
     pub entry: MethodEntry,
-    /// Texts of its warnings.
+    /// Texts of the warnings.
     pub warnings: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answer = |method: &Method| {
-        // A trace has no first-order answer; it has its own report.
+        // A trace gives no first-order estimate; it has its own report.
         let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
         Some(entry(&method.label, answer, &trials))
     };
@@ -122,7 +122,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
     }
 }
 
-/// Fourier curve of the heading of a trial; its time counts from the first observed row.
+/// Fourier curve of the heading of a trial; its time begins at the first observed row.
 struct FourierCurve<'a> {
     origin: CurveOrigin,
     trial: &'a Trial,
@@ -158,7 +158,7 @@ impl<'a> FourierCurve<'a> {
         self.trial.observed_rows().next().map_or(0.0, |row| self.trial.time()[row])
     }
 
-    /// Samples of a function over the window, dense enough to look smooth.
+    /// Samples of a function over the window, dense enough for a smooth curve.
     fn sampled(&self, value: impl Fn(f64) -> f64) -> PlotCurve {
         let [from, to] = self.window;
         let points = self.trial.len() * POINTS_PER_ROW;

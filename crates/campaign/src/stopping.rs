@@ -9,7 +9,7 @@ use crate::statistics::Moments;
 #[derive(Clone)]
 pub struct StopCheck {
     rule: StopRule,
-    /// Index of the method of the rule; `None` if all methods have to meet it.
+    /// Index of the method of the rule; `None` if all methods must meet it.
     method: Option<usize>,
     cell: u64,
     methods: Vec<FigureSums>,
@@ -43,7 +43,7 @@ impl StopCheck {
         }
     }
 
-    /// `true` if the standard error is at most that of the rule, for its method or for all.
+    /// `true` if the standard error is at most that of the rule, for its method or for all methods.
     pub fn is_met(&self) -> bool {
         let met = |sums: &FigureSums| {
             sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error)
@@ -55,7 +55,7 @@ impl StopCheck {
     }
 }
 
-/// Moments of relative errors, %, and counts of intervals.
+/// Moments of relative errors, %, and counts of covering intervals.
 #[derive(Debug, Clone, Copy, Default)]
 struct FigureSums {
     errors: Moments,
@@ -82,7 +82,7 @@ impl FigureSums {
                 enough(n).map(|_| error)
             }
             StopFigure::CoverageK | StopFigure::CoverageT => enough(self.quoted).map(|n| {
-                // Agresti and Coull (1998), so that a share of 0 or 1 has an error.
+                // Source: Agresti and Coull (1998); a share of 0 or 1 then has an error.
                 let (n, held) = (n + 4.0, self.held + 2.0);
                 let share = held / n;
                 100.0 * (share * (1.0 - share) / n).sqrt()

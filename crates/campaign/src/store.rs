@@ -1,5 +1,5 @@
-//! Primary files of a result folder: rows, design, showcases, timings and manifest. The manifest holds the SHA-256 of
-//! the files written on completion; each block of rows holds its own.
+//! Primary files of a result folder: rows, design, showcases, timings and manifest. The manifest contains the SHA-256
+//! of the files written on completion; each block of rows contains its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -22,21 +22,21 @@ use crate::timings::Timings;
 /// Maximum size of a stored text, bytes.
 const MAX_TEXT_BYTES: u64 = 1 << 29;
 
-/// A finished study without its rows, which are read block by block.
+/// Finished study without its rows, which are read block by block.
 pub struct StoredStudy {
     folder: PathBuf,
     /// Program, machine and scenario.
     pub manifest: Manifest,
-    /// The design.
+    /// Design.
     pub design: Design,
-    /// Showcases of the cells, where requested.
+    /// Showcases of the cells, if requested.
     pub showcases: Vec<Showcase>,
     /// Durations of the methods.
     pub timings: Timings,
 }
 
 impl StoredStudy {
-    /// Finished study of a folder. Fails as wrong input when there is none.
+    /// Finished study of a folder. Fails as wrong input without one.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let manifest = expected_in(folder)?;
         if !manifest.is_finished() {
@@ -69,7 +69,7 @@ impl StoredStudy {
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
     }
 
-    /// The study with renewed prose and cell facts; changed files are written.
+    /// Study with renewed prose and cell facts; changed files are written.
     pub(crate) fn with_descriptions(
         self,
         manifest: Manifest,
@@ -85,13 +85,13 @@ impl StoredStudy {
         Ok(Self { design: Design { prose: manifest.prose(), ..design }, manifest, ..self })
     }
 
-    /// Passes every row to `take`, in order. Fails if one is missing or belongs to another study.
+    /// Passes every row to `take`, in order. Fails if a row is missing or belongs to another study.
     pub fn rows(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         BlockStore::new(&self.folder, &self.manifest, &self.design).rows(take)
     }
 }
 
-/// Failure of a file that differs from what the study wrote.
+/// Failure of a file that differs from the file written by the study.
 fn refused(path: &Path, problem: &str) -> Failure {
     Failure::about(
         path,
@@ -117,7 +117,7 @@ pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
     if blocks::is_in(folder)? { Manifest::read(&folder.join(MANIFEST)) } else { Ok(None) }
 }
 
-/// Manifest of a folder that must hold rows.
+/// Manifest of a folder that must contain rows.
 pub fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     manifest_of_rows(folder)?.ok_or_else(|| {
         let problem = match folder.exists() {
@@ -136,7 +136,7 @@ fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Res
     Ok((text + "\n").into_bytes())
 }
 
-/// Writes a file unless its SHA-256 is unchanged, and records it.
+/// Writes a file unless its SHA-256 is unchanged, and stores the SHA-256.
 fn write(name: &str, text: &[u8], folder: &ResultFolder, sha256: &mut BTreeMap<String, String>) -> Result<(), Failure> {
     let digest = hex(&Sha256::digest(text));
     if sha256.insert(name.to_owned(), digest.clone()) == Some(digest) {
@@ -146,7 +146,7 @@ fn write(name: &str, text: &[u8], folder: &ResultFolder, sha256: &mut BTreeMap<S
     }
 }
 
-/// Completes a folder that holds all rows: writes design, showcases, timings, and the manifest last. Returns the study
+/// Completes a folder with all rows: writes design, showcases, timings, and the manifest last. Returns the study
 /// as written.
 pub(crate) fn finish(
     folder: &ResultFolder,
@@ -161,9 +161,9 @@ pub(crate) fn finish(
     let times = timings.to_text(&design)?;
     write(TIMINGS, &times, folder, &mut sha256)?;
     let manifest = Manifest { sha256, ..manifest };
-    // Last, since it makes the folder a finished study.
+    // Written last, since it makes the folder a finished study.
     manifest.write(folder)?;
-    // As written, rounded to the nanosecond.
+    // Timings as written, rounded to the nanosecond.
     let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
     let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })

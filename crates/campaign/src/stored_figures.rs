@@ -1,4 +1,4 @@
-//! Stored plot data of the first trial of a cell, and its figures.
+//! Plot data stored for the first trial of a cell, and the plots.
 
 use report::figures::{
     Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
@@ -9,28 +9,28 @@ use report::palette::{HEADING, INK, RECORD};
 use report::{CurveOrigin, PlotCurve, symbol};
 use serde::{Deserialize, Serialize};
 
-/// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
+/// Curve fitted to a heading, a Fourier series or any other, with the goodness of fit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CurveFit {
-    /// Measured heading, degrees over seconds.
+    /// Measured heading, deg, against time, s.
     pub measured: PlotCurve,
-    /// Fitted heading, degrees over seconds, dense enough to look smooth.
+    /// Fitted heading, deg, against time, s, dense enough for a smooth curve.
     pub fitted: PlotCurve,
     /// Name of the fitted curve, such as "Fourier series, 5 harmonics".
     pub fitted_name: String,
-    /// The method that fitted it; decides how the curve looks.
+    /// Method of the fit; determines the style of the curve.
     #[serde(default)]
     pub origin: Option<CurveOrigin>,
-    /// Measured minus fitted heading, degrees over seconds.
+    /// Measured minus fitted heading, deg, against time, s.
     pub residual: PlotCurve,
     /// Coefficient of determination of the heading.
     pub r_squared: Option<f64>,
-    /// Fundamental of the series, rad/s.
+    /// Fundamental frequency of the series, rad/s.
     pub fundamental_rad_s: Option<f64>,
 }
 
 impl CurveFit {
-    /// Measured points and fitted curve above, the residual on its own scale below.
+    /// Panels: measured points and fitted curve above, the residual on its own scale below.
     pub fn panels(&self) -> Panels {
         let name = if self.fitted_name.is_empty() { "fitted curve" } else { &self.fitted_name };
         let upper = vec![
@@ -53,31 +53,31 @@ impl CurveFit {
     }
 }
 
-/// One source of heading, yaw rate and yaw acceleration; an empty curve is not drawn.
+/// Heading, yaw rate and yaw acceleration from one source; an empty curve is not plotted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MotionCurves {
-    /// Where the curves come from; decides how they look.
+    /// Source of the curves; determines their style.
     pub origin: CurveOrigin,
-    /// Name in the legend, when it is not that of the origin.
+    /// Name in the legend, if it differs from that of the origin.
     pub name: Option<String>,
-    /// Heading, degrees over seconds.
+    /// Heading, deg, against time, s.
     pub heading: PlotCurve,
-    /// Yaw rate, degrees per second over seconds.
+    /// Yaw rate, deg/s, against time, s.
     pub yaw_rate: PlotCurve,
-    /// Yaw acceleration, degrees per second squared over seconds.
+    /// Yaw acceleration, deg/s², against time, s.
     pub yaw_acceleration: PlotCurve,
 }
 
 /// Headings and their derivatives.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct DerivativeCurves {
-    /// The sources, drawn in this order.
+    /// Sources, in plotting order.
     pub curves: Vec<MotionCurves>,
 }
 
 impl DerivativeCurves {
-    /// Heading, yaw rate and yaw acceleration above each other: what differentiation makes of a small error in the
-    /// heading.
+    /// Panels: heading, yaw rate and yaw acceleration above each other, with the effect of differentiation on a small
+    /// error of the heading.
     pub fn panels(&self) -> Panels {
         let row = |y: Ruler, series: fn(&MotionCurves) -> &PlotCurve| {
             let layer = |motion: &MotionCurves| {
@@ -95,39 +95,39 @@ impl DerivativeCurves {
     }
 }
 
-/// The heading a method's model gives for the recorded rudder.
+/// Replay of a method: the heading of the model for the recorded rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ReplayCurves {
-    /// The method; decides how its replay looks.
+    /// Method, which determines the style of the replay.
     pub origin: CurveOrigin,
-    /// Replayed heading, degrees over seconds.
+    /// Replayed heading, deg, against time, s.
     pub heading: PlotCurve,
-    /// Recorded minus replayed heading, degrees over seconds.
+    /// Recorded minus replayed heading, deg, against time, s.
     pub residual: PlotCurve,
-    /// Root mean square of the residual, degrees.
+    /// Root mean square of the residual, deg.
     pub rms_deg: Option<f64>,
 }
 
-/// A record and its replays.
+/// Record and its replays.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Replays {
-    /// Recorded heading, degrees over seconds.
+    /// Recorded heading, deg, against time, s.
     pub record: PlotCurve,
-    /// Noise-free heading, degrees over seconds.
+    /// Noise-free heading, deg, against time, s.
     pub truth: Option<PlotCurve>,
     /// One replay per method.
     pub replays: Vec<ReplayCurves>,
 }
 
-/// Maximum excursion of a replay beyond the range of the record, as a share of that range; beyond it is cut.
+/// Maximum excursion of a replay beyond the range of the record, as a share of that range; then it is cut.
 const HEADING_ROOM: f64 = 0.25;
-/// Limit of a residual in multiples of the median of all sizes; beyond it is cut.
+/// Limit of a residual in multiples of the median absolute value; beyond it the residual is cut.
 const RESIDUAL_ROOM: f64 = 10.0;
 
 impl Replays {
-    /// Record and replays above, one residual panel per method below, because seven of them on top of each other cannot
-    /// be read. A replay or residual that runs far off is cut at the frame, so that one failure does not flatten the
-    /// others; above every panel stands how far its residual goes.
+    /// Panels: record and replays above, one residual panel per method below, because seven residuals in one panel are
+    /// unreadable. A diverging replay or residual is cut at the frame, so that one failure does not flatten the
+    /// others; the title of every panel states the extent of its residual.
     pub fn panels(&self) -> Panels {
         let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
         let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::of(&CurveOrigin::Truth));
@@ -163,19 +163,19 @@ impl Replays {
     }
 }
 
-/// A value and, where the method gives one, its interval.
+/// Value with its interval, if the method gives one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PointEstimate {
-    /// The value.
+    /// Value.
     pub value: f64,
     /// 95 % interval.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Estimates of one method; `None` if it has none.
+/// Estimates of one method; `None` if it gives none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEstimate {
-    /// The method; decides how its row looks.
+    /// Method, which determines the style of the row.
     pub origin: CurveOrigin,
     /// Gain, 1/s.
     pub k_per_s: Option<PointEstimate>,
@@ -183,7 +183,7 @@ pub struct MethodEstimate {
     pub t_s: Option<PointEstimate>,
 }
 
-/// A pair of values to compare with.
+/// Reference values of K and T.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Reference {
     /// Gain, 1/s.
@@ -195,19 +195,19 @@ pub struct Reference {
 /// Estimates of K and T with their 95 % intervals, against the truth and the published value.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Intervals {
-    /// The estimates, from top to bottom.
+    /// Estimates, from top to bottom.
     pub estimates: Vec<MethodEstimate>,
-    /// The parameters the trial was simulated with.
+    /// Parameters of the simulated trial.
     pub truth: Option<Reference>,
-    /// The parameters printed in the literature.
+    /// Published parameters.
     pub published: Option<Reference>,
 }
 
-/// Half-width of the axis in multiples of the usual distance from the truth; values beyond are outliers.
+/// Half-width of the axis in multiples of the median distance from the truth; values beyond are outliers.
 const SPREADS: f64 = 7.0;
 
 impl Intervals {
-    /// K and T side by side, one row per method.
+    /// Rows: K and T side by side, one row per method.
     pub fn rows(&self) -> NamedRows {
         type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
         let column = |title: String, quantity: Estimated, reference: fn(&Reference) -> f64| {

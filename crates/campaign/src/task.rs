@@ -24,7 +24,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The whole study.
+    /// Whole study.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Range of `count` items in this shard: consecutive, with sizes that differ by at most one.

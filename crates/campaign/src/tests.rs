@@ -1,4 +1,4 @@
-//! Checks of every number of a scenario: NaN is refused with a message at its key and line; any other extreme value is
+//! Checks of every number of a scenario: NaN is refused with a message at its key and line. Any other extreme value is
 //! refused, or its trials end.
 
 use std::path::Path;
@@ -19,13 +19,13 @@ const EVERYTHING: [&str; 5] = [
     include_str!("tests/draws.toml"),
 ];
 
-/// Numeric keys of the study and of its methods that [`EVERYTHING`] lacks.
+/// Numeric keys of the study and its methods missing from [`EVERYTHING`].
 const OF_STUDY: &str = include_str!("tests/of_study.toml");
 
 /// Numbers of a trace.
 const OF_TRACE: &str = include_str!("tests/of_trace.toml");
 
-/// Extreme values, integers included, which are read as any other number.
+/// Extreme values, including integers, which are read as numbers.
 const EXTREMES: [&str; 11] = [
     "0",
     "-1",
@@ -62,7 +62,7 @@ fn every_number_is_checked_and_found_again() {
     }
 }
 
-/// No number of the settings of a trial is left out of these tests.
+/// Every number of the settings of a trial is among these tests.
 #[test]
 fn every_declared_number_is_among_them() {
     let texts = EVERYTHING.into_iter().chain([OF_STUDY]);
@@ -82,7 +82,7 @@ fn every_declared_number_is_among_them() {
     }
 }
 
-/// A text with one of its numbers put to `value` after the other, with line and key of the number.
+/// Texts with one number at a time set to `value`, with line and key of the number.
 fn with_each_number(text: &str, value: &str, mut see: impl FnMut(usize, &str, &str)) {
     let lines: Vec<&str> = text.lines().collect();
     for number in 0..lines.len() {
@@ -96,8 +96,8 @@ fn with_each_number(text: &str, value: &str, mut see: impl FnMut(usize, &str, &s
     }
 }
 
-/// Every extreme at every number is refused with a message, or the first trial is made and identified by every method:
-/// that this test ends is what it is about.
+/// Every extreme at every number is refused with a message, or the first trial is simulated and identified by every
+/// method. The test passes if it ends.
 fn is_refused_or_ends(text: &str) {
     parse(text).unwrap_or_else(|message| panic!("{message}"));
     for value in EXTREMES {
@@ -136,13 +136,13 @@ fn no_number_of_a_study_or_a_method_makes_a_trial_without_end() {
     is_refused_or_ends(OF_STUDY);
 }
 
-/// A trace is too slow to be run for every number here; none of them changes how long its loops are.
+/// A trace is too slow to be run for every number here; its parameters do not change the length of its loops.
 #[test]
 fn no_number_of_a_trace_is_taken_for_another() {
     for value in EXTREMES {
         with_each_number(OF_TRACE, value, |_, _, changed| {
             if !changed.contains(&OF_TRACE[..OF_TRACE.find("probability").expect("a trace")]) {
-                // Another number than one of the trace.
+                // Number of another method than the trace.
                 return;
             }
             let expected = value == "0" && changed.contains("monomials = 0");
@@ -151,8 +151,8 @@ fn no_number_of_a_trace_is_taken_for_another() {
     }
 }
 
-/// A distribution without ends reaches what no check can see beforehand: such a trial is a row with its reason, and the
-/// others are made.
+/// A distribution without ends has samples that no check foresees: such a trial is a row with its reason, and the
+/// other trials are simulated.
 #[test]
 fn a_drawn_trial_without_end_is_a_failed_row() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
@@ -203,7 +203,7 @@ fn no_list_is_longer_than_a_person_writes() {
     }
 }
 
-/// Sizes that a fixed number of digits would hide, or spell out.
+/// Magnitudes that a fixed number of digits would hide or print in full.
 #[test]
 fn numbers_are_shown_as_they_are_written() {
     for (key, value, shown) in [
@@ -220,7 +220,7 @@ fn numbers_are_shown_as_they_are_written() {
     }
 }
 
-/// What `study list effects` says can be written in a scenario, and nothing else.
+/// The keys listed by `study list effects` are exactly those allowed in a scenario.
 #[test]
 fn the_listed_keys_of_an_effect_are_those_it_has() {
     for effect in ship::effects::all() {

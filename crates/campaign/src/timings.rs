@@ -1,4 +1,5 @@
-//! Durations of simulation and identification: the only result that depends on the machine, stored apart from the rows.
+//! Durations of simulation and identification: the only result that depends on the machine, stored separately from the
+//! rows.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -16,9 +17,9 @@ const SIMULATION: &str = "(simulation)";
 pub struct TrialTiming {
     /// Index of the cell.
     pub cell: u64,
-    /// Of the simulation.
+    /// Duration of the simulation.
     pub simulation: Duration,
-    /// Of every method, in the order of the scenario; empty if the trial could not be simulated.
+    /// Duration of every method, in the order of the scenario; empty if the simulation failed.
     pub methods: Vec<Duration>,
 }
 
@@ -37,7 +38,7 @@ pub struct TimingLine {
 /// Durations of a study or a part of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings {
-    /// Moments, µs, by cell and index: 0 is the simulation, the methods follow.
+    /// Moments, µs, by cell and index: 0 is the simulation, followed by the methods.
     times: BTreeMap<(u64, usize), Moments>,
 }
 
@@ -74,7 +75,7 @@ impl Timings {
         })
     }
 
-    /// Durations from lines; methods outside the design are left out.
+    /// Durations from lines; methods outside the design are omitted.
     pub fn of_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
         let times = lines.into_iter().filter_map(|line| {
             let place = names(design).position(|name| name == line.method)?;
@@ -94,7 +95,7 @@ impl Timings {
         file.into_inner().map_err(|error| refuse(&error))
     }
 
-    /// Durations from the text of `timings.csv`; methods outside the design are left out. Fails for an invalid text.
+    /// Durations from the text of `timings.csv`; methods outside the design are omitted. Fails for an invalid text.
     pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
         Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
@@ -106,7 +107,7 @@ fn names(design: &Design) -> impl Iterator<Item = &str> {
     std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()))
 }
 
-/// A duration in µs, rounded to the nanosecond.
+/// Duration in µs, rounded to the nanosecond.
 fn to_the_nanosecond(time: f64) -> f64 {
     (time * 1e3).round() / 1e3
 }

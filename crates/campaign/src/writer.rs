@@ -12,17 +12,17 @@ use crate::scenario::Scenario;
 use crate::task::Task;
 use crate::timings::Timings;
 
-/// Age of the first unsaved row at which an incomplete block is stored, so that little is lost if the program is
+/// Age of the first unsaved row at which an incomplete block is stored, which limits the loss if the program is
 /// killed.
 const MIN_AGE: Duration = Duration::from_millis(250);
-/// The same age as a share of the run time, which applies once it is larger: blocks of long trials are written rarely.
+/// Minimum age as a share of the run time, used if it is larger: blocks of long trials are written rarely.
 const AGE_SHARE: f64 = 0.01;
 
-/// Writer of the current block; it stores a block when it is complete, and at intervals before.
+/// Writer of the current block; it stores a block on completion, and at intervals before.
 pub struct BlockWriter<'a> {
     store: &'a BlockStore<'a>,
     scenario: &'a Scenario,
-    /// The current block.
+    /// Current block.
     block: Option<Block>,
     rows: Vec<StudyRow>,
     timings: Timings,
@@ -36,7 +36,7 @@ impl<'a> BlockWriter<'a> {
         Self { store, scenario, block: None, rows: Vec::new(), timings: Timings::default(), since: None }
     }
 
-    /// Stores trials, which arrive in order, until there are no more.
+    /// Stores trials, which arrive in order, until the last one.
     pub fn store(&mut self, outcomes: impl IntoIterator<Item = Vec<TrialOutcome>>) -> Result<(), Failure> {
         let start = Instant::now();
         for outcomes in outcomes {
@@ -75,7 +75,7 @@ impl<'a> BlockWriter<'a> {
     /// Stores the current block as far as it is computed.
     fn write(&mut self) -> Result<(), Failure> {
         let Some(block) = self.block.filter(|_| self.since.take().is_some()) else { return Ok(()) };
-        // Another program may have stored more rows of it.
+        // Another program may have stored more rows of the block.
         let is_whole = self.rows.last().is_some_and(|row| row.replicate + 1 == self.range(block).end);
         if !is_whole && self.store.read(block)?.is_ok_and(|rows| rows.len() > self.rows.len()) {
             return Ok(());

@@ -6,15 +6,15 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use ship::vessel::prior::HullParticulars;
 
-/// Earlier trials given by `--prior`.
+/// Earlier trials of `--prior`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct EarlierTrials {
     /// Models of earlier trials.
     pub models: Vec<PriorModelEntry>,
-    /// Check of every hull of the models, the nearest to the records first; empty if none can be replayed over the
+    /// Check of every hull of the models, the nearest to the records first; empty if none can be replayed on the
     /// records.
     pub hulls: Vec<PriorCheckEntry>,
-    /// `true` if the records contradict the models: they contradict the nearest hull, or there is none.
+    /// `true` if the records contradict the models: they contradict the nearest hull, or there is no hull.
     pub conflict: bool,
 }
 
@@ -26,15 +26,15 @@ pub struct PriorModelEntry {
     /// Records of the model: file names by SHA-256.
     #[serde(default)]
     pub records: BTreeMap<String, String>,
-    /// Likeness of its ship: `same-ship`, `other-scale`, or `other-hull` (another loading, or a sister).
+    /// Likeness of the ship: `same-ship`, `other-scale`, or `other-hull` (another loading, or a sister).
     pub likeness: Likeness,
-    /// Factor by which the standard deviations of its estimates are widened.
+    /// Factor by which the standard deviations of the estimates are widened.
     pub factor: f64,
     /// Keys of the particulars in which the ships differ.
     pub differing: Vec<String>,
-    /// Length of its ship, m.
+    /// Length of the ship, m.
     pub length_m: f64,
-    /// Approach speed of its ship, m/s.
+    /// Approach speed of the ship, m/s.
     pub speed_m_s: f64,
 }
 
@@ -45,11 +45,11 @@ pub struct PriorCheckEntry {
     pub form: String,
     /// χ²: squared shift of the coefficients, in the metric of prior covariance minus posterior covariance.
     pub chi_square: f64,
-    /// Number of directions that the records inform.
+    /// Number of directions informed by the records.
     pub degrees_of_freedom: usize,
     /// Probability of a χ² at least as large if the models are right.
     pub p_value: f64,
-    /// Coefficients by their keys with their shift in prior standard deviations, the largest first.
+    /// Coefficients by their keys with their shift in prior standard deviations, in decreasing order.
     pub moved: Vec<(String, f64)>,
     /// `true` if the hull is a member of the result.
     pub takes_part: bool,
@@ -77,7 +77,7 @@ impl Likeness {
         }
     }
 
-    /// Factor by which standard deviations are widened. The values are judgements and were not tuned on results. 1.5: a
+    /// Factor by which standard deviations are widened. The values are judgements, not tuned on results. 1.5: a
     /// hull model of twenty coefficients is not the ship, so two trials of one ship differ by more than their errors.
     /// 2: rudder and propeller of a model work in another wake. 3: the formulas predict at best a third of a difference
     /// of loading.

@@ -31,7 +31,7 @@ pub enum IdentifiedShipError {
         /// Value in the file.
         value: f64,
     },
-    /// Hull whose form or coefficients this program does not have.
+    /// Hull with a form or coefficients unknown to this program.
     #[error(
         "the hull model `{0}` has a form or coefficients that this program does not have; fit or trace the record again"
     )]

@@ -42,7 +42,7 @@ pub enum ErrorCode {
     NoTable,
     /// Table without column names.
     NoHeader,
-    /// Time, heading or rudder without a column or without values.
+    /// Time, heading or rudder without a column or values.
     MissingChannel,
     /// Two columns for one quantity.
     DuplicateColumn,
@@ -78,7 +78,7 @@ pub enum ErrorCode {
     TooShort,
     /// Constant rudder and heading.
     NothingMoves,
-    /// Moving rudder with constant heading.
+    /// Constant heading with a moving rudder.
     HeadingConstant,
     /// Channel that alternates between two sensors.
     TwoInputs,

@@ -18,7 +18,7 @@ use crate::warning::{Warning, WarningCode, WarningSource};
 /// Schema name.
 pub const SCHEMA: &str = "fit/2";
 
-/// Method drawn in the figures, where it has an estimate.
+/// Method shown in the plots, if it gives an estimate.
 const DRAWN_METHOD: &str = "output-error";
 
 /// Record of `fit.json`.
@@ -32,27 +32,27 @@ pub struct TrialEntry {
     pub samples: usize,
     /// Duration, s.
     pub duration_s: f64,
-    /// Ship, date and draughts, where declared.
+    /// Ship, date and draughts, if declared.
     #[serde(default, skip_serializing_if = "TrialParticularsEntry::is_empty")]
     pub trial_particulars: TrialParticularsEntry,
-    /// Zig-zag characteristics; `null` when it is no zig-zag.
+    /// Zig-zag characteristics; `null` if it is no zig-zag.
     pub zigzag: Option<ZigZagEntry>,
     /// Reason why it is no zig-zag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_zigzag: Option<String>,
-    /// Turning-circle characteristics, where it is a turning circle.
+    /// Turning-circle characteristics, if it is a turning circle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub circle: Option<CircleEntry>,
 }
 
-/// Characteristics of a recorded turning circle, corrected for the current that its positions show.
+/// Characteristics of a recorded turning circle, corrected for the current determined from its positions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CircleEntry {
     /// `port` or `starboard`.
     pub side: String,
     /// Rudder angle of the turn, deg.
     pub rudder_deg: f64,
-    /// Advance at 90° of heading, ship lengths; none without positions or an unknown length.
+    /// Advance at 90° of heading, ship lengths; `null` without positions or length.
     pub advance_lengths: Option<f64>,
     /// Transfer at 90° of heading, ship lengths.
     pub transfer_lengths: Option<f64>,
@@ -60,7 +60,7 @@ pub struct CircleEntry {
     pub tactical_diameter_lengths: Option<f64>,
 }
 
-/// Turning circle predicted from the recommended estimate, where the records have speed and drift.
+/// Turning circle predicted from the recommended estimate, if the records have speed and drift.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PredictedCircleEntry {
     /// Method of the estimate.
@@ -71,7 +71,7 @@ pub struct PredictedCircleEntry {
     pub rudder_deg: f64,
     /// `true` if rudder or yaw rate are beyond those of the records.
     pub extrapolated: bool,
-    /// Number of drawn ships.
+    /// Number of sampled ships.
     pub draws: usize,
     /// Advance at 90° of heading, ship lengths.
     pub advance_lengths: MedianEntry,
@@ -81,7 +81,7 @@ pub struct PredictedCircleEntry {
     pub tactical_diameter_lengths: MedianEntry,
 }
 
-/// Median of drawn ships.
+/// Median of sampled ships.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MedianEntry {
     /// Median.
@@ -129,7 +129,7 @@ pub struct ZigZagEntry {
     pub overshoots_sd_deg: Vec<Option<f64>>,
     /// Period, s.
     pub period_s: Option<f64>,
-    /// IMO MSC.137(76), where length and speed are declared.
+    /// Criteria of IMO MSC.137(76), if length and speed are declared.
     pub imo: Vec<CriterionEntry>,
     /// Caution for a ship of less than 100 m, such as a model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -154,16 +154,16 @@ pub struct FitDocument {
     /// Identified ship of every method with a covariance, for `study predict`; SI units and radians.
     #[serde(default)]
     pub ships: BTreeMap<String, IdentifiedShip>,
-    /// Earlier trials of `--prior`, and whether the records contradict them.
+    /// Earlier trials of `--prior`, with the check for a contradiction by the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
-    /// Comparison of terms between scales, where the records have several.
+    /// Comparison of terms between scales, if the records have several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,
     /// Description of the scaling of records of several scales to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scaling: Option<String>,
-    /// Length to which dimensional numbers refer, where it is known, m.
+    /// Length to which dimensional numbers refer, if known, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
@@ -172,16 +172,16 @@ pub struct FitDocument {
     /// Amplitude of the zig-zags, to which K and T belong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
-    /// Form of MSC/Circ.1053 with the measured entries, where there are any.
+    /// Form of MSC/Circ.1053 with the measured entries, if there are any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form: Vec<ImoFormEntry>,
     /// Remarks of the form.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form_remarks: Vec<String>,
-    /// The turning circle that the answer to take predicts, with the rudder of a recorded circle, else with 35°.
+    /// Turning circle predicted from the recommended estimate, with the rudder of a recorded circle, else with 35°.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub predicted_circle: Option<PredictedCircleEntry>,
-    /// Every zig-zag identified alone, where there are several.
+    /// Every zig-zag identified alone, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
     /// Warnings on records and estimates, the most severe first.
@@ -190,18 +190,18 @@ pub struct FitDocument {
 }
 
 impl FitDocument {
-    /// Length and speed to which dimensional numbers refer, where they are known.
+    /// Length and speed to which dimensional numbers refer, if known.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
-    /// Method drawn in the figures; `None` if none has an estimate.
+    /// Method shown in the plots; `None` if no method gives an estimate.
     pub fn drawn_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
         answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
     }
 
-    /// `true` if a channel has faulty readings, or is an order in place of an angle.
+    /// `true` if a channel has faulty readings, or contains orders in place of angles.
     pub fn has_faulty_readings(&self) -> bool {
         self.warnings
             .iter()
@@ -235,7 +235,7 @@ impl VerdictEntry {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum VerdictReason {
-    /// Least heading error of all first-order responses.
+    /// Minimum heading error of all first-order responses.
     NearestReplay,
     /// A random yaw moment acts, which maximum likelihood models.
     RandomMoment,
@@ -257,7 +257,7 @@ pub enum ResidualKind {
     Random,
 }
 
-/// `true` if K and T of the records can be used.
+/// Usability of K and T of the records.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Belief {
@@ -271,23 +271,23 @@ pub enum Belief {
 /// Recommended estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct VerdictEntry {
-    /// `true` if K and T can be used.
+    /// `yes` if K and T can be used.
     #[serde(default)]
     pub believe: Belief,
-    /// Reason why they cannot.
+    /// Reason if they cannot be used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,
-    /// Recommended method; where K and T cannot be used, the one of least heading error.
+    /// Recommended method; if K and T cannot be used, the method with the minimum heading error.
     pub method: String,
-    /// K of that method, 1/s; absent where `believe` is `no`.
+    /// K of that method, 1/s; absent if `believe` is `no`.
     #[serde(rename = "K_per_s", default, skip_serializing_if = "Option::is_none")]
     pub k_per_s: Option<Quantity>,
-    /// T of that method, s; absent where `believe` is `no`.
+    /// T of that method, s; absent if `believe` is `no`.
     #[serde(rename = "T_s", default, skip_serializing_if = "Option::is_none")]
     pub t_s: Option<Quantity>,
     /// Reason for the recommendation.
     pub reason: VerdictReason,
-    /// Kind of the residual of output error, where it has an estimate.
+    /// Kind of the residual of output error, if it gives an estimate.
     pub residual: Option<ResidualKind>,
     /// Root mean square of that residual, deg.
     pub residual_deg: Option<f64>,
@@ -295,16 +295,16 @@ pub struct VerdictEntry {
     pub with_ship_terms_deg: Option<f64>,
     /// Standard deviation of the heading noise, deg.
     pub noise_deg: Option<f64>,
-    /// Delay of the acting rudder behind the recorded one, s, where it alone explains most of the residual; negative
+    /// Delay of the acting rudder behind the recorded one, s, if it alone explains most of the residual; negative
     /// for a rudder that was recorded late.
     pub rudder_delay_s: Option<f64>,
-    /// Methods whose heading error is more than ten times the least.
+    /// Methods whose heading error is more than ten times the minimum.
     pub set_apart: Vec<String>,
-    /// Root mean square about straight lines (deg), where no replay is better than these; then no method has an
-    /// estimate, and `method` is the one of least heading error.
+    /// Root mean square about straight lines, deg, if no replay is better than these; then no method gives an
+    /// estimate, and `method` is the one with the minimum heading error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_lines_deg: Option<f64>,
-    /// Output error or maximum likelihood, where its 95 % interval of K or T does not overlap that of the recommended
+    /// Output error or maximum likelihood, if its 95 % interval of K or T does not overlap that of the recommended
     /// method, or its replay is in `set_apart`.
     pub contradicted_by: Option<String>,
 }

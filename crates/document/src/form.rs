@@ -11,7 +11,7 @@ pub struct ImoFormEntry {
     pub section: String,
     /// Name of the field.
     pub field: String,
-    /// "port" or "starboard", where the form distinguishes sides.
+    /// "port" or "starboard", if the form distinguishes sides.
     pub side: Option<String>,
     /// Declared text, or declared or measured number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -22,7 +22,7 @@ pub struct ImoFormEntry {
     /// Median of a predicted or corrected number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub median: Option<f64>,
-    /// 90 % interval of the draws.
+    /// 90 % interval of the samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ci90: Option<[f64; 2]>,
     /// Unit of value and limit.
@@ -32,7 +32,7 @@ pub struct ImoFormEntry {
     /// `true` if a predicted manoeuvre is outside the range of the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolated: Option<bool>,
-    /// Share of the drawn ships of a prediction that meet the limit.
+    /// Share of the sampled ships of a prediction that meet the limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probability_of_passing: Option<f64>,
     /// Origin of the value.

@@ -41,7 +41,7 @@ pub struct RandomYawMoment {
     pub correlation_s: f64,
 }
 
-/// Hull model of three degrees of freedom with the estimate of its dimensionless coefficients.
+/// Hull model of three degrees of freedom with the estimate of the dimensionless coefficients.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IdentifiedHull {
     /// Form: `quadratic`, `cubic` or `mmg`.
@@ -52,7 +52,7 @@ pub struct IdentifiedHull {
     pub length_m: f64,
     /// Approach speed, m/s.
     pub speed_m_s: f64,
-    /// Propeller rate on the approach, 1/s, where it was recorded.
+    /// Propeller rate on the approach, 1/s, if recorded.
     pub propeller_per_s: Option<f64>,
     /// Particulars of the ship of the records by their keys, from which the priors follow; always at the scale of the
     /// records.
@@ -65,7 +65,7 @@ pub struct IdentifiedHull {
     /// Random moment of the model error.
     pub moment: RandomYawMoment,
     /// Root mean square of the initial yaw rate of its replays minus that of the straight approach, rad/s: an error of
-    /// the form in the first seconds of a manoeuvre. 0 where no record begins straight.
+    /// the form in the first seconds of a manoeuvre. 0 if no record begins straight.
     #[serde(default)]
     pub beginning_yaw_rate_rad_s: f64,
     /// Hull of the trials, for a hull at another loading; not written to a file.
@@ -84,7 +84,7 @@ pub struct TrialHull {
     pub rest: Vec<Vec<f64>>,
 }
 
-/// Particulars of a hull by their keys; missing ones are left out.
+/// Particulars of a hull by their keys; missing ones are omitted.
 pub fn by_keys(particulars: &HullParticulars) -> BTreeMap<String, f64> {
     PARTICULARS.iter().filter_map(|item| Some((item.key.to_owned(), item.get(particulars)?))).collect()
 }
@@ -95,7 +95,7 @@ pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 impl IdentifiedHull {
-    /// Hull form; fails for an unknown form, and where the coefficients are not those of the form.
+    /// Hull form. Fails for an unknown form, and if the coefficients are not those of the form.
     pub fn form(&self) -> Result<HullForm, IdentifiedShipError> {
         let refused = || self.refused();
         let forms = HullForm::candidates(Some(&self.particulars()?));
@@ -105,7 +105,7 @@ impl IdentifiedHull {
         if are_same { Ok(form) } else { Err(refused()) }
     }
 
-    /// Particulars of the ship of the records; fails for an unknown key.
+    /// Particulars of the ship of the records. Fails for an unknown key.
     pub fn particulars(&self) -> Result<HullParticulars, IdentifiedShipError> {
         let mut particulars = HullParticulars::default();
         for (key, value) in &self.particulars {
@@ -138,8 +138,8 @@ impl IdentifiedHull {
     /// hull, their covariance C and their gain G with respect to the coefficients of this hull.
     ///
     /// θ = μ + G (θ₁ − θ̂₁) + e, Cov e = C − G C₁ Gᵀ: both hulls share the errors of the trial. δ_r, value and error,
-    /// is that of the trial, because ship, sensor and side of the propeller are the same. So are the random moment as a
-    /// rudder angle, which represents the form, and its correlation time in L/U₀. The propeller rate is unknown.
+    /// is that of the trial, because ship, sensor and side of the propeller are unchanged. So are the random moment as
+    /// a rudder angle, which represents the form, and its correlation time in L/U₀. The propeller rate is unknown.
     #[must_use]
     pub fn at_loading(
         &self,

@@ -66,9 +66,9 @@ pub struct IdentifiedShip {
     pub members: Vec<WeightedStructure>,
     /// Heading noise of the records.
     pub noise: HeadingNoise,
-    /// Steering gear; `null` where the records do not show it, and the rudder then moves in steps.
+    /// Steering gear; `null` if the records do not determine it; then the rudder moves in steps.
     pub gear: Option<IdentifiedGear>,
-    /// Root mean square yaw rate at the end of straight approaches, rad/s; 0 without one.
+    /// Root mean square yaw rate at the end of straight approaches, rad/s; 0 without a straight approach.
     pub approach_yaw_rate_rad_s: f64,
     /// Range of validity.
     pub seen: ValidityRange,
@@ -76,14 +76,14 @@ pub struct IdentifiedShip {
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
     pub speed_m_s: Option<f64>,
-    /// Hull models of three degrees of freedom, the nearest to the records first. Where there are any, predictions use
+    /// Hull models of three degrees of freedom, the nearest to the records first. If there are any, predictions use
     /// them instead of the structures.
     #[serde(default)]
     pub hulls: Vec<IdentifiedHull>,
 }
 
 impl WeightedStructure {
-    /// Response model; fails for an unknown effect, and for parameters or a covariance of the wrong size.
+    /// Response model. Fails for an unknown effect, and for parameters or a covariance of the wrong size.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
         let effect = |written: &IdentifiedEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
             effects::named(&written.id, &written.form, &written.constants)
@@ -130,7 +130,7 @@ pub fn is_same_length(a: f64, b: f64) -> bool {
 }
 
 impl IdentifiedShip {
-    /// Length and speed, where both are known.
+    /// Length and speed, if both are known.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
@@ -210,7 +210,7 @@ impl IdentifiedShip {
         Ok(calm)
     }
 
-    /// Time by which the rudder was logged late, s: a negative dead time of the most probable structure; `None` if
+    /// Delay of the logged rudder, s: a negative dead time of the most probable structure; `None` if
     /// positive.
     pub fn rudder_logged_late(&self) -> Option<f64> {
         let likeliest = self.members.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
@@ -219,7 +219,7 @@ impl IdentifiedShip {
         (late > 0.0).then_some(late)
     }
 
-    /// Time scale of the ship, s: L/U where it is known, otherwise (K/T)^(−1/2) of the most probable structure, which
+    /// Time scale of the ship, s: L/U if known, otherwise (K/T)^(−1/2) of the most probable structure, which
     /// is similar.
     pub fn timescale(&self) -> Option<f64> {
         if let Some(particulars) = self.particulars() {

@@ -34,7 +34,7 @@ pub struct Validation {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// The method has an estimate.
+    /// The method gives an estimate.
     Ok,
     /// The method failed; the reason is given.
     #[default]
@@ -46,18 +46,18 @@ pub enum Status {
 pub struct MethodEntry {
     /// Identifier of the method, or its label in a scenario.
     pub method: String,
-    /// Identifier of the method, where `method` is a label.
+    /// Identifier of the method, if `method` is a label.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
     /// Success of the method.
     pub status: Status,
     /// Reason of a failure.
     pub reason: Option<String>,
-    /// Short reason of a failure for tables: "not-excited".
+    /// Short reason of a failure for tables, such as "not-excited".
     pub failure: Option<String>,
     /// K, T and δ_r.
     pub parameters: Option<IndexEstimates>,
-    /// K' and T', where length and speed of the ship are known; otherwise left out.
+    /// K' and T', if length and speed of the ship are known; otherwise omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeIndices>,
     /// `true` if 1/T < 0 (course-unstable).
@@ -66,7 +66,7 @@ pub struct MethodEntry {
     pub heading_rmse_deg: Option<f64>,
     /// Heading errors on held-out records.
     pub validation: Vec<Validation>,
-    /// Noise of the first record, where the method estimates a random moment; SI units and radians.
+    /// Noise of the first record, if the method estimates a random moment; SI units and radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<HeadingNoise>,
     /// Diagnostics of the method by name; the unit is in the name.
@@ -76,7 +76,7 @@ pub struct MethodEntry {
 }
 
 impl MethodEntry {
-    /// Identifier of the method, also where `method` is a label.
+    /// Identifier of the method, even if `method` is a label.
     pub fn id(&self) -> &str {
         self.id.as_deref().unwrap_or(&self.method)
     }

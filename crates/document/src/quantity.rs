@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Number with its standard deviation (GUM: standard uncertainty) and its 95 % interval, as far as they are known.
+/// Number with its standard deviation (GUM: standard uncertainty) and its 95 % interval, as far as known.
 ///
-/// For a quantity read off a record, `sd` covers the white noise of heading and rudder, but not slow errors such as
+/// For a quantity read from a record, `sd` includes the white noise of heading and rudder, but not slow errors such as
 /// gyro bias, drift or waves longer than the local fits. For an estimate, both are those of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Quantity {
-    /// Value, in SI units and radians unless a name says otherwise; in files `null` when it is infinite (T of a
+    /// Value, in SI units and radians unless a name states otherwise; in files `null` if infinite (T of a
     /// neutrally stable ship), read back as NaN.
     #[serde(deserialize_with = "number_or_null")]
     #[schemars(with = "Option<f64>")]
     pub value: f64,
     /// Standard deviation, in the unit of the value.
     pub sd: Option<f64>,
-    /// 95 % interval, where it is known and bounded.
+    /// 95 % interval, if known and bounded.
     pub ci95: Option<[f64; 2]>,
 }
 
@@ -54,7 +54,7 @@ impl Quantity {
         Self::new(self.value, root_sum_of_squares(self.sd, sd))
     }
 
-    /// Mean of quantities with independent errors; `None` without any.
+    /// Mean of quantities with independent errors; `None` for an empty list.
     pub fn mean(quantities: &[Self]) -> Option<Self> {
         if quantities.is_empty() {
             return None;

@@ -5,10 +5,10 @@ use ship::Particulars;
 
 use crate::quantity::Quantity;
 
-/// `true` if a dimensionless term is the same at every scale.
+/// Constancy of a dimensionless term across scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub enum Scaling {
-    /// Same, and a difference of a quarter would have been significant.
+    /// Equal, and a difference of a quarter would have been significant.
     #[serde(rename = "scales")]
     Scales,
     /// Different.
@@ -28,7 +28,7 @@ pub struct ComparedTerm {
     pub unit: String,
     /// Estimate from the records of all scales.
     pub joint: Quantity,
-    /// Estimates from the records of every scale alone; `null` where they do not determine it.
+    /// Estimates from the records of every scale alone; `null` if they do not determine it.
     pub own: Vec<Option<Quantity>>,
     /// Maximum difference between two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::quantity::Quantity;
 
-/// K and T of every zig-zag alone, which show whether they depend on the amplitude.
+/// K and T of every zig-zag alone, from which their dependence on the amplitude follows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct SingleRecords {
     /// Method of the identification.
     pub method: String,
     /// Identified zig-zags.
     pub records: Vec<SingleRecord>,
-    /// `true` if K and T of all records agree within their standard deviations (χ² at 5 %); `null` where a record has
+    /// `true` if K and T of all records agree within their standard deviations (χ² at 5 %); `null` if a record has
     /// no standard deviation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub agree: Option<bool>,

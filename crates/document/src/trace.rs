@@ -1,6 +1,6 @@
 //! Document of a trace (`trace.json`).
 //!
-//! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
+//! Angles are in degrees if a name states so; parameters of effects are in SI units and radians.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry, HorizonEntry};
 /// Schema name.
 pub const SCHEMA: &str = "trace/4";
 
-/// Number of record names in a title; one more is also listed by name.
+/// Maximum number of record names in a title; one further name is written out, too.
 const MAX_TITLE_NAMES: usize = 2;
 
 /// Verdict of a trace.
@@ -37,12 +37,12 @@ pub enum Verdict {
     /// Instrument noise alone explains the records.
     #[default]
     Clean,
-    /// A random moment acts, and no effect is named: weather does this, and so does an effect of a shape that was not
+    /// A random moment acts, and no effect is named: the cause is weather, or an effect with a shape that was not
     /// searched for.
     Disturbed,
     /// Effects are named, and the residual is noise or a random moment.
     Traced,
-    /// The residual has a shape that is no listed effect.
+    /// The residual has a shape that belongs to no listed effect.
     Located,
     /// The residual is neither random nor of a shape that was searched for.
     Unexplained,
@@ -53,7 +53,7 @@ impl Verdict {
     pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
 }
 
-/// Outcome of a candidate, the best first.
+/// Outcome of a candidate, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -68,7 +68,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Text on a page.
+    /// Text in reports.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Added => "added",
@@ -101,23 +101,23 @@ pub struct EffectEntry {
     pub equation: String,
     /// Record in which it acts; `null` for all.
     pub only: Option<String>,
-    /// `true` if it is included on request; left out where it is not.
+    /// `true` if the effect is included on request; otherwise omitted.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub asked: bool,
     /// Other effects of the group, of which one is present.
     pub aliases: Vec<String>,
-    /// Alternative forms, of the effect and of its group.
+    /// Alternative forms of the effect and its group.
     pub alias_forms: Vec<TermEntry>,
     /// Parameters by their symbols.
     pub parameters: BTreeMap<String, ParameterEntry>,
-    /// Probability that it, or one of its group, is present.
+    /// Probability that the effect, or one of its group, is present.
     pub probability: f64,
     /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probability_by_prior_odds: Vec<f64>,
-    /// −2 log of the evidence ratio with and without it; negative where it improves the model.
+    /// −2 log of the evidence ratio with and without it; negative if it improves the model.
     pub delta_bic: f64,
-    /// p value (χ²) of its coefficients beside all other candidates.
+    /// p value (χ²) of the coefficients in a fit with all other candidates.
     pub p_value: f64,
     /// Evidence in a sentence.
     pub evidence: String,
@@ -128,21 +128,21 @@ pub struct EffectEntry {
 pub struct CandidateEntry {
     /// Identifier.
     pub id: String,
-    /// Outcome of its best form.
+    /// Outcome of the best form.
     pub outcome: Outcome,
-    /// Probability that it is present in any form and record.
+    /// Probability that the effect is present in any form and record.
     pub probability: f64,
     /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`; empty if no
     /// structure has it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub probability_by_prior_odds: Vec<f64>,
-    /// −2 log evidence ratio of its best form.
+    /// −2 log evidence ratio of the best form.
     pub delta_bic: Option<f64>,
-    /// p value (χ²) of its best form.
+    /// p value (χ²) of the best form.
     pub p_value: Option<f64>,
-    /// Reason why it was not tried.
+    /// Reason if the effect was not tried.
     pub reason: Option<String>,
-    /// For a formula: symmetry of its moment under exchange of port and starboard.
+    /// Symmetry of the moment of a formula under exchange of port and starboard.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sides: Option<String>,
     /// Forms.
@@ -164,7 +164,7 @@ pub struct FormEntry {
     pub delta_bic: Option<f64>,
     /// p value (χ²).
     pub p_value: Option<f64>,
-    /// Expected squared coefficient over its variance beside all other candidates.
+    /// Expected squared coefficient over its variance in a fit with all other candidates.
     pub visibility: Option<f64>,
 }
 
@@ -254,7 +254,7 @@ pub struct RecordNoiseEntry {
     pub waves_frequency_rad_s: Option<f64>,
     /// `true` if the noise law describes the residual: innovations white, of constant variance, without outliers.
     pub describes_what_is_left: bool,
-    /// Standard deviation of the measurement noise of the rudder, where there is any.
+    /// Standard deviation of the measurement noise of the rudder, if there is any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rudder_sd_deg: Option<f64>,
     /// Times of removed compass outliers.
@@ -287,9 +287,9 @@ pub struct Document {
     pub base: Indices,
     /// Named effects, the most probable first.
     pub effects: Vec<EffectEntry>,
-    /// Random moment beside the named effects.
+    /// Random moment in addition to the named effects.
     pub disturbance: Option<DisturbanceEntry>,
-    /// Located shapes that are no listed effects, the clearest first.
+    /// Located shapes that belong to no listed effect, clearest first.
     pub located: Vec<LocatedEntry>,
     /// All candidate effects with their outcomes.
     pub candidates: Vec<CandidateEntry>,
@@ -309,7 +309,7 @@ pub struct Document {
     pub model: ModelEntry,
 }
 
-/// `trace.json`, from which text, tables and figures are made together with its files of curves.
+/// `trace.json`: together with its files of curves, the source of text, tables and plots.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TraceDocument {
     /// Result of the analysis.
@@ -327,12 +327,12 @@ pub struct TraceDocument {
     /// Amplitude of the fitted zig-zags, to which K and T of `base` belong; those of `model` belong to small motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
-    /// K and T of every fitted zig-zag alone, where there are several.
+    /// K and T of every fitted zig-zag alone, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
     /// Identified ship for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
-    /// Earlier trials of `--prior`, and whether the records contradict them.
+    /// Earlier trials of `--prior`, with the check for a contradiction by the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
     /// Description of the scaling of records of several scales to one.
@@ -344,7 +344,7 @@ pub struct TraceDocument {
 }
 
 impl TraceDocument {
-    /// Length and speed to which dimensional numbers refer, where they are known.
+    /// Length and speed to which dimensional numbers refer, if known.
     pub fn particulars(&self) -> Option<Particulars> {
         self.records.iter().find_map(RecordEntry::particulars)
     }
@@ -364,7 +364,7 @@ impl TraceDocument {
         }
     }
 
-    /// Errors on fitted records, and on records that were held out or left out in turn.
+    /// Errors on fitted records, and on records that were held out or omitted in turn.
     pub fn errors(&self) -> (Vec<RecordErrors<'_>>, Vec<RecordErrors<'_>>) {
         let error = &self.trace.error;
         let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());

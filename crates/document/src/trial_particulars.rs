@@ -1,8 +1,8 @@
-//! Ship, day and draughts of a trial, as documents and the first pages of reports name them.
+//! Ship, day and draughts of a trial, for documents and the first pages of reports.
 
 use serde::{Deserialize, Serialize};
 
-/// Ship, date and draughts of a trial; undeclared ones are left out.
+/// Ship, date and draughts of a trial; undeclared ones are omitted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TrialParticularsEntry {
     /// Name of the ship.
@@ -23,7 +23,7 @@ pub struct TrialParticularsEntry {
 }
 
 impl TrialParticularsEntry {
-    /// `true` if nothing is declared.
+    /// `true` if there is no declaration.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::names;
 
-/// Severity of a warning; the most severe first.
+/// Severity of a warning, most severe first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
@@ -39,7 +39,7 @@ pub enum WarningCode {
     RudderOrder,
     /// Rudders or instruments disagree.
     RuddersApart,
-    /// An implausible record is accepted because its sidecar says so.
+    /// An implausible record is accepted because of its sidecar.
     Implausible,
     /// An instrument or a logger clips, freezes, rounds or holds its readings, or counts in a unit of its own.
     FaultyReadings,
@@ -79,11 +79,11 @@ pub enum WarningCode {
     OddHeadings,
     /// Earlier trials contradict the records, or have another speed.
     EarlierTrials,
-    /// The records contradict the hull model that another loading needs.
+    /// The records contradict the hull model required for another loading.
     NoLoading,
     /// The records of a model do not identify K and T.
     NotIdentified,
-    /// A figure or a manoeuvre is missing from a prediction.
+    /// A characteristic or a manoeuvre is missing from a prediction.
     Unpredicted,
     /// A correction to another loading is missing or uncertain.
     Correction,
@@ -109,11 +109,11 @@ pub enum WarningCode {
     Answer,
     /// Particulars that depend on the loading are kept as at the trials.
     KeptParticulars,
-    /// Heading or speed has another reference than a track needs.
+    /// Heading or speed has another reference than required for a track.
     OtherReference,
     /// No track can be predicted.
     NoTrack,
-    /// Random moment or correlated noise beside the white compass noise.
+    /// Random moment or correlated noise in addition to the white compass noise.
     Noise,
     /// Rows, sentences or columns are skipped.
     LeftOut,
@@ -183,7 +183,7 @@ impl WarningSource {
     }
 }
 
-/// A warning.
+/// Warning on a record, a fit or a prediction.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Warning {
     /// Subject.
@@ -197,7 +197,7 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// Warning with the severity of its code.
+    /// Warning with the severity of the code.
     pub fn new(code: WarningCode, source: WarningSource, text: impl Into<String>) -> Self {
         Self { code, severity: code.severity(), source, text: text.into() }
     }

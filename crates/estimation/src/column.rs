@@ -1,11 +1,11 @@
-//! Sums over columns of numbers. Every sum runs in eight lanes that are added up pairwise at the end: the lanes are
-//! independent, so a processor can work on them side by side, and pairwise sums lose fewer digits.
+//! Sums over columns of numbers. Every sum has eight lanes that are added pairwise at the end: the lanes are
+//! independent, so a processor can compute them in parallel, and pairwise sums have smaller rounding errors.
 //!
 //! Source: Higham (2002), Accuracy and Stability of Numerical Algorithms, second edition, chapter 4.
 
 use crate::lanes::{Kernel, run};
 
-/// Number of partial sums side by side.
+/// Number of partial sums computed in parallel.
 const LANES: usize = 8;
 
 /// Pairwise sum of the lanes.
@@ -15,7 +15,7 @@ fn total(lanes: [f64; LANES]) -> f64 {
     ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
-/// Gram matrix Σ xᵢ xⱼ of `N` columns; columns of different length are cut to the shortest.
+/// Gram matrix Σ xᵢ xⱼ of `N` columns; columns of different length are truncated to the shortest.
 pub fn gram<const N: usize>(columns: [&[f64]; N]) -> [[f64; N]; N] {
     run(Gram(columns))
 }
@@ -67,7 +67,7 @@ pub struct ColumnProjection {
     pub share: f64,
 }
 
-/// Removes from a column, in place, its projection on the constant and on `unit` (unit length, zero mean, as many
+/// Projection of a column, which is removed in place, on the constant and on `unit` (unit length, zero mean, as many
 /// rows).
 pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
     run(Project { unit, column })
@@ -129,7 +129,7 @@ pub fn sum(x: &[f64]) -> f64 {
     total(sums)
 }
 
-/// Minimum and largest value of a column. NaN is ignored; an empty column gives (∞, −∞).
+/// Minimum and maximum of a column. NaN is ignored; an empty column gives (∞, −∞).
 #[inline]
 pub fn extremes(x: &[f64]) -> (f64, f64) {
     let (blocks, tail) = x.as_chunks::<LANES>();

@@ -9,8 +9,8 @@ use crate::column::{dot, gram};
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over records.
 ///
 /// `scores[record][unknown]` is the column of residual times Jacobian; the result has one row and column per unknown.
-/// The lag grows with the first-order autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The
-/// Bartlett sum equals the mean square of sums over all windows of one length, which needs one pass.
+/// The maximum lag increases with the first-order autocorrelation of the scores (Andrews 1991) up to a quarter of the
+/// record. The Bartlett sum equals the mean square of sums over all windows of one length, which needs one pass.
 pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
     let unknowns = scores.first().map_or(0, |record| record.as_ref().len());
     let mut sum = DMatrix::zeros(unknowns, unknowns);
@@ -33,7 +33,7 @@ pub fn newey_west<S: AsRef<[Vec<f64>]>>(scores: &[S]) -> DMatrix<f64> {
     sum
 }
 
-/// Window length (lags plus one) from the autocorrelation of the scores, the largest over the unknowns.
+/// Window length (lags plus one) from the autocorrelation of the scores; the maximum over the unknowns.
 fn bandwidth(scores: &[Vec<f64>]) -> usize {
     let rows = scores.first().map_or(0, Vec::len);
     let max_length = (rows / 4).max(1);
@@ -61,7 +61,7 @@ fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
         window += entering - leaving;
         window
     }));
-    // The window that holds only the last row is the last one.
+    // The window with only the last row is the last window.
     sums.extend(column[column.len() - full..].iter().take(full.saturating_sub(1)).map(|leaving| {
         window -= leaving;
         window

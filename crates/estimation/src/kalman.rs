@@ -1,8 +1,8 @@
-//! Kalman filter of a linear system whose readings come in a fixed order. Gains and variances do not depend on the
-//! values read, so the filter is a linear map that whitens columns of readings.
+//! Kalman filter of a linear system with readings in a fixed order. Gains and variances do not depend on the values of
+//! the readings, so the filter is a linear map that whitens columns of readings.
 //!
 //! x ← F x + w before a reading, cov w = Q; a sensor reads one state or the sum of two, with white noise. With one kind
-//! of reading at even times the gain becomes stationary; from there on no covariance is computed.
+//! of reading at even times the gain becomes stationary; then no further covariance is computed.
 //!
 //! Sources: Kalman (1960), Journal of Basic Engineering 82:35-45; Harvey (1989), Forecasting, Structural Time Series
 //! Models and the Kalman Filter, for the prediction error decomposition.
@@ -26,14 +26,14 @@ const GAIN_TOLERANCE: f64 = 1e-10;
 /// Time step of a linear system: transition matrix F and process-noise covariance Q.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<const N: usize> {
-    /// F.
+    /// Transition matrix F.
     pub transition: [[f64; N]; N],
-    /// Q.
+    /// Process-noise covariance Q.
     pub added: [[f64; N]; N],
 }
 
 impl<const N: usize> Step<N> {
-    /// This step followed by `next`.
+    /// Combined step: this step followed by `next`.
     pub fn then(&self, next: &Self) -> Self {
         Self { transition: product(&next.transition, &self.transition), added: next.propagate(&self.added) }
     }
@@ -44,7 +44,7 @@ impl<const N: usize> Step<N> {
     }
 }
 
-/// Sensor: reads a state, or the sum of two states, with white noise.
+/// Sensor of a state, or of the sum of two states, with white noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Sensor {
     /// Index of the state.
@@ -56,7 +56,7 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// Reading without noise, for several state vectors side by side.
+    /// Reading without noise, for several state vectors at once.
     #[inline(always)]
     fn observe<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
         match self.beside {
@@ -67,10 +67,10 @@ impl Sensor {
     }
 }
 
-/// One reading: the time step before it, and its sensor.
+/// Reading: the time step before it, and its sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reading {
-    /// Index of the time step before it; `None` if no time passes.
+    /// Index of the time step before the reading; `None` if no time passes.
     pub step: Option<usize>,
     /// Index of the sensor.
     pub sensor: usize,
@@ -79,11 +79,11 @@ pub struct Reading {
 /// Linear system with the sequence of its readings.
 #[derive(Debug, Clone)]
 pub struct System<const N: usize> {
-    /// Different time steps.
+    /// Distinct time steps.
     pub steps: Vec<Step<N>>,
-    /// Different sensors.
+    /// Distinct sensors.
     pub sensors: Vec<Sensor>,
-    /// Readings in the order of time.
+    /// Readings in order of time.
     pub readings: Vec<Reading>,
     /// Covariance of the state before the first reading.
     pub initial: [[f64; N]; N],
@@ -91,7 +91,7 @@ pub struct System<const N: usize> {
 
 impl<const N: usize> System<N> {
     /// System with one reading per row: the first state, or its sum with the state `beside`, with the noise variance of
-    /// that row. `row_steps` has the index of the time step before every row; that of the first row is ignored.
+    /// that row. `row_steps` has the index of the time step before every row; the first index is ignored.
     pub fn from_rows(
         steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
@@ -138,7 +138,7 @@ impl<const N: usize> Filter<N> {
         Self::with_tolerance(system, GAIN_TOLERANCE)
     }
 
-    /// Filter whose gains count as stationary when their relative change is below `tolerance`.
+    /// Filter whose gains are taken as stationary if their relative change is below `tolerance`.
     pub fn with_tolerance(system: System<N>, tolerance: f64) -> Self {
         Self::visiting(system, tolerance, |_| ())
     }
@@ -199,7 +199,7 @@ impl<const N: usize> Filter<N> {
     }
 }
 
-/// Corrects the covariance by a reading and returns its gain.
+/// Kalman gain of a reading; corrects the covariance by the reading.
 fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> Gain<N> {
     let seen: [f64; N] = std::array::from_fn(|i| match sensor.beside {
         Some(beside) => covariance[i][sensor.state] + covariance[i][beside],
@@ -220,7 +220,7 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> G
     Gain { gain, variance }
 }
 
-/// Runs an expression with the number of states as a constant, chosen at run time.
+/// Evaluation of an expression with the number of states as a constant, chosen at run time.
 #[macro_export]
 macro_rules! with_states {
     ($states:expr, $N:ident => $body:expr) => {
@@ -305,7 +305,7 @@ impl Whitener {
     }
 }
 
-/// Number of columns whitened side by side, and of rows copied side by side for it at a time.
+/// Number of columns whitened at once, and number of rows copied at a time for them.
 const COLUMNS: usize = 8;
 const ROWS: usize = 64;
 
@@ -322,7 +322,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
     fn call(self) {
         let Whitener { transitions, sensors, gains, readings, .. } = self.whitener;
         let mut x = [[0.0; COLUMNS]; N];
-        // A missing column holds zeros.
+        // A missing column contains zeros.
         let mut block = [[0.0; COLUMNS]; ROWS];
         for (number, readings) in readings.chunks(ROWS).enumerate() {
             let rows = number * ROWS..number * ROWS + readings.len();
@@ -353,7 +353,7 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
     }
 }
 
-/// Product F x for several state vectors side by side.
+/// Product F x for several state vectors at once.
 #[inline(always)]
 fn advanced<const N: usize, const COLUMNS: usize>(
     f: &[[f64; MAX_STATES]; MAX_STATES],

@@ -1,15 +1,16 @@
-//! Vector arithmetic. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] has it compiled for every
-//! instruction set of the family of processors and picks the widest that the machine has when the program runs.
+//! Vector arithmetic. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] compiles it for every
+//! instruction set of the processor family and selects the widest one of the machine at run time.
 //!
-//! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across
-//! lanes are written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide
-//! registers takes the same steps with narrow ones. [`on_every_instruction_set`] is for the tests that prove it.
+//! The results do not depend on the selection, to the last bit: every lane executes the operations of the source in
+//! their order, additions across lanes are explicit, and a compiler that conforms to IEEE 754 neither reorders nor
+//! fuses them. A machine without wide registers executes the same operations with narrow registers.
+//! [`on_every_instruction_set`] serves the tests of this property.
 
 use pulp::Arch;
-/// Loop over lanes: `call` has to be `#[inline(always)]`, or it stays compiled for the narrowest registers.
+/// Loop over lanes: `call` must be `#[inline(always)]`; otherwise it is compiled for the narrowest registers.
 pub use pulp::NullaryFnOnce as Kernel;
 
-/// Runs a kernel with the widest registers of this machine.
+/// Output of a kernel, run with the widest instruction set of this machine.
 #[inline]
 pub fn run<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
@@ -32,7 +33,7 @@ pub fn instruction_set() -> &'static str {
         .unwrap_or("plain")
 }
 
-/// Outputs of a kernel as plain code and with every instruction set of this machine, with the name of each.
+/// Outputs of a kernel as plain code and with every instruction set of this machine, each with its name.
 pub fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "only one family has several sets"))]
     let mut outputs = vec![("plain", kernel().call()), ("chosen", run(kernel()))];

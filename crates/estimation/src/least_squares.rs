@@ -1,4 +1,4 @@
-//! Linear least squares with scaled columns, a covariance and a condition number.
+//! Linear least squares with scaled columns, covariance and condition number.
 //!
 //! Source: Golub and Van Loan (2013), Matrix Computations, fourth edition, chapter 5.
 
@@ -11,9 +11,9 @@ pub enum LeastSquaresError {
     /// Fewer rows than columns.
     #[error("needs at least {needed} equations, found {found}")]
     TooFewRows {
-        /// Columns.
+        /// Number of columns.
         needed: usize,
-        /// Rows.
+        /// Number of rows.
         found: usize,
     },
     /// Parallel columns, or a column that is zero or not finite.
@@ -31,13 +31,13 @@ pub enum LeastSquaresError {
 pub struct LeastSquares {
     /// Estimate θ, one value per column.
     pub parameters: DVector<f64>,
-    /// Unscaled covariance (XᵀX)⁻¹; times a noise variance it is the covariance of θ.
+    /// Unscaled covariance (XᵀX)⁻¹; multiplied by the noise variance it is the covariance of θ.
     pub unscaled_covariance: DMatrix<f64>,
     /// Residual sum of squares.
     pub rss: f64,
-    /// Rows less columns.
+    /// Number of rows minus number of columns.
     pub degrees_of_freedom: f64,
-    /// Ratio of largest to smallest singular value of X with its columns scaled to unit length.
+    /// Ratio of the maximum to the minimum singular value of X with its columns scaled to unit length.
     pub condition: f64,
 }
 
@@ -45,7 +45,7 @@ impl LeastSquares {
     /// Solution by singular values of the scaled columns; every column has as many rows as `y`.
     ///
     /// Fails with [`LeastSquaresError::TooFewRows`] for fewer rows than columns, and with
-    /// [`LeastSquaresError::Singular`] when the condition number of the scaled columns exceeds `condition_limit`.
+    /// [`LeastSquaresError::Singular`] if the condition number of the scaled columns exceeds `condition_limit`.
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, LeastSquaresError> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {
@@ -59,7 +59,7 @@ impl LeastSquares {
         }
         let design = DMatrix::from_fn(rows, width, |row, column| columns[column][row] / scale[column]);
         let target = DVector::from_column_slice(y);
-        // QR first: the singular values of R are those of X, and R is small.
+        // QR first: R has the singular values of X, and R is small.
         let qr = design.clone().qr();
         let mut rotated = target.clone();
         qr.q_tr_mul(&mut rotated);

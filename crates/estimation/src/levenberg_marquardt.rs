@@ -1,8 +1,8 @@
 //! Nonlinear least squares between bounds by damped Gauss–Newton steps.
 //!
-//! J(θ) = Σ e², plus prior terms in θ where the caller has them. The caller computes e and its exact derivatives; this
-//! module makes the steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound whose
-//! gradient points outwards stays there. Work space is allocated once a search.
+//! J(θ) = Σ e², plus prior terms in θ, if any. The caller computes e and its exact derivatives; this module makes the
+//! steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound whose gradient points
+//! outwards is held. Work space is allocated once per search.
 //!
 //! Sources: Levenberg (1944), Quarterly of Applied Mathematics 2:164-168; Marquardt (1963), Journal of the Society for
 //! Industrial and Applied Mathematics 11:431-441; Moré (1978).
@@ -14,11 +14,11 @@ pub trait Objective {
     /// Lower and upper bound of an unknown.
     fn bounds(&self, unknown: usize) -> [f64; 2];
 
-    /// Value of J at a point; not finite where the model fails.
+    /// Value of J at a point; not finite if the model fails.
     fn value(&mut self, at: &[f64]) -> f64;
 
-    /// Writes the normal equations at a point and returns J. Called at the start and at every accepted point, there
-    /// straight after [`value`](Self::value), so that intermediate results of that call can be reused.
+    /// Value of J at a point; writes the normal equations. Called at the start and at every accepted point, there
+    /// immediately after [`value`](Self::value), so that intermediate results of that call can be reused.
     fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64;
 }
 
@@ -40,11 +40,11 @@ pub struct SearchSettings {
     pub damping: f64,
     /// Factor on the damping after a step whose decrease of J is at least `trust_ratio` times the predicted decrease.
     pub shrink: f64,
-    /// Minimum ratio of actual to predicted decrease at which the damping shrinks.
+    /// Minimum ratio of actual to predicted decrease at which the damping is reduced.
     pub trust_ratio: f64,
-    /// Factor on the damping after a step that does not lower J.
+    /// Factor on the damping after a step that does not reduce J.
     pub grow: f64,
-    /// Lower bound of the damping after an accepted step, and after a rejected one.
+    /// Lower bound of the damping after an accepted step, and after a rejected step.
     pub min_damping: [f64; 2],
     /// Number of rejected steps in a row that ends a search.
     pub max_rejections: usize,
@@ -52,16 +52,16 @@ pub struct SearchSettings {
     pub min_decrease: f64,
     /// Absolute and relative tolerance for a small decrease of J.
     pub tolerance: [f64; 2],
-    /// Number of steps in a row with such a small decrease that ends a search.
+    /// Number of steps in a row with a decrease below `tolerance` that ends a search.
     pub max_small_steps: usize,
 }
 
 /// Reason why a search stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchEnd {
-    /// Converged: steps no longer lower J.
+    /// Convergence: steps no longer reduce J.
     Converged,
-    /// No step lowers J, however short: a minimum to rounding, or a kink near one.
+    /// No step, however short, reduces J: a minimum to within rounding, or a kink near a minimum.
     Stalled,
     /// Maximum number of steps reached.
     StepLimit,
@@ -69,7 +69,7 @@ pub enum SearchEnd {
     NotFinite,
 }
 
-/// Result of a search: the point where it stopped.
+/// Result of a search: the point at which it stopped.
 #[derive(Debug, Clone)]
 pub struct Minimum {
     /// Estimate θ.
@@ -88,7 +88,7 @@ pub struct Minimum {
 const RIDGE: f64 = 1e-11;
 
 impl Normal {
-    /// Normal equations of this many unknowns, all zero.
+    /// Normal equations with this number of unknowns, all zero.
     pub fn zeros(unknowns: usize) -> Self {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), gradient: DVector::zeros(unknowns) }
     }
@@ -101,7 +101,7 @@ impl Normal {
 
 /// Work space of a search.
 struct StepWorkspace {
-    /// Inverse square roots of the second derivatives; one where J does not depend on an unknown.
+    /// Inverse square roots of the second derivatives; one if J does not depend on the unknown.
     scale: DVector<f64>,
     held: Vec<bool>,
     right: DVector<f64>,
@@ -126,7 +126,7 @@ impl StepWorkspace {
         }
     }
 
-    /// Computes a damped step and returns the predicted decrease of J; `None` if the step is not finite.
+    /// Predicted decrease of J by a damped step, which is computed; `None` if the step is not finite.
     fn damped_step(&mut self, normal: &Normal, damping: f64) -> Option<f64> {
         let unknowns = self.right.len();
         for j in 0..unknowns {
@@ -152,7 +152,7 @@ impl StepWorkspace {
     }
 }
 
-/// Minimises J between the bounds, from a starting point.
+/// Minimum of J between the bounds, from a starting point.
 pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &SearchSettings) -> Minimum {
     let unknowns = start.len();
     let (mut at, mut next) = (start, DVector::zeros(unknowns));
@@ -222,7 +222,7 @@ mod tests {
         max_small_steps: 2,
     };
 
-    /// Rosenbrock's valley as the squares of 10 (y − x²) and 1 − x, with a bound on x.
+    /// Rosenbrock's valley as the sum of squares of 10 (y − x²) and 1 − x, with a bound on x.
     struct Valley {
         max_x: f64,
     }

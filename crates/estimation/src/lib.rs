@@ -5,7 +5,7 @@
 //! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`lanes`] |
 //! | the discrete Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother | [`kalman`] |
-//! | exact discretisation of such systems, and sample paths | [`stochastic`] |
+//! | exact discretisation of linear stochastic systems, and sample paths | [`stochastic`] |
 //! | dual numbers, which carry derivatives | [`number`] |
 //! | linear least squares with covariance and condition number | [`least_squares`] |
 //! | nonlinear least squares between bounds | [`levenberg_marquardt`] |

@@ -2,8 +2,8 @@
 //!
 //! Source: Kiefer (1953), Proceedings of the American Mathematical Society 4:502-506, for the golden section.
 
-/// Argument and value of the minimum on [lo, hi]: a grid of `points` intervals, then six golden sections about the
-/// lowest grid point.
+/// Argument and value of the minimum on [lo, hi]: a grid of `points` intervals, then six golden sections about the grid
+/// point of the least value.
 pub fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
     let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
     let heights: Vec<f64> = (0..=points).map(|k| value(at(k))).collect();
@@ -42,7 +42,7 @@ mod tests {
         assert!((place - 0.7).abs() < 0.02 && (value + 2.0).abs() < 1e-3, "{place}, {value}");
         assert_eq!(minimum(-1.0, 3.0, 12, |x| x).0, -1.0);
         assert_eq!(minimum(-1.0, 3.0, 12, |x| -x).0, 3.0);
-        // Two valleys: the grid sees both.
+        // Two minima: the grid contains both.
         let (place, _) = minimum(-2.0, 2.0, 12, |x: f64| (x * x - 1.0).powi(2) + 0.3 * x);
         assert!((place + 1.0).abs() < 0.1, "{place}");
     }

@@ -8,7 +8,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// Number of bisections for a quantile.
 const BISECTIONS: usize = 100;
 
-/// Mean, and where they exist the standard deviation and the interval from the 2.5 % to the 97.5 % quantile.
+/// Mean and, if they exist, the standard deviation and the interval from the 2.5 % to the 97.5 % quantile.
 pub type MixtureSummary = (f64, Option<(f64, [f64; 2])>);
 
 /// Mixture of normal distributions; weights need not sum to one.
@@ -19,8 +19,8 @@ pub struct NormalMixture {
 }
 
 impl NormalMixture {
-    /// Mean, standard deviation and 95 % interval of the mixture; the mean alone where a component has no finite
-    /// standard deviation.
+    /// Mean, standard deviation and 95 % interval of the mixture; the mean alone if a component has no finite standard
+    /// deviation.
     pub fn summary(&self) -> MixtureSummary {
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
         let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
@@ -50,7 +50,7 @@ impl NormalMixture {
     }
 }
 
-/// Argument at which `is_below` turns false, by bisection.
+/// Argument at which `is_below` becomes false, by bisection.
 fn bisect(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -68,7 +68,7 @@ pub struct NormalPair {
     pub denominator: (f64, f64),
     /// Mean and variance of the numerator.
     pub numerator: (f64, f64),
-    /// Covariance of both.
+    /// Covariance of denominator and numerator.
     pub covariance: f64,
 }
 
@@ -82,7 +82,7 @@ impl NormalPair {
 /// Ratio of numerator to denominator in the most probable model, with standard deviation and 95 % interval over all
 /// models.
 ///
-/// P(b/a < k) = P(b − k a < 0), and b − k a is normal in every model (Fieller 1954). Without an interval where the 95 %
+/// P(b/a < k) = P(b − k a < 0), and b − k a is normal in every model (Fieller 1954). No interval is given if the 95 %
 /// interval of the denominator contains zero.
 pub fn ratio(pairs: &[NormalPair]) -> MixtureSummary {
     let best = pairs.iter().max_by(|left, right| left.weight.total_cmp(&right.weight));
@@ -126,7 +126,7 @@ mod tests {
         assert!(low < -0.1 && high > 1.1 && (mean - 0.5).abs() < 1e-12);
     }
 
-    /// Far from zero the interval of a ratio is that of the delta method; near zero there is none.
+    /// Interval of a ratio: far from zero that of the delta method, near zero none.
     #[test]
     fn a_ratio_has_an_interval_away_from_zero() {
         let pair = |a: f64| NormalPair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };

@@ -1,7 +1,7 @@
 //! Number types of the equations: plain values, and dual numbers, which carry derivatives. One replay in dual numbers
 //! gives the heading and its exact sensitivities to several parameters (forward automatic differentiation).
 //!
-//! Equations are written once, for any [`Real`]; the values are computed by the same operations in both types.
+//! Equations are written once, for any [`Real`]; the values are computed by the same operations in all types.
 //!
 //! Source: Wengert (1964), Communications of the ACM 7:463-464.
 
@@ -47,7 +47,7 @@ pub trait Real:
         (self.chained(sin, cos), self.chained(cos, -sin))
     }
 
-    /// Angle of the point (x, y), where this number is y.
+    /// Angle of the point (x, y), with this number as y.
     #[inline]
     fn atan2(self, x: Self) -> Self {
         let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
@@ -104,7 +104,7 @@ pub trait Real:
         if self.value() < 0.0 { -self } else { self }
     }
 
-    /// Maximum of the number and a constant; the number at equality.
+    /// Maximum of the number and a constant; at equality the number.
     fn at_least(self, least: f64) -> Self {
         if self.value() >= least { self } else { Self::from(least) }
     }
@@ -158,7 +158,7 @@ pub struct Dual<const DIRECTIONS: usize> {
 }
 
 impl<const N: usize> Dual<N> {
-    /// Variable with this value, whose derivative in one direction is `slope` and zero in the others.
+    /// Variable with this value, whose derivative in one direction is `slope` and zero in all other directions.
     pub fn variable(value: f64, direction: usize, slope: f64) -> Self {
         let mut by = [0.0; N];
         by[direction] = slope;
@@ -282,7 +282,7 @@ impl<const N: usize> Real for Dual<N> {
     fn powf(self, exponent: Self) -> Self {
         let power = self.value.powf(exponent.value);
         let by_base = exponent.value * power / self.value;
-        // A logarithm costs as much as the power; a constant exponent needs none.
+        // A logarithm costs as much as the power; a constant exponent requires none.
         let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
         self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
     }
@@ -293,7 +293,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// Every function of the trait in one expression, of two variables.
+    /// Expression of two variables with every function of the trait.
     fn expression<R: Real>(x: R, y: R) -> R {
         let (sin, cos) = (x * y).sin_cos();
         let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0 + (x * x + 0.1).sqrt().ln() * (y * 0.3).exp();

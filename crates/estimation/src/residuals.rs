@@ -19,7 +19,7 @@ pub struct GappedSeries {
 }
 
 impl GappedSeries {
-    /// Series of a residual (NaN where missing) at times in s, which are usually `period` seconds apart.
+    /// Series of a residual (NaN where missing) at times in s, whose usual spacing is `period` seconds.
     pub fn new(time: &[f64], residual: &[f64], period: f64) -> Self {
         let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
         let intervals = || rows.windows(2).map(|pair| (time[pair[1]] - time[pair[0]]) / period);
@@ -51,7 +51,7 @@ impl GappedSeries {
 pub struct Whiteness {
     /// Lag-1 autocorrelation, pooled over records.
     pub lag1: f64,
-    /// p-value: probability of autocorrelations as large as these in white noise, pooled over records.
+    /// p-value: probability of autocorrelations at least as large in white noise, pooled over records.
     pub p_value: f64,
 }
 
@@ -63,7 +63,7 @@ pub fn whiteness_lags(count: usize) -> usize {
     MAX_LAG.min(count / 4)
 }
 
-/// Whiteness test of the residuals of several records together.
+/// Whiteness test of the residuals of several records, pooled.
 ///
 /// Q = n (n + 2) Σ ρ²/(n − k) (Ljung and Box 1978); with missing values every ρ is weighted by its number of pairs
 /// (Stoffer and Toloi 1992).
@@ -102,7 +102,8 @@ pub struct Autocorrelation {
 
 /// Autocorrelations at lags 1, 2, …, `lags`; a lag without a pair of values is left out.
 ///
-/// ρ_k = Σ x_i x_j / Σ x²; with n values on N grid points and m pairs, times n (N − k)/(N m), which is 1 without gaps.
+/// ρ_k = Σ x_i x_j / Σ x²; with n values on N grid points and m pairs it is multiplied by n (N − k)/(N m), which is 1
+/// without gaps.
 pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelation> {
     let GappedSeries { steps, values, .. } = series;
     let square: f64 = values.iter().map(|e| e * e).sum();
@@ -139,9 +140,9 @@ const MAX_POINTS_PER_VALUE: usize = 16;
 
 /// Periodogram: the share of the mean square at every multiple of the lowest frequency.
 ///
-/// With missing values it is the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares
-/// sine. On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than
-/// four values, and when nearly all grid points are gaps.
+/// With missing values, the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares sine.
+/// On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than four
+/// values, or if nearly all grid points are gaps.
 pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
     let (n, span) = (series.values.len(), series.span());
     if n < 4 || span > MAX_POINTS_PER_VALUE * n {
@@ -173,8 +174,8 @@ pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
         .collect()
 }
 
-/// Sum of squares explained by a sine, from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. At the phase at which
-/// cosine and sine are orthogonal, their squared norms are (n ± |Σ e^(−2iωt)|)/2.
+/// Sum of squares explained by a sine, from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. At the phase of
+/// orthogonal cosine and sine, their squared norms are (n ± |Σ e^(−2iωt)|)/2.
 fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     let length = twice.norm();
     let half_angle = 0.5 * (-twice.im).atan2(twice.re);
@@ -184,8 +185,8 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     part(by_cos * cos + by_sin * sin, 0.5 * (n + length)) + part(by_sin * cos - by_cos * sin, 0.5 * (n - length))
 }
 
-/// p-value of constant variance: normal numbers with one variance have a cumulative sum of squares as far from a
-/// straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large, with this probability.
+/// p-value of constant variance: probability that normal numbers with one variance have a cumulative sum of squares as
+/// far from a straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large.
 pub fn constant_variance_p_value(numbers: &[f64]) -> f64 {
     let n = numbers.len() as f64;
     let total: f64 = numbers.iter().map(|x| x * x).sum();
@@ -221,7 +222,7 @@ mod tests {
 
     use std::f64::consts::TAU;
 
-    /// A sine of 20 s on rows of 1 s, where a row is recorded.
+    /// Sine with a period of 20 s in rows of 1 s; only rows that are recorded.
     fn sine(recorded: impl Fn(usize) -> bool) -> GappedSeries {
         let time: Vec<f64> = (0..600).map(f64::from).collect();
         let residual: Vec<f64> =
@@ -248,7 +249,7 @@ mod tests {
         }
     }
 
-    /// The autocorrelation of a sine is a cosine at the true lag.
+    /// Autocorrelation of a sine: a cosine at the true lag.
     #[test]
     fn lags_are_those_of_the_clock() {
         for (number, pattern) in patterns().into_iter().enumerate() {
@@ -261,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Without holes the transform of Lomb and Scargle is the plain one.
+    /// Without gaps, the periodogram of Lomb and Scargle is the plain periodogram.
     #[test]
     fn a_sine_fitted_to_even_values_is_a_line_of_the_transform() {
         let values: Vec<f64> = (0..50_u32).map(|k| (0.7 * f64::from(k)).sin() + f64::from(k * k % 7) - 3.0).collect();
@@ -272,7 +273,7 @@ mod tests {
         }
     }
 
-    /// White noise stays white when headings are missing: the statistic has the mean of its distribution.
+    /// White noise remains white if headings are missing: the statistic has the mean of its distribution.
     #[test]
     fn holes_make_no_colour() {
         let mut generator = ChaCha8Rng::seed_from_u64(5);
@@ -298,7 +299,8 @@ mod tests {
         }
     }
 
-    /// Normal numbers of one variance fail as often as they may; with a louder half or one of eight they do not pass.
+    /// Normal numbers of one variance fail at the nominal rate; with twice the standard deviation in one half, or with
+    /// one value of 8, they do not pass.
     #[test]
     fn uneven_numbers_are_found() {
         let mut generator = ChaCha8Rng::seed_from_u64(3);

@@ -3,7 +3,8 @@
 //! Sources: Hyndman and Fan (1996), The American Statistician 50:361-365; Wilson (1927), Journal of the American
 //! Statistical Association 22:209-212.
 
-/// Median; of an even number of values the mean of the two middle ones, so that a mirrored set has the mirrored median.
+/// Median; for an even number of values the mean of the two middle values, so that the median of a mirrored set is
+/// mirrored.
 ///
 /// `None` for an empty set. Linear time; the values are reordered and must not be NaN.
 pub fn median(values: &mut [f64]) -> Option<f64> {
@@ -14,9 +15,9 @@ pub fn median(values: &mut [f64]) -> Option<f64> {
     Some(lower.map_or(upper, |lower| 0.5 * (lower + upper)))
 }
 
-/// Upper median of the finite values: of an even number of values the upper of the two middle ones.
+/// Upper median of the finite values: for an even number of values the upper of the two middle values.
 ///
-/// `None` without a finite value. Linear time, for very many values.
+/// `None` without a finite value. Linear time, suitable for very many values.
 pub fn upper_median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
     let middle = values.len() / 2;
@@ -35,8 +36,8 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     if part == 0.0 || low == high { low } else { low + part * (high - low) }
 }
 
-/// Score interval of a proportion observed in `cases` independent cases (Wilson 1927); `quantile` is that of the
-/// standard normal distribution, 1.96 for 95 %. [0, 1] without cases.
+/// Score interval of a proportion observed in `cases` independent cases (Wilson 1927); `quantile` is the quantile of
+/// the standard normal distribution, 1.96 for 95 %. [0, 1] if there are no cases.
 pub fn wilson(share: f64, cases: f64, quantile: f64) -> [f64; 2] {
     if cases <= 0.0 {
         return [0.0, 1.0];

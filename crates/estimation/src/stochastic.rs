@@ -9,7 +9,7 @@ use crate::with_states;
 
 impl<const N: usize> Step<N> {
     /// Exact step over `h` seconds of x' = G x + w with white noise w of the given intensity on the last state of G
-    /// (Van Loan 1978). States beyond those of G are zero.
+    /// (Van Loan 1978). States beyond the states of G are zero.
     pub fn from_generator(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
         let m = generator.nrows();
         let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
@@ -57,7 +57,8 @@ impl<const N: usize> System<N> {
 }
 
 impl System<MAX_STATES> {
-    /// Whitener of the first `states` states, the others being zero; `tolerance` is that of a stationary gain.
+    /// Whitener of the first `states` states, with the remaining states zero; `tolerance` is the tolerance of a
+    /// stationary gain.
     pub fn whitener(&self, states: usize, tolerance: f64) -> Whitener {
         with_states!(states, N => {
             let first = |wide: &[[f64; MAX_STATES]; MAX_STATES]| -> [[f64; N]; N] {

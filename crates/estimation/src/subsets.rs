@@ -8,7 +8,7 @@
 //! fitted unknowns, and the prior density p. It is the Savage–Dickey density ratio for the amplitudes; shape parameters
 //! are unconstrained without their amplitude and count with their prior range.
 //!
-//! All 2^m subsets share their factors: a removed term adds one row to a Cholesky factor.
+//! All 2^m subsets share factors: a removed term adds one row to a Cholesky factor.
 //!
 //! Source: Dickey (1971), Annals of Mathematical Statistics 42:204-223.
 
@@ -17,9 +17,9 @@ use nalgebra::{DMatrix, DVector};
 /// Term that may be removed from the model.
 #[derive(Debug, Clone)]
 pub struct RemovableTerm {
-    /// Indices of its amplitudes among the unknowns, each with its distance from the neutral value.
+    /// Indices of the amplitudes of the term among the unknowns, each with its distance from the neutral value.
     pub sizes: Vec<(usize, f64)>,
-    /// Indices of its shape parameters among the unknowns.
+    /// Indices of the shape parameters of the term among the unknowns.
     pub shapes: Vec<usize>,
     /// Log prior density at neutral amplitudes and fitted shape parameters.
     pub log_prior: f64,
@@ -77,7 +77,7 @@ impl<'a> GrowingFactor<'a> {
 /// Log evidence plus log prior odds of every subset, relative to the full model with even odds. Bit k of the index is
 /// set if term k is included.
 ///
-/// `covariance` is the posterior covariance of the unknowns. At most [`MAX_TERMS`] terms.
+/// `covariance` is the posterior covariance of the unknowns. `terms` has at most [`MAX_TERMS`] terms.
 pub fn subset_log_weights(covariance: &DMatrix<f64>, terms: &[RemovableTerm]) -> Vec<f64> {
     let mut weights = vec![0.0; 1 << terms.len()];
     let mut walk = SubsetWalk {
@@ -124,7 +124,7 @@ impl SubsetWalk<'_> {
     }
 }
 
-/// Conditional mean of the unknowns when the amplitudes of the removed terms are neutral (quadratic approximation).
+/// Conditional mean of the unknowns if the amplitudes of the removed terms are neutral (quadratic approximation).
 pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&RemovableTerm]) -> DVector<f64> {
     let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.sizes.iter().copied()).collect();
     let block = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
@@ -142,7 +142,7 @@ pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &
     })
 }
 
-/// Conditions a covariance, in place, on neutral amplitudes of a term.
+/// Conditioning of a covariance, in place, on neutral amplitudes of a term.
 pub fn condition_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
     for &(unknown, _) in &out.sizes {
         let column: DVector<f64> = covariance.column(unknown).into();
@@ -161,7 +161,7 @@ mod tests {
 
     use super::*;
 
-    /// y = X θ + e with unit noise, one unknown that is always there and some candidates with normal priors.
+    /// y = X θ + e with unit noise, with one unknown that is always included, and candidates with normal priors.
     struct LinearModel {
         x: DMatrix<f64>,
         y: DVector<f64>,
@@ -173,7 +173,7 @@ mod tests {
         fn drawn(generator: &mut ChaCha8Rng, candidates: usize) -> Self {
             let mut draw = || -> f64 { generator.sample(StandardNormal) };
             let mut x = DMatrix::from_fn(40, candidates + 1, |_, _| draw());
-            // Neighbours are alike, as effects of one manoeuvre are.
+            // Neighbouring columns are similar, like effects in one manoeuvre.
             for k in 1..=candidates {
                 let other = x.column(k - 1).into_owned();
                 x.column_mut(k).axpy(0.8, &other, 0.6);
@@ -185,7 +185,7 @@ mod tests {
             Self { x, y, mean, sd }
         }
 
-        /// Posterior precision and mean of the unknown that is always there, and of some candidates.
+        /// Posterior precision and mean of the unknown that is always included, and of some candidates.
         fn posterior(&self, kept: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
             let columns: Vec<usize> = [0].into_iter().chain(kept.iter().map(|k| k + 1)).collect();
             let x = self.x.select_columns(&columns);
@@ -198,7 +198,7 @@ mod tests {
             (matrix, mean)
         }
 
-        /// Log of the marginal likelihood with some candidates, by a fit of its own.
+        /// Log of the marginal likelihood with some candidates, by a separate fit.
         fn evidence(&self, kept: &[usize]) -> f64 {
             let (precision, mean) = self.posterior(kept);
             let columns: Vec<usize> = [0].into_iter().chain(kept.iter().map(|k| k + 1)).collect();
@@ -218,7 +218,7 @@ mod tests {
         }
     }
 
-    /// Of 200 random linear problems every subset has the evidence that a fit of its own gives it.
+    /// Evidence of every subset against a separate fit, for 200 random linear problems.
     #[test]
     fn subsets_have_the_evidence_of_their_own_fits() {
         let mut generator = ChaCha8Rng::seed_from_u64(29);
@@ -242,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Where the others go when one is taken away is where their own fit ends.
+    /// Conditional mean after removal of one term against a separate fit of the remaining terms.
     #[test]
     fn what_is_left_moves_to_its_own_fit() {
         let mut generator = ChaCha8Rng::seed_from_u64(3);

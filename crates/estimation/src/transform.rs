@@ -1,5 +1,5 @@
-//! Discrete Fourier transform of real numbers, compiled here once: the library behind it is generic, and every crate
-//! that called it would compile all its algorithms again.
+//! Discrete Fourier transform of real numbers, compiled here once: the underlying library is generic, and every crate
+//! that calls it directly would compile all algorithms again.
 
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;

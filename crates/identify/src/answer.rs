@@ -1,4 +1,4 @@
-//! Document entries for the answers of methods, as `fit.json` holds them.
+//! Document entries for the estimates of methods, as in `fit.json`.
 
 use document::method::{IndexEstimates, MethodEntry, Status};
 use ship::angle::to_deg;
@@ -30,13 +30,13 @@ pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>
     }
 }
 
-/// Entry of a failed fit: its reason as a sentence and as a kind.
+/// Entry of a failed fit: the reason as a sentence and as a kind.
 pub fn failed(method: &str, error: &IdentifyError) -> MethodEntry {
     let (reason, failure) = (Some(error.to_string()), Some(error.kind().to_owned()));
     MethodEntry { method: method.to_owned(), reason, failure, ..MethodEntry::default() }
 }
 
-/// Entry of a result, and the estimate itself unless the fit failed.
+/// Entry of a result, and the estimate unless the fit failed.
 pub fn entry(
     label: &str,
     answer: Result<Estimate, IdentifyError>,

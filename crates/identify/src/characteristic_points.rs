@@ -1,10 +1,10 @@
-//! The traditional analysis of a zig-zag trial by its characteristic points: heading extrema and passages of the base
-//! course, put into the equation of motion integrated once.
+//! Traditional analysis of a zig-zag trial by characteristic points: heading extrema and passages of the base course,
+//! put into the equation of motion integrated once.
 //!
 //! T [r(t) − r(s)] + ψ(t) − ψ(s) = K [∫δ + δ_r (t − s)] from s to t. Between two extrema r = 0 and T drops out, which
 //! leaves K and K δ_r; from an extremum to a passage r is large, which gives T. Peaks are not parabolas and the slope
-//! comes from few rows, so the method is biased by about half a percent and degrades quickly with noise; it is here as
-//! the field's standard of comparison.
+//! comes from few rows, so the method is biased by about half a percent and degrades quickly with noise; it is included
+//! as the usual reference.
 //!
 //! Source of the method: Nomoto (1960), Analysis of Kempf's standard maneuver test and proposed steering quality
 //! indices, First Symposium on Ship Maneuverability, DTMB Report 1461. The equations are derived anew.
@@ -29,7 +29,7 @@ use crate::settings::{SettingsError, check_condition_limit, require};
 use points::{BaseHeadingOrigin, Points};
 use points_fit::AnalysedTrial;
 
-/// Which points are used, and how.
+/// Selection and use of the characteristic points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
@@ -38,11 +38,11 @@ pub enum Variant {
     LeastSquares,
     /// Three successive extrema and the two passages between them, as in an analysis by hand. Gives no uncertainty.
     ThreePeaks,
-    /// The integrated equation at instants one window apart, with heading and yaw rate from local cubics.
+    /// Integrated equation at instants one window apart, with heading and yaw rate from local cubics.
     #[serde(rename = "equation-8")]
     Equation8,
-    /// The same equation at the extrema, referred to the first row, as Ge, Hu, Yin and Sun print it but with the sign
-    /// of r(0) corrected. T multiplies r(0) alone, so a start at rest does not determine it.
+    /// Integrated equation at the extrema, referred to the first row, as Ge, Hu, Yin and Sun print it but with the sign
+    /// of r(0) corrected. T multiplies only r(0), so a start at rest does not determine it.
     #[serde(rename = "equation-8-vertices")]
     Equation8Vertices,
 }
@@ -51,7 +51,7 @@ pub enum Variant {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// Which points are used, and how.
+    /// Selection and use of the characteristic points.
     pub variant: Variant,
     /// Half width of the local fits, s; without it 7 % of half a period (equation 8: 14 %), at least three intervals.
     pub half_width_s: Option<f64>,
@@ -59,7 +59,7 @@ pub struct Settings {
     pub base_course_deg: Option<f64>,
     /// `true` if a start at rest counts as an instant with r = 0; true only if the ship kept a straight course.
     pub start_at_rest: bool,
-    /// Rudder bias δ_r, deg, where it is known; without it δ_r is identified.
+    /// Known rudder bias δ_r, deg; without it δ_r is identified.
     pub rudder_bias_deg: Option<f64>,
     /// Maximum accepted condition number of the equations.
     pub condition_limit: f64,
@@ -79,7 +79,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     ///
     /// Fails if the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
@@ -94,22 +94,22 @@ impl Settings {
     }
 }
 
-/// The traditional method in several variants.
+/// Traditional method of characteristic points in several variants.
 ///
 /// The covariance comes from the residuals of few equations, with Student's t for its intervals, and excludes bias.
 /// Diagnostics give K and T by side, which shows an asymmetric ship.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when the record does not hold three instants with r = 0 and a passage of
-/// the base course, with [`IdentifyError::Singular`] when the chosen points do not determine T or δ_r, and with
-/// [`IdentifyError::NotAShip`] when K/T is not positive.
+/// Fails with [`IdentifyError::TooFewPoints`] if the record does not hold three instants with r = 0 and a passage of
+/// the base course, with [`IdentifyError::Singular`] if the selected points do not determine T or δ_r, and with
+/// [`IdentifyError::NotAShip`] if K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CharacteristicPoints {
     settings: Settings,
 }
 
 impl CharacteristicPoints {
-    /// Half width of the local fits in half periods. A parabola follows a peak over a shorter time than a cubic the
-    /// heading, and only equation (8) suffers when the noise of the yaw rate is large: it is a regressor there.
+    /// Half width of the local fits in half periods. A parabola follows a peak over a shorter time than a cubic follows
+    /// the heading, and only equation (8) is sensitive to noise of the yaw rate, which is a regressor there.
     fn width_share(&self) -> f64 {
         match self.settings.variant {
             Variant::LeastSquares | Variant::ThreePeaks => 0.07,

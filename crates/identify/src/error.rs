@@ -1,11 +1,11 @@
-//! Reasons why a method gives no estimate; every variant carries the numbers a reader needs.
+//! Reasons why a method gives no estimate, with the relevant numbers.
 
 use std::borrow::Cow;
 
 use estimation::least_squares::LeastSquaresError;
 use thiserror::Error;
 
-/// A failed identification: a result like any other, it becomes a row of the study.
+/// Failed identification; it is a row of a study like any other result.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum IdentifyError {
     /// No trial was given.
@@ -37,32 +37,32 @@ pub enum IdentifyError {
         /// Maximum heading or rudder angle, rad.
         angle_rad: f64,
     },
-    /// Fewer samples than the method needs.
+    /// Fewer samples than the method requires.
     #[error("needs at least {needed} samples, {trial} has {count}")]
     TooFewSamples {
         /// Name of the trial.
         trial: String,
-        /// Samples needed.
+        /// Number of samples required.
         needed: usize,
-        /// Samples in the record.
+        /// Number of samples in the record.
         count: usize,
     },
-    /// Fewer points of a kind than the method needs.
+    /// Fewer points of a kind than the method requires.
     #[error("needs at least {needed} {what}, found {count}")]
     TooFewPoints {
-        /// What is counted, e.g. "heading extrema".
+        /// Kind of the points, e.g. "heading extrema".
         what: &'static str,
-        /// Points needed.
+        /// Number of points required.
         needed: usize,
-        /// Points in the records.
+        /// Number of points in the records.
         count: usize,
     },
-    /// The method needs a channel that the record does not have.
+    /// The method requires a channel that the record does not have.
     #[error("{trial} has no {channel}")]
     NoChannel {
         /// Name of the trial.
         trial: String,
-        /// The channel.
+        /// Name of the channel.
         channel: &'static str,
     },
     /// The equations are singular or too ill-conditioned.
@@ -70,13 +70,13 @@ pub enum IdentifyError {
     Singular {
         /// Condition number of the scaled equations.
         condition: f64,
-        /// Maximum accepted.
+        /// Maximum accepted condition number.
         limit: f64,
     },
-    /// An iteration did not settle.
+    /// The iteration did not converge.
     #[error("did not converge in {iterations} iterations (last relative step {step:.1e})")]
     NotConverged {
-        /// Iterations done.
+        /// Number of iterations.
         iterations: usize,
         /// Last relative step.
         step: f64,
@@ -89,13 +89,13 @@ pub enum IdentifyError {
     NoRudderEffect {
         /// K/T, 1/s².
         gain: f64,
-        /// Its standard deviation, 1/s².
+        /// Standard deviation of K/T, 1/s².
         sd: f64,
     },
-    /// The estimate is not a ship: K/T ≤ 0 or not finite.
+    /// The estimate is not that of a ship: K/T ≤ 0 or not finite.
     #[error(
         "the estimate is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
-         units of rudder and heading"
+         units of rudder and heading, or give a zig-zag: a rudder that is put over once does not separate K and T"
     )]
     NotAShip {
         /// 1/T, 1/s.
@@ -119,7 +119,7 @@ impl From<LeastSquaresError> for IdentifyError {
     }
 }
 
-/// Characters of the reason of an outside estimator.
+/// Maximum number of characters in the reason of an outside estimator.
 const MAX_REASON_CHARS: usize = 80;
 
 impl IdentifyError {
@@ -129,14 +129,14 @@ impl IdentifyError {
         let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
         let shown = |c: char| match c {
             ' '..='~' => c.to_string(),
-            // Behind a letter, which an accent needs.
+            // After a letter, which a combining accent requires.
             c => ['a', c].iter().collect::<String>().escape_debug().skip(1).collect(),
         };
         let mut reason = String::new();
         let mut room = MAX_REASON_CHARS;
         for piece in one_line.chars().map(shown) {
             match room.checked_sub(piece.chars().count()) {
-                // Room for the sign that something is left out.
+                // Room for the ellipsis.
                 Some(remaining) if remaining > 0 => (room, reason) = (remaining, reason + &piece),
                 _ => {
                     reason.push('…');
@@ -164,7 +164,7 @@ impl IdentifyError {
         }
     }
 
-    /// Text in a row: the short name, and behind `outside` the reason that was given.
+    /// Text in a row: the short name, and after `outside` the reason.
     pub fn row_text(&self) -> Cow<'static, str> {
         match self {
             Self::Outside(_) => self.to_string().into(),

@@ -1,4 +1,4 @@
-//! Result of a method: the response, its uncertainty, and how the method stopped.
+//! Estimate of a method: the response, its uncertainty, and the reason for stopping.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::cell::Cell;
@@ -9,18 +9,18 @@ use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use trial::Quantity;
 
-/// Why a method stopped, in order from best to worst.
+/// Reason why a method stopped, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StopReason {
-    /// The answer comes from a closed formula.
+    /// The estimate comes from a closed formula.
     Direct,
-    /// An iteration settled within its tolerance.
+    /// An iteration converged within its tolerance.
     Converged,
-    /// The largest number of iterations was reached; the best point so far is returned.
+    /// The maximum number of iterations was reached; the best point is returned.
     IterationLimit,
     /// The best point lies at the end of the searched range.
     RangeLimit,
-    /// An outside estimator, which reports no reason.
+    /// Outside estimator, which reports no reason.
     Outside,
 }
 
@@ -40,10 +40,10 @@ impl StopReason {
     }
 }
 
-/// A covariance of (1/T, K/T, δ_r), units 1/s, 1/s², rad, with its degrees of freedom.
+/// Covariance of (1/T, K/T, δ_r), units 1/s, 1/s², rad, with degrees of freedom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {
-    /// The 3 × 3 matrix.
+    /// Covariance matrix, 3 × 3.
     pub matrix: Matrix3<f64>,
     /// Degrees of freedom of the noise variance; `None` if the variance was known.
     pub degrees_of_freedom: Option<f64>,
@@ -52,7 +52,7 @@ pub struct Covariance {
 /// Uncertainty of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Uncertainty {
-    /// A covariance of the parameters.
+    /// Covariance of the parameters.
     Covariance(Covariance),
     /// Intervals that do not come from a covariance.
     Intervals {
@@ -62,17 +62,17 @@ pub enum Uncertainty {
         T: [f64; 2],
         /// 95 % interval of δ_r, rad.
         rudder_bias: [f64; 2],
-        /// What the intervals cover, as text.
+        /// Meaning of the intervals, as text.
         meaning: &'static str,
     },
     /// No uncertainty.
     None {
-        /// The reason, as text.
+        /// Reason, as text.
         reason: &'static str,
     },
 }
 
-/// The result of one identification.
+/// Estimate of one identification.
 ///
 /// ```
 /// use kempf_identify::{Identifier, output_error};
@@ -95,31 +95,31 @@ pub enum Uncertainty {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// The first-order response.
+    /// First-order response.
     pub response: FirstOrder,
-    /// Its uncertainty, valid if the residual is white.
+    /// Uncertainty of the response, valid if the residual is white.
     pub uncertainty: Uncertainty,
-    /// Covariance that is also valid for a coloured residual, where the method has it.
+    /// Covariance that is also valid for a coloured residual, if the method gives it.
     pub robust: Option<Covariance>,
-    /// Why the method stopped.
+    /// Reason why the method stopped.
     pub stop: StopReason,
-    /// Model evaluations (simulations or solved systems).
+    /// Number of model evaluations (simulations or solved systems).
     pub evaluations: usize,
-    /// The noise of the first record, where the method looks for a random moment.
+    /// Noise of the first record, if the method estimates a random moment.
     pub noise: Option<HeadingNoise>,
-    /// Named figures for a reader: fit R², condition numbers, counts; the unit is in the name.
+    /// Named diagnostics: fit R², condition numbers, counts; the unit is in the name.
     pub diagnostics: Vec<(&'static str, f64)>,
-    /// Warnings shown beside the numbers; they do not name the method.
+    /// Warnings shown next to the estimate; they do not name the method.
     pub warnings: Vec<Warning>,
 }
 
 impl Estimate {
-    /// The diagnostic of this name, where the method has it.
+    /// Diagnostic of this name; `None` if the method has none.
     pub fn diagnostic(&self, name: &str) -> Option<f64> {
         self.diagnostics.iter().find(|(label, _)| *label == name).map(|(_, value)| *value)
     }
 
-    /// K with its error, 1/s.
+    /// Estimate of K with its error, 1/s.
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
@@ -128,7 +128,7 @@ impl Estimate {
         }
     }
 
-    /// T with its error, s.
+    /// Estimate of T with its error, s.
     pub fn T(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
@@ -137,7 +137,7 @@ impl Estimate {
         }
     }
 
-    /// δ_r with its error, rad.
+    /// Estimate of δ_r with its error, rad.
     pub fn rudder_bias(&self) -> Quantity {
         let value = self.response.rudder_bias;
         match &self.uncertainty {
@@ -149,7 +149,7 @@ impl Estimate {
 }
 
 impl Covariance {
-    /// K (1/s) and T (s) of a response with the errors of this covariance.
+    /// K (1/s) and T (s) of a response with errors from this covariance.
     pub fn indices(&self, response: &FirstOrder) -> (Quantity, Quantity) {
         (index_K(response, self), index_T(response, self))
     }
@@ -168,11 +168,11 @@ impl Covariance {
         }
     }
 
-    /// Outline of the joint 95 % region of K (1/s) and T (s), closed: the image of the ellipse of 1/T and K/T, which
-    /// bends where the uncertainty is large.
+    /// Outline of the joint 95 % region of K (1/s) and T (s), closed: the image of the ellipse of 1/T and K/T, which is
+    /// curved if the uncertainty is large.
     ///
     /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and q = ν
-    /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` if the region of 1/T holds
+    /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` if the region of 1/T contains
     /// zero, so that T is unbounded, and without a covariance.
     pub fn outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
         const CORNERS: usize = 120;
@@ -214,8 +214,8 @@ fn with_error(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
     Quantity { value, sd: sd.filter(|sd| sd.is_finite()), ci95 }
 }
 
-/// K = b/a with the delta-method standard deviation and Fieller's interval (Fieller 1954), unbounded when the
-/// interval of a = 1/T holds zero.
+/// K = b/a with the delta-method standard deviation and Fieller's interval (Fieller 1954), unbounded if the interval of
+/// a = 1/T contains zero.
 fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (a, b) = (response.inverse_T, response.K_over_T);
     let value = response.K();
@@ -240,8 +240,8 @@ fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     with_error(response.T(), Some(sd), ci95)
 }
 
-/// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of b =
-/// K/T holds zero: a rudder that does not act has no bias. A variance of zero gives a bare value.
+/// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded if the interval of b =
+/// K/T contains zero: a rudder without effect has no bias. A variance of zero gives a value without error.
 fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (b, value) = (response.K_over_T, response.rudder_bias);
     let m = &covariance.matrix;
@@ -282,7 +282,7 @@ mod tests {
         assert_relative_eq!(0.5 * (lo + hi), 0.1, max_relative = 1e-6);
     }
 
-    /// A well-known ship has the ellipse of the delta method; a ship that may be neutrally stable has no outline.
+    /// A precise estimate has the ellipse of the delta method; an estimate that may be neutrally stable has no outline.
     #[test]
     fn the_outline_is_an_ellipse_where_errors_are_small() {
         let response = FirstOrder::from_indices(0.1, 16.3, 0.0);
@@ -305,7 +305,7 @@ mod tests {
     }
 
     /// Both ends of the interval of δ_r solve the equation of Fieller (1954) for the ratio of b δ_r to b, and there are
-    /// none when b may be zero.
+    /// none if b may be zero.
     #[test]
     fn the_bias_of_a_rudder_that_hardly_acts_is_unbounded() {
         let response = FirstOrder { inverse_T: 0.06, K_over_T: 6e-3, rudder_bias: 0.02 };

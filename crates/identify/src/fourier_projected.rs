@@ -1,10 +1,10 @@
-//! The corrected Fourier method: heading and rudder on the same basis, least squares over all interior samples.
+//! Corrected Fourier method: heading and rudder on the same basis, least squares over all interior samples.
 //!
 //! A truncated series is a filter. In the published form it acts on the heading and not on the rudder, so the two sides
-//! of T r' + r = K (δ + δ_r) are filtered differently and K and T come out low whatever the noise. Here the rudder is
-//! projected on the same basis first: both sides are filtered alike and the bias goes. The fundamental follows from the
-//! length of the record and the zig-zag period, not from the best fit; the number of harmonics from the noise; and all
-//! samples are used instead of triples. A small truncation bias (some 0.5 %) remains and, with much noise, the
+//! of T r' + r = K (δ + δ_r) are filtered differently and K and T are too low at any noise. Here the rudder is
+//! projected on the same basis first: both sides are filtered alike and the bias vanishes. The fundamental follows from
+//! the length of the record and the zig-zag period, not from the best fit; the number of harmonics from the noise; and
+//! all samples are used instead of triples. A small truncation bias (some 0.5 %) remains and, with much noise, the
 //! attenuation of a regression on a noisy yaw rate. The reported covariance counts the whole residual of the heading as
 //! white noise, truncation included, so that it is not overconfident for a quiet record.
 //!
@@ -34,39 +34,39 @@ use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
-/// Observed rows that a trial needs.
+/// Minimum number of observed rows of a trial.
 const MIN_ROWS: usize = 20;
 
-/// Rows of a trial above which neighbours are averaged.
+/// Maximum number of rows of a trial without averaging.
 const MAX_ROWS: usize = 50_000;
 
-/// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the
+/// Minimum frequency of the highest harmonic, in units of the zig-zag frequency: a zig-zag has no harmonic between the
 /// first and the third.
 const MIN_REACH: f64 = 3.0;
 
-/// Share of the record without equations at each end, where the series is poor.
+/// Share of the record without equations at each end, where the series is inaccurate.
 const TRIM_SHARE: f64 = 0.05;
 
-/// Harmonics with which w is searched where the order follows later.
+/// Number of harmonics in the search for w if the order is chosen later.
 const SEARCH_HARMONICS: usize = 8;
 
-/// Share of white noise in the residual variance below which truncation dominates.
+/// Minimum share of white noise in the residual variance; below it truncation dominates.
 const MIN_WHITE_SHARE: f64 = 0.5;
 
-/// How the number of harmonics is chosen.
+/// Rule for the number of harmonics.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Order {
-    /// Given.
+    /// Given number of harmonics.
     Fixed(usize),
-    /// The least generalised cross-validation score, n RSS/(n − p)², p = 2N + 1.
+    /// Least generalised cross-validation score, n RSS/(n − p)², p = 2N + 1.
     Gcv {
-        /// Frequency of the highest harmonic allowed, in units of the zig-zag frequency.
+        /// Maximum frequency of the highest harmonic, in units of the zig-zag frequency.
         reach: f64,
     },
 }
 
-/// The rudder that enters the equations.
+/// Rudder that enters the equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderTreatment {
@@ -81,13 +81,13 @@ pub enum RudderTreatment {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
-    /// How w is chosen.
+    /// Rule for the choice of w.
     pub fundamental: Fundamental,
-    /// How the number of harmonics is chosen.
+    /// Rule for the number of harmonics.
     pub harmonics: Order,
-    /// The rudder in the equations.
+    /// Rudder in the equations.
     pub rudder: RudderTreatment,
-    /// The left side of the regression.
+    /// Left side of the regression.
     pub response: RegressionForm,
 }
 
@@ -103,7 +103,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     pub fn build(self) -> Result<FourierProjected, SettingsError> {
         match self.harmonics {
             Order::Fixed(fixed) => require((1..=MAX_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
@@ -118,28 +118,28 @@ impl Settings {
 
 /// Fourier method with the rudder projected on the basis of the heading.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the longest series can follow,
-/// some twenty, with [`IdentifyError::Singular`] when the basis or the equations are ill-conditioned, and with
-/// [`IdentifyError::NotAShip`] when K/T is not positive.
+/// Fails with [`IdentifyError::TooFewPoints`] if a record has more zig-zags than the longest series can follow, some
+/// twenty, with [`IdentifyError::Singular`] if the basis or the equations are ill-conditioned, and with
+/// [`IdentifyError::NotAShip`] if K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
     settings: Settings,
-    /// Rows of a trial beyond which neighbours are averaged.
+    /// Maximum number of rows of a trial without averaging.
     max_rows: usize,
 }
 
 /// Heading and rudder of one trial as Fourier curves of one basis, for a figure.
 #[derive(Debug, Clone)]
 pub struct Curves {
-    /// The heading.
+    /// Heading curve.
     pub heading: Fitted,
-    /// The rudder; [`FourierFit::heading`] of it gives the projected rudder angle, rad.
+    /// Rudder curve; [`FourierFit::heading`] gives the projected rudder angle, rad.
     pub rudder: FourierFit,
     /// Beginning and end, s from the first observed row.
     pub window: [f64; 2],
 }
 
-/// The rows of a trial.
+/// Rows of a trial.
 struct SeriesRows {
     time: Vec<f64>,
     heading: Vec<f64>,
@@ -152,7 +152,7 @@ impl SeriesRows {
         Self { time, heading, rudder }
     }
 
-    /// At most about `max_rows` rows: means of neighbours, but not across gaps.
+    /// Rows averaged to at most about `max_rows`: means of neighbours, but not across gaps.
     fn averaged(self, max_rows: usize) -> Self {
         let group = self.time.len().div_ceil(max_rows);
         if group == 1 {
@@ -171,14 +171,14 @@ impl SeriesRows {
 
 /// Variances of the residual of a heading fit.
 struct ResidualVariance {
-    /// Variance of its white part, rad².
+    /// Variance of the white part, rad².
     white: f64,
     /// Variance of the residual, rad².
     residual: f64,
 }
 
 impl FourierProjected {
-    /// The curves of one trial; time runs from its first observed row.
+    /// Curves of one trial; time runs from the first observed row.
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
@@ -203,7 +203,7 @@ impl FourierProjected {
             let what = "harmonics to follow the many zig-zags of this record (give shorter records)";
             return Err(IdentifyError::TooFewPoints { what, needed, count: MAX_HARMONICS });
         }
-        // At least the zig-zag itself must be in reach, and fewer coefficients than half the rows.
+        // The series must at least reach the zig-zag frequency, with fewer coefficients than half the rows.
         let lowest = ((zigzag / choice.fundamental).ceil() as usize).max(1);
         let highest = ((reach * zigzag / choice.fundamental).floor() as usize)
             .min(MAX_HARMONICS)
@@ -221,7 +221,7 @@ impl FourierProjected {
         accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
     }
 
-    /// Adds the equations of one trial and returns the variances of its residual.
+    /// Adds the equations of one trial and returns the variances of the residual.
     fn add(&self, part: &SeriesRows, fitted: &Fitted, equations: &mut Equations) -> ResidualVariance {
         let SeriesRows { time, heading, rudder } = part;
         let residual = &fitted.projection.residual;
@@ -304,7 +304,7 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
     rows * rss / (rows - 2.0 * harmonics - 1.0).powi(2)
 }
 
-/// Refuses a basis whose coefficients cancel each other.
+/// Fails for a basis whose coefficients cancel each other.
 fn accept(fitted: Fitted) -> Result<Fitted, IdentifyError> {
     let (condition, limit) = (fitted.curve.condition, TRUSTED_CONDITION);
     if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }

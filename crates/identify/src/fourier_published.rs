@@ -1,10 +1,10 @@
-//! The Fourier method as it was published: eight harmonics with a free fundamental, triples of instants, a mean.
+//! Fourier method as published: eight harmonics with a free fundamental, triples of instants, a mean.
 //!
 //! The heading is fitted by [`crate::fourier`]; T r' + r = K (δ + δ_r) is written at three instants with the recorded
-//! rudder and solved for T, K and δ_r; the answers of n triples are averaged. The paper does not specify the number of
-//! triples, the instants, or the start of w: every choice is a setting here, and the defaults favour the paper (ten
-//! triples, all well conditioned). The algebra is exact; the limit of the method is r', which eight harmonics get wrong
-//! by a quarter even without noise, so that K and T come out low. For a form without that error see
+//! rudder and solved for T, K and δ_r; the estimates of n triples are averaged. The paper does not specify the number
+//! of triples, the instants, or the start of w: every choice is a setting here, and the defaults favour the paper (ten
+//! triples, all well conditioned). The algebra is exact; the limit of the method is r', which eight harmonics give with
+//! an error of a quarter even without noise, so that K and T are too low. A form without that error is
 //! [`crate::fourier_projected`].
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
@@ -27,21 +27,21 @@ use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
 
-/// Central share of the record that well-conditioned triples are taken from.
+/// Central share of the record for well-conditioned triples.
 const INTERIOR_SHARE: f64 = 0.9;
 
-/// The rudder is at rest where it moves by less than so many degrees in so many seconds before and after.
+/// Maximum movement, deg, of a rudder at rest, and the time, s, before and after in which it is measured.
 const RUDDER_REST_DEG: f64 = 0.5;
 const RUDDER_REST_S: f64 = 2.0;
 
-/// How the estimates of the triples are combined.
+/// Combination of the estimates of the triples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aggregation {
-    /// The mean of K and of T, eq. (11).
+    /// Means of K and of T, eq. (11).
     #[default]
     Mean,
-    /// Their medians.
+    /// Medians of K and of T.
     Median,
 }
 
@@ -49,17 +49,17 @@ pub enum Aggregation {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
-    /// Harmonics N.
+    /// Number of harmonics N.
     pub harmonics: usize,
-    /// How w is chosen.
+    /// Rule for the choice of w.
     pub fundamental: Fundamental,
-    /// Triples n, at most 10 000; some 200 with the median make the answer independent of the seed.
+    /// Number of triples n, at most 10 000; some 200 with the median make the estimate independent of the seed.
     pub triples: usize,
-    /// Which triples are used.
+    /// Selection of the triples.
     pub selection: Selection,
-    /// How their estimates are combined.
+    /// Combination of their estimates.
     pub aggregation: Aggregation,
-    /// Seed of the draw of triples.
+    /// Seed of the random triples.
     pub seed: u64,
 }
 
@@ -77,7 +77,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     pub fn build(self) -> Result<FourierPublished, SettingsError> {
         require((1..=MAX_HARMONICS).contains(&self.harmonics), "harmonics", self.harmonics, "1 to 64")?;
         require((1..=MAX_TRIPLES).contains(&self.triples), "triples", self.triples, "1 to 10000")?;
@@ -86,14 +86,14 @@ impl Settings {
     }
 }
 
-/// The published Fourier method.
+/// Published Fourier method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierPublished {
     settings: Settings,
 }
 
 impl FourierPublished {
-    /// The fitted heading of one trial, for a figure; time runs from its first observed row.
+    /// Fitted heading of one trial, for a figure; time runs from the first observed row.
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curve(&self, trial: &Trial) -> Result<Fitted, IdentifyError> {
@@ -104,7 +104,7 @@ impl FourierPublished {
         fourier::fit(&samples.time, &samples.heading, self.settings.harmonics, &self.settings.fundamental)
     }
 
-    /// The instants of one trial that triples are drawn from.
+    /// Instants of one trial from which triples are sampled.
     fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<RegressionPoint> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
@@ -186,7 +186,7 @@ impl Identifier for FourierPublished {
         let answers = &drawn.answers;
         let (gain, time_constant) = (self.aggregate(answers, |a| a.K), self.aggregate(answers, |a| a.T));
         let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(answers, |a| a.rudder_bias));
-        // Written so that NaN is refused too.
+        // The condition also refuses NaN.
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite() && response.inverse_T.is_finite()) {
             return Err(IdentifyError::NotAShip { inverse_time: response.inverse_T, gain: response.K_over_T });
         }
@@ -203,7 +203,7 @@ impl Identifier for FourierPublished {
     }
 }
 
-/// Figures of the fits (of the first trial, or the worst of several) and of the triples.
+/// Diagnostics of the fits (of the first trial, or the worst of several) and of the triples.
 fn diagnostics(fits: &[Fitted], instants: usize, drawn: &DrawnTriples) -> Vec<(&'static str, f64)> {
     let mut all = fourier::diagnostics(fits);
     let spread = |index: fn(&TripleEstimate) -> f64| {

@@ -1,9 +1,9 @@
-//! Cutting a record at its gaps. A method that differentiates, integrates or averages the heading must not do so across
-//! a long stretch in which it was not recorded; [`pieces`] gives the stretches without a gap.
+//! Gaps of a record. A method that differentiates, integrates or averages the heading must not do so across a long
+//! interval without headings; [`pieces`] gives the parts without a gap.
 
 use std::ops::Range;
 
-/// Without a setting, a gap is an interval longer than this many mean intervals.
+/// Maximum interval that is not a gap, in mean intervals, without a setting.
 const GAP_INTERVALS: f64 = 5.0;
 
 /// Maximum interval, s, that is not a gap: the setting, or five mean intervals of the record.
@@ -14,7 +14,7 @@ pub fn longest_gap(setting_s: Option<f64>, time: &[f64]) -> f64 {
     })
 }
 
-/// The ranges of rows between gaps, in order; `time` (s) increases.
+/// Ranges of rows between gaps, in order; `time` (s) increases.
 pub fn pieces(time: &[f64], longest_gap: f64) -> impl Iterator<Item = Range<usize>> {
     let mut from = 0;
     std::iter::from_fn(move || {

@@ -1,14 +1,13 @@
-//! The interface of all methods.
+//! Interface of the identification methods.
 
 use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 
-/// A method that identifies a first-order response from one or several trials of the same ship.
+/// Method that identifies a first-order response from one or several trials of one ship.
 ///
-/// A value of this type is a method with its settings. It holds no data: calling it twice with the same trials gives
-/// the same bits.
+/// A value of this type is a method with its settings. It holds no data: two calls with equal trials give equal bits.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -37,16 +36,16 @@ pub trait Identifier: Send + Sync {
     /// Identifier used in scenario files, tables and JSON.
     fn id(&self) -> &'static str;
 
-    /// One line on what the method does, for lists.
+    /// Summary of the method in one line, for lists.
     fn summary(&self) -> &'static str;
 
     /// Identifies K, T and δ_r, common to all trials; every trial keeps its own initial state.
     ///
-    /// Fails with a typed reason when a record does not excite the ship, is too short for the method, or the
-    /// equations are singular; never panics on a valid [`Trial`].
+    /// Fails with a typed reason if a record does not excite the ship, is too short for the method, or the equations
+    /// are singular; never panics on a valid [`Trial`].
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError>;
 
-    /// The same method with another seed, for methods that draw at random; `None` for all others.
+    /// Method with another seed, for methods with random samples; `None` for all others.
     ///
     /// A benchmark gives every trial its own seed, so that the spread over trials includes the randomness of the
     /// method.

@@ -1,7 +1,7 @@
-//! The equation of motion integrated twice and solved by least squares: no derivative of the heading, no search.
+//! Least squares on the equation of motion integrated twice: no derivative of the heading, no search.
 //!
 //! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state enters through c₀ and c₁,
-//! which differ from stretch to stretch between gaps; a, b and b δ_r are common to all stretches of all trials. The
+//! which differ between the stretches between gaps; a, b and b δ_r are common to all stretches of all trials. The
 //! method is nearly as precise as output error for white heading noise; it does not model a yaw disturbance. The
 //! iteration that removes the remaining loss is that of the output-error and instrumental-variable methods. Source of
 //! the integral-equation approach: Unbehauen and Rao (1987), Identification of Continuous Systems.
@@ -28,7 +28,7 @@ use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED, Solution};
 use noise::ResidualNoise;
 
-/// Headings that a stretch between gaps needs to determine more than its initial state.
+/// Minimum number of headings of a stretch between gaps that determines more than the initial state.
 const MIN_PIECE_ROWS: usize = 4;
 
 /// Settings of the method.
@@ -48,7 +48,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     ///
     /// Fails if the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<IntegralLeastSquares, SettingsError> {
@@ -58,21 +58,21 @@ impl Settings {
     }
 }
 
-/// Least squares on the equation of motion integrated twice.
+/// Method of least squares on the equation of motion integrated twice.
 ///
-/// The rudder integrals are exact for a rudder that is linear between rows, the integral of the heading is that of a
-/// cubic Hermite interpolation. The equations are solved in normal form, with c₀ and c₁ of every stretch projected
-/// out; the condition number is the reciprocal of the smallest singular value of the projected columns, each divided
-/// by its length before the projection.
+/// The rudder integrals are exact for a rudder that is linear between rows, the heading is integrated by cubic Hermite
+/// interpolation. The equations are solved in normal form, with c₀ and c₁ of every stretch projected out; the condition
+/// number is the reciprocal of the smallest singular value of the projected columns, each divided by its length before
+/// the projection.
 ///
-/// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
+/// The covariance is for white heading noise n propagated through the equation, e = n + a ∫n, with the variance of n
 /// estimated from the residual. The robust covariance (Newey and West 1987) takes the estimated noise row by row, so it
-/// is also valid for coloured heading noise; neither is valid for a lasting yaw disturbance. Nor does either include
-/// the bias by the noise of ∫ψ, a regressor, which pulls 1/T towards zero where headings come too rarely: with an
-/// interval beyond T / 2 the interval of T holds the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
+/// is also valid for coloured heading noise; neither is valid for a lasting yaw disturbance. Neither includes the bias
+/// by the noise of ∫ψ, a regressor, which biases 1/T towards zero if headings are too sparse: with an interval beyond T
+/// / 2 the interval of T contains the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
 ///
-/// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is
-/// not positive. A negative 1/T is an answer: the ship is course-unstable.
+/// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] if K/T is not
+/// positive. A negative 1/T is a valid estimate: the ship is course-unstable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntegralLeastSquares {
     settings: Settings,
@@ -131,7 +131,7 @@ impl Identifier for IntegralLeastSquares {
 }
 
 impl IntegralLeastSquares {
-    /// The stretches between gaps of all trials that are long enough to be of use.
+    /// Stretches between gaps of all trials that are long enough for use.
     fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<IntegratedStretch<'a>>, IdentifyError> {
         let mut all = Vec::with_capacity(samples.len());
         for trial in samples {

@@ -1,15 +1,15 @@
-//! Lack of fit of a first-order response: the share of its residual that terms of a larger ship model explain, against
-//! the share of random moments.
+//! Lack of fit of a first-order response: the share of the residual explained by terms of a larger ship model, compared
+//! with random moments.
 //!
 //! The residual ψ − ψ̂ of the replay is regressed on the contributions of the terms of a larger model. To first order a
-//! term f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, where s'' = −s'/T + f. The
-//! terms are r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a filtered r² (loss
-//! of speed). K, T, δ_r and the initial states of all records are estimated with them. Terms of a ship recur with every
+//! term f in the yaw equation r' = −r/T + (K/T)(δ + δ_r) + c f adds c s to the heading, with s'' = −s'/T + f. The terms
+//! are r³, r|r|, r², δ³, |δ|, r'' and δ' (second order, lag and dead time), and r and δ times a filtered r² (loss of
+//! speed). K, T, δ_r and the initial states of all records are estimated with them. Terms of a ship recur with every
 //! rudder movement, random moments do not: nine terms explain nearly all of a missing ship term and part of a random
 //! moment.
 //!
-//! The test is of first order in small terms and names no term; [`unexplained`](LackOfFit::unexplained) is compared
-//! with a limit from simulated trials. It is a score test by linearised regression, Ljung (1999), System
+//! The test is of first order in small terms and does not identify a term; [`unexplained`](LackOfFit::unexplained) is
+//! compared with a limit from simulated trials. It is a score test by linearised regression, Ljung (1999), System
 //! Identification: Theory for the User, chapter 16 on model validation.
 
 use estimation::column::dot;
@@ -21,7 +21,7 @@ use trial::{Trial, zigzag};
 use crate::replay::{Replay, replay};
 use crate::robust;
 
-/// Half-width of the local fits that estimate the heading noise, in T; bends of the heading last longer.
+/// Half-width of the local fits that estimate the heading noise, in T, shorter than the bends of the heading.
 const HALF_WIDTH: f64 = 0.25;
 
 /// Time constant of the loss of speed, in T.
@@ -30,18 +30,18 @@ const SPEED_LAG: f64 = 3.0;
 /// Number of terms of K, T and δ_r; the terms after them belong to larger models, δ' first.
 const BASE_TERMS: usize = 3;
 
-/// Share of the reduction by all terms that a pure delay must reach.
+/// Minimum share of a pure delay in the reduction by all terms.
 const MIN_DELAY_SHARE: f64 = 0.7;
 
-/// Rudder reversals that identify a delay: the effect of a single reversal, or of the execute of a circle, may be a
-/// loss of speed as well.
+/// Minimum number of rudder reversals that identify a delay: the effect of a single reversal, or of the execute of a
+/// circle, may be a loss of speed as well.
 const MIN_REVERSALS: usize = 2;
 
-/// Maximum delay that is reported, in T: a single term in δ' represents short delays only, and those of clocks,
+/// Maximum delay that is reported, in T: a single term in δ' represents short delays only, and delays of clocks,
 /// steering gears and compasses are short.
 const MAX_DELAY_RATIO: f64 = 0.25;
 
-/// Relative length below which a column is linearly dependent on the basis.
+/// Minimum relative length of a column that is linearly independent of the basis.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 
 /// Residual of the replays of a response, and its residual with the terms of a larger ship model.
@@ -49,7 +49,7 @@ const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 pub struct LackOfFit {
     /// Root mean square of the residual of all records, rad.
     pub residual: f64,
-    /// The same with nine ship terms fitted to it, rad, corrected for their number.
+    /// Root mean square of the residual with nine fitted ship terms, rad, corrected for their number.
     pub with_ship_terms: f64,
     /// Standard deviation of the white noise of the heading, rad.
     pub noise: f64,
@@ -63,8 +63,8 @@ pub struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Lack of fit of a response to its records; `None` if a replay is not finite, and with too few headings to
-    /// estimate their noise.
+    /// Lack of fit of a response to its records; `None` if a replay is not finite, or for too few headings to estimate
+    /// their noise.
     pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let (mut residual, mut pieces) = (Vec::new(), Vec::new());
         let mut terms: Vec<Vec<f64>> = Vec::new();
@@ -116,8 +116,8 @@ impl LackOfFit {
         (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
     }
 
-    /// [`delay`](Self::delay), where its term gives most of the reduction by all terms. `None` for a white residual,
-    /// and where the records do not identify a delay.
+    /// [`delay`](Self::delay), s, if its term gives most of the reduction by all terms. `None` for a white residual, or
+    /// if the records do not identify a delay.
     pub fn rudder_delay(&self) -> Option<f64> {
         let reduction = |rms: f64| self.residual * self.residual - rms * rms;
         let with_delay = self.with_delay.filter(|_| !self.is_white)?;
@@ -212,7 +212,7 @@ fn filtered_square(time: &[f64], r: &[f64], lag: f64) -> Vec<f64> {
     filtered
 }
 
-/// Adds the independent part of a column to an orthonormal basis (Gram and Schmidt, twice).
+/// Extends an orthonormal basis by the independent part of a column (Gram and Schmidt, twice).
 fn extend(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
     let length = dot(&column, &column).sqrt();
     remove(basis, &mut column);
@@ -267,7 +267,7 @@ mod tests {
         }
     }
 
-    /// K 2 % off is a fault that no term of a ship has to explain: K is free.
+    /// An error of 2 % in K is not explained by ship terms, because K is free.
     #[test]
     fn what_k_and_t_explain_is_no_lack() {
         let case = Case { noise_deg: 0.01, ..Case::default() };

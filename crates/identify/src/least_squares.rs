@@ -1,9 +1,9 @@
-//! The equation of motion as a regression, r' = −a r + b δ + c, on differentiated heading or on the gyro.
+//! Regression of the equation of motion, r' = −a r + b δ + c, on differentiated heading or on the gyro.
 //!
-//! a = 1/T, b = K/T, c = b δ_r. The textbook method, and a baseline: noise in r, a regressor, biases a towards zero
-//! (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods that
-//! do not differentiate, such as the integral and output-error methods, are better with visible noise. Sources: Ljung
-//! (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström (2007),
+//! a = 1/T, b = K/T, c = b δ_r. This is the textbook method and a baseline: noise in r, a regressor, biases a towards
+//! zero (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods
+//! that do not differentiate, such as the integral and output-error methods, are better with visible noise. Sources:
+//! Ljung (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström (2007),
 //! Errors-in-variables methods in system identification, Automatica 43, 939–958.
 
 use document::WarningCode;
@@ -22,20 +22,20 @@ use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use estimation::least_squares::LeastSquares;
 
-/// Relative bias of 1/T by noise above which a warning is given.
+/// Maximum relative bias of 1/T by noise without a warning.
 const MAX_QUIET_BIAS: f64 = 0.02;
 
-/// Equations needed: twice the unknowns, which leaves as many degrees of freedom for the error.
+/// Minimum number of equations: twice the unknowns, which leaves as many degrees of freedom for the error.
 const MIN_EQUATIONS: usize = 6;
 
-/// What is differentiated.
+/// Signal that is differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Signal {
-    /// The heading, twice.
+    /// Heading, differentiated twice.
     #[default]
     Heading,
-    /// The recorded yaw rate, once.
+    /// Recorded yaw rate, differentiated once.
     YawRate,
 }
 
@@ -43,13 +43,13 @@ pub enum Signal {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// What is differentiated.
+    /// Signal that is differentiated.
     pub signal: Signal,
     /// Local polynomials that smooth before differentiating; without them central differences.
     pub smoothing: Option<SavitzkyGolay>,
     /// `true` if the same local polynomials smooth the rudder; without effect on central differences.
     pub smooth_rudder: bool,
-    /// Maximum interval between rows that is differentiated across, s; without it five mean intervals of the record.
+    /// Maximum interval between rows for differentiation, s; without it five mean intervals of the record.
     pub longest_gap_s: Option<f64>,
     /// Maximum accepted condition number of the equations.
     pub condition_limit: f64,
@@ -68,9 +68,9 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     ///
-    /// Fails if window and order do not go together, the gap is not positive or the condition limit is not above 1.
+    /// Fails if window and order do not match, the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<MotionRegression, SettingsError> {
         if let Some(smoothing) = &self.smoothing {
             smoothing.check()?;
@@ -83,30 +83,30 @@ impl Settings {
 
 /// Least squares on r' = −a r + b δ + c.
 ///
-/// The covariance is that of white noise in the signal, propagated through the differentiating filters; its variance is
-/// estimated from the residual. The robust covariance (Newey and West 1987) also holds for a coloured residual. Where
-/// noise dominates the differentiated signal (`r_squared` far below 1) both are several times too large, because they
-/// neglect the correlation of the errors of r and r'. **Neither contains the bias that noise in r causes** (errors in
-/// variables); to first order it is the diagnostic `noise_bias_of_inverse_T_percent`. Smoothing adds another bias,
-/// which no diagnostic shows.
+/// The covariance is for white noise in the signal, propagated through the differentiating filters; its variance is
+/// estimated from the residual. The robust covariance (Newey and West 1987) also holds for a coloured residual. If
+/// noise dominates the differentiated signal (`r_squared` far below 1) both covariances are several times too large,
+/// because they neglect the correlation of the errors of r and r'. **Neither contains the bias caused by noise in r**
+/// (errors in variables); to first order it is the diagnostic `noise_bias_of_inverse_T_percent`. Smoothing adds another
+/// bias, for which there is no diagnostic.
 ///
-/// Fails with [`IdentifyError::NoChannel`] when the yaw rate is selected and not recorded, with
-/// [`IdentifyError::TooFewPoints`] when no window fits between gaps, and with [`IdentifyError::NotAShip`] when K/T is
-/// not positive. A negative 1/T is an answer: the ship is course-unstable.
+/// Fails with [`IdentifyError::NoChannel`] if the yaw rate is selected but not recorded, with
+/// [`IdentifyError::TooFewPoints`] if no window fits between gaps, and with [`IdentifyError::NotAShip`] if K/T is not
+/// positive. A negative 1/T is a valid estimate: the ship is course-unstable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionRegression {
     settings: Settings,
 }
 
-/// A part of a record without a gap.
+/// Part of a record without a gap.
 #[derive(Debug)]
 struct GapFreePart {
     time: Vec<f64>,
-    /// Rows with an equation, at least one.
+    /// Rows with an equation; at least one.
     rows: Vec<usize>,
 }
 
-/// The equations of all parts without a gap, column by column.
+/// Equations of all gap-free parts, column by column.
 #[derive(Debug, Default)]
 struct Equations {
     /// −r, rad/s.
@@ -235,7 +235,7 @@ impl MotionRegression {
         Ok(equations)
     }
 
-    /// Adds an equation for every row with a whole window around it that no gap cuts.
+    /// Adds an equation for every row with a complete window without a gap.
     fn add(&self, time: &[f64], signal: &[f64], rudder: &[f64], equations: &mut Equations) {
         let mut weights = WindowWeights::new(self.polynomial());
         for range in pieces(time, longest_gap(self.settings.longest_gap_s, time)) {

@@ -1,8 +1,8 @@
 //! Identification of the manoeuvrability indices K and T (and the rudder bias δ_r) from recorded trials.
 //!
 //! Every method is one file and one line in [`registry`], all behind one trait, [`Identifier`]: settings first, then
-//! trials, then an [`Estimate`] or a typed [`IdentifyError`]. There is no path from here to the simulator: a method
-//! sees a record and nothing else.
+//! trials, then an [`Estimate`] or a typed [`IdentifyError`]. There is no dependency on the simulator: a method has
+//! only the record.
 //!
 //! | id | method |
 //! |---|---|
@@ -12,11 +12,11 @@
 //! | `least-squares` | regression on differentiated heading or on the gyro |
 //! | `integral-least-squares` | the equation of motion integrated twice |
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
-//! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
+//! | `maximum-likelihood` | maximum likelihood under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 //! | `recommended` | output error or maximum likelihood, by a rule made from the record |
 //!
-//! Of several answers [`verdict`] says which is to be taken, and whether any is.
+//! Of several estimates [`verdict`] selects the recommended one, or rejects all.
 
 pub mod answer;
 pub mod characteristic_points;

@@ -1,4 +1,4 @@
-//! `maximum-likelihood`: K, T and δ_r of a ship under a random yaw moment, with rudder and compass errors.
+//! Method `maximum-likelihood`: K, T and δ_r of a ship under a random yaw moment, with rudder and compass errors.
 //!
 //! The random yaw moment is absent, white, gusting (Ornstein–Uhlenbeck) or a random walk, the compass error white or of
 //! first order in time, and the recorded rudder may have a white error; the law is selected by BIC. Given 1/T and the
@@ -6,7 +6,7 @@
 //! with exact slopes. It starts at the estimate of `output-error`, which is global in both signs of 1/T, and repeats
 //! the search over 1/T under the selected noise. With compass noise alone, the estimate is that of `output-error`.
 //!
-//! Spikes of the compass are left out, jumps of its level are estimated, and both are listed.
+//! Spikes of the compass are left out, jumps of level are estimated, and both are listed.
 //!
 //! Sources: Åström and Källström (1976), Automatica 12, 9–22; Källström and Åström (1981), Automatica 17, 187–198;
 //! Harvey (1989) for the prediction error decomposition; Schwarz (1978) for BIC.
@@ -33,28 +33,28 @@ use crate::identifier::Identifier;
 use crate::settings::{SettingsError, check_iterations};
 
 /// Times, s, of the outliers of every record: single spikes and sentinels such as −999, isolated in the residual of
-/// `output-error`. None where more than a tenth of the readings are outliers: the noise then follows another law. Fails
-/// as `output-error` does.
+/// `output-error`. No times if more than a tenth of the readings are outliers: the noise then follows another law.
+/// Fails as `output-error` does.
 pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
     Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     pub fn build(self) -> Result<MaximumLikelihood, SettingsError> {
         check_iterations("iterations", self.iterations)?;
         Ok(MaximumLikelihood { settings: self })
     }
 }
 
-/// Maximum likelihood under a random yaw moment, rudder error and coloured compass error.
+/// Method of maximum likelihood under a random yaw moment, rudder error and coloured compass error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaximumLikelihood {
     settings: Settings,
 }
 
 impl MaximumLikelihood {
-    /// The most plausible noise laws of some records, with the fit under each.
+    /// Most plausible noise laws of some records, with the fit under each.
     fn chosen(&self, trials: &[Trial]) -> Result<choice::Chosen, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
@@ -62,7 +62,7 @@ impl MaximumLikelihood {
         choice::PreparedRecords::new(&self.settings, trials)?.choose(&self.settings)
     }
 
-    /// Log of the largest likelihood of some records; `None` if the method gives no estimate.
+    /// Maximum log-likelihood of some records; `None` if the method gives no estimate.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
         let chosen = self.chosen(trials).ok()?;
         let log_likelihood = -0.5 * chosen.maxima[0].1.point.deviance;

@@ -1,12 +1,12 @@
-//! `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
+//! Method `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
-//! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. For a given 1/T
-//! the heading is linear in all other unknowns, so the problem is a search over a single number: the profiled sum of
-//! squares is scanned over both signs of 1/T, every local minimum of the scan is polished by variable projection with
-//! exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), first on a part of the rows and then, unless it is far
-//! above the lowest, on all, and the lowest wins. A local minimum is therefore not mistaken for the estimate unless the
-//! global minimum is narrower than the scan. Source of the method: Ljung (1999), System Identification: Theory for the
-//! User, chapter 7.
+//! The unknowns are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. For a given
+//! 1/T the heading is linear in all other unknowns, so the problem is a search over a single number: the profiled sum
+//! of squares is scanned over both signs of 1/T, every local minimum of the scan is refined by variable projection
+//! with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), first on a part of the rows and then, unless it is
+//! far above the lowest, on all rows; the lowest minimum is the estimate. A local minimum is therefore not mistaken for
+//! the estimate unless the global minimum is narrower than the scan. Source of the method: Ljung (1999), System
+//! Identification: Theory for the User, chapter 7.
 
 use document::WarningCode;
 use nalgebra::Matrix3;
@@ -29,11 +29,11 @@ use crate::settings::{SettingsError, check_iterations, require};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// Points of the scan per decade of |1/T|, for each sign.
+    /// Number of points of the scan per decade of |1/T|, for each sign.
     pub grid_per_decade: usize,
     /// Minimum |T| searched, s; `None` is half a sampling period.
     pub smallest_time_constant_s: Option<f64>,
-    /// Maximum number of steps when a minimum is polished.
+    /// Maximum number of steps in the refinement of a minimum.
     pub iterations: usize,
 }
 
@@ -44,7 +44,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings and makes the method.
+    /// Method with these settings, which are checked.
     pub fn build(self) -> Result<OutputError, SettingsError> {
         let per_decade = self.grid_per_decade;
         require((1..=MAX_POINTS_PER_DECADE).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
@@ -57,74 +57,73 @@ impl Settings {
     }
 }
 
-/// Maximum likelihood by simulation, global in 1/T.
+/// Method of maximum likelihood by simulation, global in 1/T.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputError {
     settings: Settings,
 }
 
-/// Limit on the points of the scan per decade: valleys are ten times as wide as its spacing.
+/// Maximum number of points of the scan per decade: valleys are ten times as wide as its spacing.
 const MAX_POINTS_PER_DECADE: usize = 1000;
 
-/// Time constants, s, that the setting accepts as the end of the scan.
+/// Accepted time constants, s, at the end of the scan.
 const TIME_CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Minimum |1/T| of the scan, in units of one over the length of the record: below it the response is
 /// indistinguishable from a neutrally stable response.
 const MIN_INVERSE_TIME_RECORDS: f64 = 0.02;
 
-/// Stopping rules of a polish.
+/// Stopping rules of a refinement.
 struct Goal {
     /// Step, relative to 1/T, at convergence.
     tolerance: f64,
     /// Maximum number of steps.
     iterations: usize,
-    /// Sum of squares, rad², that a promising valley falls below.
+    /// Maximum sum of squares, rad², of a promising valley.
     bar: f64,
 }
 
 /// Relative tolerance for "at its bound".
 const BOUND_TOLERANCE: f64 = 1e-6;
 
-/// Relative step at convergence of the polish.
+/// Relative step at convergence of the refinement.
 const TOLERANCE: f64 = 1e-10;
 
-/// Goal of a search over a part of the rows. Their minimum lies within a fraction of a standard deviation of that of
-/// all rows, so more digits are useless; a valley that needs more steps has a large residual and is not the lowest.
+/// Goal of a search over a part of the rows. The minimum lies within a fraction of a standard deviation of the minimum
+/// of all rows, so more digits are useless; a valley that needs more steps has a large residual and is not the lowest.
 const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
 
-/// Maximum sum of squares over a part of the rows, relative to the lowest, of a valley that is polished on all rows.
+/// Maximum sum of squares over a part of the rows, relative to the lowest, of a valley that is refined on all rows.
 const MAX_RSS_RATIO: f64 = 10.0;
 
-/// Steps before a valley may be dropped.
+/// Minimum number of steps before a valley may be dropped.
 const MIN_STEPS: usize = 2;
 
 /// Safety factor on the predicted decrease of a step, which assumes a parabola.
 const DECREASE_MARGIN: f64 = 4.0;
 
-/// Predicted decrease, relative to the sum of squares, that is rounding.
+/// Maximum predicted decrease, relative to the sum of squares, that is treated as rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// Halvings after which a step without decrease counts as rounding.
+/// Maximum number of halvings; a step without decrease then counts as rounding.
 const MAX_HALVINGS: usize = 12;
 
-/// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
+/// Number of unknowns that all trials share: 1/T, K/T, δ_r.
 const SHARED: usize = 3;
 
 /// Maximum condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
 pub(crate) const CONDITION_LIMIT: f64 = 1e6;
 
-/// Headings that a trial needs.
+/// Minimum number of headings of a trial.
 pub(crate) const MIN_ROWS: usize = 12;
 
-/// Rows of every trial in the scan.
+/// Maximum number of rows of every trial in the scan.
 const SCANNED_ROWS: usize = 200;
 
-/// Standard deviations by which K/T must exceed zero: below them the record shows no effect of the rudder and δ_r is
-/// undefined.
+/// Minimum K/T, in standard deviations: below it the record shows no effect of the rudder and δ_r is undefined.
 pub(crate) const MIN_GAIN_DEVIATIONS: f64 = 2.0;
 
-/// A polished minimum of the profiled sum of squares.
+/// Refined minimum of the profiled sum of squares.
 struct PolishedMinimum {
     inverse_time: f64,
     rss: f64,
@@ -148,12 +147,12 @@ impl OutputError {
         grid
     }
 
-    /// The goal on all rows.
+    /// Stopping rules on all rows.
     fn goal(&self) -> Goal {
         Goal { tolerance: TOLERANCE, iterations: self.settings.iterations, bar: f64::INFINITY }
     }
 
-    /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
+    /// Variable projection from a start, with step halving; it never leaves a lower point for a higher point.
     ///
     /// Ends when a step is below the tolerance, its predicted decrease is below the rounding of the sum of squares, or
     /// the valley cannot fall below the bar.
@@ -168,7 +167,7 @@ impl OutputError {
                 return Some(converged);
             }
             if decrease <= ROUNDING * rss {
-                // The score has more digits than the sum of squares: the step is accepted even if the sum does not
+                // The score is more exact than the sum of squares: the step is accepted even if the sum does not
                 // decrease.
                 let last = profile.evaluate(inverse_time + step);
                 return last.map(|rss| PolishedMinimum { inverse_time: inverse_time + step, rss, ..converged });
@@ -212,8 +211,8 @@ impl OutputError {
     pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
         let grid = self.grid(&tracks, finest);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
-        // The scan and the first polish only locate the valleys, for which a part of the rows suffices; the last polish
-        // uses all.
+        // The scan and the first refinement only locate the valleys, for which a part of the rows suffices; the last
+        // refinement uses all rows.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
         let scan = RangeScan { fits: scan::fits(&thinned, &grid), grid };
         let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
@@ -241,10 +240,10 @@ impl OutputError {
     }
 }
 
-/// Place of the number of local minima among the diagnostics.
+/// Index of the number of local minima among the diagnostics.
 const LOCAL_MINIMA: usize = 4;
 
-/// The best fits over the range of 1/T.
+/// Best fits over the range of 1/T.
 struct RangeScan {
     /// 1/T, 1/s, increasing.
     grid: Vec<f64>,
@@ -252,8 +251,8 @@ struct RangeScan {
 }
 
 impl RangeScan {
-    /// Local minima in 1/T of a ship that turns to the side of its rudder, the deepest first, because it sets the bar
-    /// for the others.
+    /// Local minima in 1/T of a ship that turns to the side of the rudder, the deepest first, because it sets the
+    /// maximum for the others.
     fn valleys(&self) -> Vec<f64> {
         let height = |k: usize| {
             let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
@@ -278,13 +277,13 @@ impl RangeScan {
         }
     }
 
-    /// The estimate at a minimum.
+    /// Estimate at a minimum.
     fn estimate(&self, mut profile: Profile, minimum: PolishedMinimum) -> Result<Estimate, IdentifyError> {
         let PolishedMinimum { inverse_time, rss, stop, iterations } = minimum;
         profile.evaluate(inverse_time);
         let (gain, offset) = profile.steering();
         let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
-        // A minimum may leave the range during the polish, or stop at its edge.
+        // A minimum may leave the range during the refinement, or stop at its edge.
         let fastest = self.grid[self.grid.len() - 1];
         let at_bound = inverse_time.abs() >= fastest * (1.0 - BOUND_TOLERANCE);
         // A rudder of the wrong sign looks like a course-unstable ship with a vanishing T.
@@ -338,7 +337,7 @@ impl RangeScan {
 /// Warning text for a negative 1/T.
 pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
 
-/// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
+/// Covariance of (1/T, K/T, δ_r) from the covariance of (1/T, b, b δ_r).
 pub(crate) fn to_response(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
     let b = response.K_over_T;
     let jacobian = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -response.rudder_bias / b, 1.0 / b);

@@ -17,7 +17,7 @@ pub struct OutsideFit {
     pub T: f64,
     /// δ_r, rad.
     pub rudder_bias: f64,
-    /// Their errors.
+    /// Errors of K, T and δ_r.
     pub errors: OutsideErrors,
 }
 
@@ -28,22 +28,23 @@ pub enum OutsideErrors {
     Unknown,
     /// Standard deviations.
     Deviations([Option<f64>; 3]),
-    /// The covariance.
+    /// Covariance of (K, T, δ_r).
     Covariance(Matrix3<f64>),
 }
 
-/// Warning where only standard deviations are reported.
+/// Warning if only standard deviations are reported.
 const UNCORRELATED: &str = "errors of K and T are treated as independent, because no covariance was given; this \
                             affects predictions and the interval of K/T, not the intervals of K and T";
 
-/// Maximum relative asymmetry of a covariance and excess of a correlation over 1: rounding.
+/// Maximum relative asymmetry of a covariance, and maximum excess of a correlation over 1, treated as rounding.
 const ROUNDING: f64 = 1e-6;
 
 impl OutsideFit {
-    /// The estimate: a first-order response, and the covariance of (1/T, K/T, δ_r) to first order in the errors.
+    /// Estimate: a first-order response, and the covariance of (1/T, K/T, δ_r) to first order in the errors.
     ///
-    /// With J = ∂(1/T, K/T, δ_r)/∂(K, T, δ_r) it is J C Jᵀ; C is diagonal where only standard deviations are given. A
-    /// δ_r without an error has none in the estimate, either. Fails with [`IdentifyError::NotAShip`] unless K/T > 0.
+    /// With J = ∂(1/T, K/T, δ_r)/∂(K, T, δ_r) the covariance is J C Jᵀ; C is diagonal if only standard deviations are
+    /// given. A δ_r without an error has no error in the estimate, either. Fails with [`IdentifyError::NotAShip`]
+    /// unless K/T > 0.
     pub fn estimate(&self) -> Result<Estimate, IdentifyError> {
         let Self { K, T, rudder_bias, .. } = *self;
         let response = FirstOrder::from_indices(K, T, rudder_bias);
@@ -82,8 +83,8 @@ impl OutsideFit {
         })
     }
 
-    /// The covariance of (K, T, δ_r), and a warning on it; `None` if K or T has no error, or the given matrix is not
-    /// a covariance.
+    /// Covariance of (K, T, δ_r), and a warning on it; `None` if K or T has no error, or the given matrix is not a
+    /// covariance.
     fn covariance(&self) -> Option<(Matrix3<f64>, Option<Warning>)> {
         match self.errors {
             OutsideErrors::Unknown => None,
@@ -104,7 +105,7 @@ fn is_covariance(matrix: &Matrix3<f64>) -> bool {
         (0..3).all(|j| {
             let (upper, lower) = (matrix[(i, j)], matrix[(j, i)]);
             let most = (matrix[(i, i)] * matrix[(j, j)]).sqrt() * (1.0 + ROUNDING);
-            // Written so that NaN is refused too.
+            // The condition also refuses NaN.
             upper.abs() <= most && most.is_finite() && (upper - lower).abs() <= ROUNDING * most && matrix[(i, i)] >= 0.0
         })
     });
@@ -147,7 +148,7 @@ mod tests {
         let correlated = estimate(OutsideErrors::Covariance(matrix));
         check(&correlated);
         assert!(correlated.warnings.is_empty());
-        // K/T is known far better where the errors go together.
+        // K/T is far more precise if the errors are correlated.
         let gain = |estimate: &Estimate| match &estimate.uncertainty {
             Uncertainty::Covariance(covariance) => covariance.matrix[(1, 1)],
             _ => f64::NAN,

@@ -11,21 +11,21 @@ use trial::{Channel, Quantity, Trial, ZigZag};
 
 use crate::estimate::{Estimate, Uncertainty};
 
-/// Standard deviations of a value by which it may lie outside the usual range.
+/// Maximum distance of a value from the usual range, in standard deviations.
 const MAX_DEVIATIONS: f64 = 2.0;
 
 /// Relative tolerance of a rudder rate from a record.
 const RATE_TOLERANCE: f64 = 0.05;
 
 /// Maximum ratio of the largest speed of a record and its approach speed: a current of two knots is a fifth of ten. A
-/// ship that gathers way has most of her speed when she is steered.
+/// ship that gathers way has most of her speed at the first execute.
 const MAX_SPEED_RATIO: f64 = 1.25;
 
 /// Warning on unusual values of an estimate and of its records; `None` for usual values.
 ///
-/// A length and speed that contradict each other or the record are reported first. The other checks need zig-zags: a
+/// A contradiction between length and speed, or with the record, is reported first. The other checks need zig-zags: a
 /// turn alone hardly determines K′ = K L/U, T′ = T U/L and K′/T′. `ship` is at the scale of the estimate, `records` at
-/// their own.
+/// their own scale.
 pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<Warning> {
     if let Some(contradiction) = records.iter().find_map(other_scale) {
         return Some(contradiction);
@@ -54,7 +54,7 @@ pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[T
 /// Advice for a length and speed of different scales.
 const SAME_SCALE: &str = "length, speed and record must be of the same scale, all of the ship or all of the model";
 
-/// Warning on a Froude number that no ship has, so that length and speed are not of the same scale.
+/// Warning on an impossible Froude number: length and speed are not of the same scale.
 pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Option<Warning> {
     let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
     let [low, high] = USUAL_FROUDE_NUMBER;
@@ -95,7 +95,7 @@ fn unusual_indices(estimate: &Estimate, ship: Particulars) -> Vec<String> {
         (quantity.value + margin < low || quantity.value - margin > high)
             .then(|| format!("{name} is {:.2} (ships have {low} to {high})", quantity.value))
     };
-    // A course-unstable ship has K and T below zero, and their ratio as any other.
+    // A course-unstable ship has K and T below zero, but a usual ratio.
     let indices = [("K′", k, USUAL_K_PRIME), ("T′", t, USUAL_T_PRIME)];
     let for_stable = indices.into_iter().filter(|_| !estimate.response.is_course_unstable());
     for_stable.chain([("K′/T′", ratio, USUAL_K_OVER_T_PRIME)]).filter_map(message).collect()
@@ -110,7 +110,7 @@ mod tests {
 
     const YUKUN: Particulars = Particulars { length: 105.0, speed: 8.59 };
 
-    /// The warning on a changed record of YUKUN (K′ = 1.22, T′ = 1.33, 2.5°/s) with a given length and speed.
+    /// Warning on a changed record of YUKUN (K′ = 1.22, T′ = 1.33, 2.5°/s) with a given length and speed.
     fn text(ship: Particulars, change: impl Fn(&mut Case)) -> Option<String> {
         let mut case = Case { noise_deg: 0.1, ..Case::default() };
         change(&mut case);
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn what_ships_have_is_not_suspected() {
         assert_eq!(text(YUKUN, |_| {}), None);
-        // A rudder that is read a fifth too large.
+        // Rudder read a fifth too large.
         assert_eq!(text(YUKUN, |case| (case.K, case.rate_deg_s) = (0.1 / 1.2, 3.0)), None);
         // A model of 1:20 by Froude: every time is shorter by √20.
         let model = Particulars { length: 105.0 / 20.0, speed: 8.59 / 20.0_f64.sqrt() };
@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(text(model, smaller), None);
     }
 
-    /// A model of 7 m given as her ship of 320 m, by length alone or by both.
+    /// A model of 7 m with the particulars of her ship of 320 m, by length alone or by length and speed.
     #[test]
     fn a_model_given_as_her_ship_is_suspected() {
         let cure = "all of the ship or all of the model";

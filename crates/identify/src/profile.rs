@@ -24,22 +24,22 @@ struct TrialColumns {
     heading: Vec<f64>,
     /// ∂ψ/∂a, projected.
     sensitivity: Vec<f64>,
-    /// Measured less fitted heading.
+    /// Measured minus fitted heading.
     residual: Vec<f64>,
 }
 
-/// The profiled sum of squares and the fit at the point last evaluated.
+/// Profiled sum of squares and the fit at the last evaluated point.
 #[derive(Debug)]
 pub(crate) struct Profile {
     parts: Vec<TrialColumns>,
     steering: Vector2<f64>,
-    /// Point last evaluated and the sum of squares there.
+    /// Last evaluated point and the sum of squares there.
     last: Option<(f64, Option<f64>)>,
-    /// Number of evaluations so far.
+    /// Number of evaluations.
     pub evaluations: usize,
 }
 
-/// A step of 1/T.
+/// Step of 1/T.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NewtonStep {
     /// Change of 1/T, 1/s.
@@ -103,7 +103,7 @@ impl Profile {
         (rss.is_finite() && b > 0.0).then_some(rss)
     }
 
-    /// Kaufman's step of 1/T from the point last evaluated.
+    /// Kaufman's step of 1/T from the last evaluated point.
     pub fn newton_step(&mut self, inverse_time: f64) -> NewtonStep {
         let information = self.information(inverse_time);
         let score: f64 = self.parts.iter().map(|part| dot(&part.sensitivity, &part.residual)).sum();
@@ -115,7 +115,7 @@ impl Profile {
         NewtonStep { by, decrease: by * score }
     }
 
-    /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the point last evaluated; times 1/σ² it is the Fisher
+    /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the last evaluated point; times 1/σ² it is the Fisher
     /// information.
     pub fn information(&mut self, inverse_time: f64) -> Matrix3<f64> {
         let [b, q] = self.steering.into();
@@ -143,7 +143,7 @@ impl Profile {
         self.parts.iter().map(|part| part.residual.as_slice())
     }
 
-    /// (b, b δ_r) of the point last evaluated.
+    /// (b, b δ_r) of the last evaluated point.
     pub fn steering(&self) -> (f64, f64) {
         (self.steering[0], self.steering[1])
     }
@@ -153,7 +153,7 @@ impl Profile {
         self.parts.len()
     }
 
-    /// Observed headings of all trials.
+    /// Number of observed headings of all trials.
     pub fn observations(&self) -> usize {
         self.parts.iter().map(|part| part.heading.len()).sum()
     }
@@ -209,13 +209,13 @@ impl TrialColumns {
 }
 
 /// Inverse of an [`information`](Profile::information) and the condition number of the Jacobian behind it, its columns
-/// scaled. The error is the condition number where it exceeds `limit`: the inverse is then dominated by rounding, and
-/// its variances may be negative.
+/// scaled. Fails with the condition number if it exceeds `limit`: the inverse is then dominated by rounding, and its
+/// variances may be negative.
 pub(crate) fn invert(information: &Matrix3<f64>, limit: f64) -> Result<(Matrix3<f64>, f64), f64> {
     let scale = information.diagonal().map(|value| value.sqrt().recip());
     let scaled = |matrix: &Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
     let correlation = scaled(information);
-    // A column that vanished or overflowed; the search for eigenvalues need not end.
+    // For a column that vanished or overflowed the search for eigenvalues may not end.
     if correlation.iter().any(|value| !value.is_finite()) {
         return Err(f64::INFINITY);
     }
@@ -233,7 +233,7 @@ pub(crate) fn solve2(gram: &Matrix2<f64>, moment: &Vector2<f64>) -> Option<Vecto
     let scale = Vector2::new(gram[(0, 0)].sqrt().recip(), gram[(1, 1)].sqrt().recip());
     let cosine = gram[(0, 1)] * scale[0] * scale[1];
     let determinant = 1.0 - cosine * cosine;
-    // NaN is a column that vanished.
+    // NaN comes from a column that vanished.
     if determinant.is_nan() || determinant <= 1e-14 {
         return None;
     }

@@ -1,17 +1,17 @@
-//! The recommended estimate: output error or maximum likelihood, by a rule on the record alone.
+//! Recommended estimate: output error or maximum likelihood, by a rule on the record alone.
 //!
 //! Output error is recommended, because its first-order response is the nearest to the headings, with three exceptions.
-//! Where the recorded rudder has declared noise, maximum likelihood counts it. Where the heading jumps and stays off,
-//! and no random moment is needed besides, maximum likelihood estimates the jumps. Where it finds a random yaw moment
-//! that the terms of a ship cannot explain ([`LackOfFit`]), it is recommended as well: output error attributes the
-//! effect of gusts to the rudder. Records that declare a calm have no such moment. Where terms of a ship explain the
-//! residual, the model lacks a term. A random moment then substitutes for it, and K, T of maximum likelihood are those
-//! of small and fast motions. An estimate of maximum likelihood without an interval of K is never recommended: its
-//! random moment explains the manoeuvre itself. A replay far worse than that of output error is no such sign: under
-//! strong random moments the true ship has such a replay, too. The rule is this project's own; METHODOLOGY documents
-//! its limits.
+//! If the recorded rudder has declared noise, maximum likelihood is recommended, which includes it. If the heading
+//! jumps and stays off, without a random moment, maximum likelihood is recommended, which estimates the jumps. If
+//! maximum likelihood finds a random yaw moment that the terms of a ship cannot explain ([`LackOfFit`]), it is
+//! recommended as well: output error attributes the effect of gusts to the rudder. Records that declare a calm have no
+//! such moment. If terms of a ship explain the residual, the model lacks a term. A random moment then substitutes for
+//! it, and K, T of maximum likelihood describe small and fast motions. An estimate of maximum likelihood without an
+//! interval of K is never recommended: its random moment explains the manoeuvre. A replay far worse than that of output
+//! error is not a reason for rejection: under strong random moments the true ship has such a replay, too. The rule is
+//! this project's own; METHODOLOGY documents its limits.
 //!
-//! As a method it makes both fits and returns the recommended estimate, so that a study can test the rule.
+//! As a method it fits both models and returns the recommended estimate, so that a study can test the rule.
 
 use document::WarningCode;
 use document::fit::{ResidualKind, VerdictReason};
@@ -26,20 +26,20 @@ use crate::replay::pooled;
 use crate::settings::SettingsError;
 use crate::{maximum_likelihood, output_error};
 
-/// Minimum share of the residual, unexplained by ship terms, that counts as a random moment. The scenario
-/// `recommended` shows the cost of the rule; METHODOLOGY documents the limit.
+/// Minimum share of the residual, unexplained by ship terms, that counts as a random moment. The scenario `recommended`
+/// shows the loss by the rule; METHODOLOGY documents the limit.
 const MIN_RANDOM: f64 = 0.33;
 
 /// Maximum replay error of maximum likelihood, relative to that of output error, of a ship in a random moment: above it
 /// the moment would have to cancel the steering. In gusts the ratio is at most about five.
 const MAX_REPLAY_RATIO: f64 = 30.0;
 
-/// The recommended method and its reason.
+/// Recommended method with the reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recommendation {
-    /// The reason.
+    /// Reason for the recommendation.
     pub reason: VerdictReason,
-    /// Lack of fit of output error; `None` without its estimate or without a noise level.
+    /// Lack of fit of output error; `None` without an estimate or without a noise level.
     pub lack: Option<LackOfFit>,
     /// `true` if all records declare a calm, which excludes random moments.
     pub is_calm: bool,
@@ -86,13 +86,13 @@ impl Recommendation {
     }
 }
 
-/// The rule as a method; it has no settings.
+/// Settings of the rule as a method; there are none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {}
 
 impl Settings {
-    /// Makes the method.
+    /// Method with these settings.
     pub fn build(self) -> Result<Recommended, SettingsError> {
         Ok(Recommended {
             output_error: output_error::Settings::default().build()?,
@@ -101,7 +101,7 @@ impl Settings {
     }
 }
 
-/// Output error or maximum likelihood, selected by the record.
+/// Method of output error or maximum likelihood, selected by the record.
 pub struct Recommended {
     output_error: output_error::OutputError,
     maximum_likelihood: maximum_likelihood::MaximumLikelihood,
@@ -140,13 +140,13 @@ mod tests {
         output_error::Settings::default().build().expect("defaults").identify(trials).expect("a fit")
     }
 
-    /// The same estimate with a random moment.
+    /// Estimate with a random moment.
     fn in_gusts(base: &Estimate) -> Estimate {
         let moment = RandomMoment::White { rudder_rad_root_s: 0.05 };
         Estimate { noise: Some(HeadingNoise { heading_sd_rad: 0.001, moment }), ..base.clone() }
     }
 
-    /// A zig-zag in a white moment, which no term of a ship explains.
+    /// Record of a zig-zag under a white moment, which no term of a ship explains.
     fn windy() -> Trial {
         let case = Case { noise_deg: 0.05, ..Case::default() };
         let calm = case.trial();
@@ -164,7 +164,7 @@ mod tests {
         record("windy", calm.time().to_vec(), heading.collect(), calm.rudder().to_vec())
     }
 
-    /// Jumps that stay are counted by maximum likelihood alone; beside a random moment they are no reason.
+    /// Lasting jumps are estimated by maximum likelihood alone; together with a random moment they are no reason.
     #[test]
     fn jumps_of_the_heading_are_a_reason_without_a_random_moment() {
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial()];
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(reason(&Estimate { uncertainty: bare, ..jumping }), VerdictReason::NearestReplay);
     }
 
-    /// A replay may be 29 times as far as the nearest where the moment is random, and not 31 times.
+    /// Under a random moment a replay error of 29 times the smallest is accepted, and 31 times is not.
     #[test]
     fn a_replay_thirty_times_farther_is_of_no_ship() {
         let trials = [windy()];
@@ -190,7 +190,7 @@ mod tests {
         let distance = |response: &FirstOrder| pooled(&trials, response).expect("a replay");
         let biased = |by: f64| FirstOrder { rudder_bias: base.response.rudder_bias + by, ..base.response };
         let ratio = |response: &FirstOrder| distance(response) / distance(&base.response);
-        // The heading is linear in the bias, and the nearest replay has the least square.
+        // The heading is linear in the bias, and the nearest replay has the least sum of squares.
         let unit = (ratio(&biased(1.0)).powi(2) - 1.0).sqrt();
         let reason = |times: f64| {
             let response = biased((times * times - 1.0).sqrt() / unit);

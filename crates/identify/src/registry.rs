@@ -1,7 +1,7 @@
-//! The methods of the project by name, with their settings as they are written in scenario files.
+//! Registry of the methods by name, with their settings as written in scenario files.
 //!
 //! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below.
-//! The contract of all methods then runs it. A method that combines others is listed after them.
+//! The contract test of all methods then runs it. A method that combines others is listed after them.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::settings::SettingsError;
 
 macro_rules! methods {
     ($($Method:ident($file:ident)),+ $(,)?; combined: $($Chooser:ident($chooser:ident)),+ $(,)?) => {
-        /// A method and its settings; the variant is the key in a scenario file.
+        /// Method with its settings; the variant is the key in a scenario file.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
         #[serde(rename_all = "kebab-case")]
         pub enum IdentifierSettings {
@@ -25,7 +25,7 @@ macro_rules! methods {
         }
 
         impl IdentifierSettings {
-            /// Checks the settings and makes the method.
+            /// Method with these settings, which are checked.
             pub fn build(&self) -> Result<Box<dyn Identifier>, SettingsError> {
                 Ok(match self.clone() {
                     $(Self::$Method(settings) => Box::new(settings.build()?),)+
@@ -34,7 +34,7 @@ macro_rules! methods {
             }
         }
 
-        /// Every method that does not combine others, with its default settings, in the order of reports.
+        /// All methods that do not combine others, with default settings, in the order of reports.
         pub fn defaults() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }
@@ -65,7 +65,7 @@ pub const DEFAULT_METHODS: [&str; 6] = [
     "characteristic-points",
 ];
 
-/// The methods of [`DEFAULT_METHODS`] with their default settings, the best first.
+/// Methods of [`DEFAULT_METHODS`] with default settings, the best first.
 pub fn usual() -> Vec<Box<dyn Identifier>> {
     let all = defaults().into_iter().map(|settings| settings.build().expect("default settings are valid"));
     let mut methods: Vec<Box<dyn Identifier>> = all.filter(|method| DEFAULT_METHODS.contains(&method.id())).collect();
@@ -81,7 +81,7 @@ mod tests {
 
     use super::IdentifierSettings as Method;
 
-    /// Counts that would exhaust memory or time, extreme numbers, and meaningless values.
+    /// Settings with counts that would exhaust memory or time, extreme numbers, and meaningless values.
     #[test]
     fn settings_out_of_range_are_refused() {
         let published = |settings: fourier_published::Settings| Method::FourierPublished(settings);

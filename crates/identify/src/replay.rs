@@ -1,7 +1,7 @@
 //! Replay of the recorded rudder through a given first-order response, and the heading residual.
 //!
 //! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay fixed, so the residual measures
-//! their error and not that of the initial state. Valid for either sign of T. The comparison of a simulated with a
+//! their error and not the error of the initial state. Valid for either sign of T. The comparison of a simulated with a
 //! measured output is model validation as in Ljung (1999), chapter 16.
 
 use estimation::column::{dot, sum};
@@ -11,10 +11,10 @@ use trial::Trial;
 
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 
-/// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
+/// Maximum condition number for the fit of an initial yaw rate; above it the yaw rate is zero.
 const CONDITION_LIMIT: f64 = 1e9;
 
-/// A replay of a record.
+/// Replay of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
     /// Time of every row between the first and last observed heading, s.
@@ -23,7 +23,7 @@ pub struct Replay {
     pub heading: Vec<f64>,
     /// Yaw rate of these rows, rad/s.
     pub yaw_rate: Vec<f64>,
-    /// Measured less replayed heading of these rows, rad; NaN where none was measured.
+    /// Measured minus replayed heading of these rows, rad; NaN if none was measured.
     pub residual: Vec<f64>,
 }
 
@@ -38,7 +38,7 @@ impl Replay {
         self.time.iter().copied().zip(self.residual.iter().copied()).filter(|(_, residual)| residual.is_finite())
     }
 
-    /// Root mean square of the residual, rad; NaN when no heading was measured.
+    /// Root mean square of the residual, rad; NaN if no heading was measured.
     pub fn rms(&self) -> f64 {
         pooled_rms(std::slice::from_ref(self))
     }
@@ -98,7 +98,7 @@ pub fn pooled_rms(replays: &[Replay]) -> f64 {
     (square / rows as f64).sqrt()
 }
 
-/// Heading and yaw rate at the anchor whose free motion, along 1 and φ₁, fits `free` best: the heading less the
+/// Heading and yaw rate at the anchor whose free motion, along 1 and φ₁, fits `free` best: the heading minus the
 /// response to the rudder.
 pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
     let rows = free.len() as f64;
@@ -109,7 +109,7 @@ pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
     // With the angle θ between 1 and φ₁ the condition number of the two is 2/θ, and θ² = spread / square.
     let is_independent = spread.is_finite() && spread * CONDITION_LIMIT.powi(2) > 4.0 * square;
     if !is_independent {
-        // The transient of the initial yaw rate dies within a sample: only the heading can be fitted.
+        // The transient of the initial yaw rate decays within a sample: only the heading can be fitted.
         return State { heading: level, yaw_rate: 0.0 };
     }
     let yaw_rate = dot(&centred, free) / spread;

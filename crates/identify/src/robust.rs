@@ -8,12 +8,12 @@ use nalgebra::Matrix3;
 
 use crate::estimate::{Covariance, Uncertainty};
 
-/// Lag-1 autocorrelation above which a residual is coloured, if it exceeds the range of white noise.
+/// Minimum lag-1 autocorrelation of a coloured residual, if it exceeds the range of white noise.
 const MAX_WHITE_CORRELATION: f64 = 0.2;
 
-/// Covariance that a method reports: that of a white residual, or for a coloured residual the robust covariance, with a
-/// warning. A negative correlation keeps the white covariance: the robust covariance would be smaller, which is not
-/// justified for a record of two instruments read in turn.
+/// Covariance that a method reports: for a white residual the white covariance, for a coloured residual the robust
+/// covariance, with a warning. A negative correlation keeps the white covariance: the robust covariance would be
+/// smaller, which is not justified for a record of two instruments read in turn.
 pub(crate) fn select(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<Warning>) {
     if !is_coloured(lag1, rows) {
         return (Uncertainty::Covariance(white), None);

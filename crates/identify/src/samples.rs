@@ -12,14 +12,14 @@ use crate::error::IdentifyError;
 /// Minimum range of rudder and heading, deg, that counts as steering.
 const MIN_RANGE_DEG: f64 = 0.5;
 
-/// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth
-/// and number frequencies by its ratio to the interval, which have to stay in the range of floating point.
+/// Minimum and maximum duration of a record, s: from a tank model to thirty years. Methods use powers of the time up to
+/// the eighth and frequency numbers up to its ratio to the interval, which must stay in the range of floating point.
 const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
 
 /// Maximum angle, rad: a heading that has turned 160 000 times.
 const MAX_ANGLE_RAD: f64 = 1e6;
 
-/// The observed rows of a trial. All columns have the same length; time starts at 0.
+/// Observed rows of a trial. All columns have the same length; time starts at 0.
 #[derive(Debug, Clone, Default)]
 pub struct Samples {
     /// Time since the first observed row, s.
@@ -35,11 +35,11 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes the observed rows of a trial.
+    /// Samples of the observed rows of a trial.
     ///
-    /// Fails with [`IdentifyError::NotExcited`] when rudder or heading move over less than half a degree, with
-    /// [`IdentifyError::OutOfRange`] when times or angles are beyond any manoeuvre, and with
-    /// [`IdentifyError::TooFewSamples`] when there are fewer than `needed` rows.
+    /// Fails with [`IdentifyError::NotExcited`] if rudder or heading vary by less than half a degree, with
+    /// [`IdentifyError::OutOfRange`] if times or angles are beyond any manoeuvre, and with
+    /// [`IdentifyError::TooFewSamples`] if there are fewer than `needed` rows.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         check(trial, needed)?;
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
@@ -95,7 +95,7 @@ impl Samples {
     }
 }
 
-/// The track of a trial that is excited and holds `needed` headings; fails as [`Samples::new`] does.
+/// Track of a trial that is excited and has `needed` headings; fails as [`Samples::new`] does.
 pub(crate) fn track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError> {
     check(trial, needed)?;
     Ok(Track::new(trial))
@@ -137,7 +137,7 @@ mod tests {
     use crate::registry;
     use crate::testing::{Case, record};
 
-    /// Any finite number makes a valid trial; a search over frequencies or an iteration may not end on its squares.
+    /// Any finite numbers make a valid trial; the squares may overflow, so that a search or an iteration may not end.
     #[test]
     fn what_overflows_is_refused_by_every_method() {
         let trial = Case::default().trial();

@@ -10,23 +10,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{SettingsError, require};
 
-/// Highest order of a local polynomial.
+/// Maximum order of a local polynomial.
 pub const MAX_ORDER: usize = 5;
 
-/// Coefficients of a local polynomial; those above its order are zero.
+/// Number of coefficients of a local polynomial; coefficients above its order are zero.
 pub const COEFFICIENTS: usize = MAX_ORDER + 1;
 
 /// Window and order of the local polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct SavitzkyGolay {
-    /// Rows in the window, odd, at most 10,001.
+    /// Number of rows in the window, odd, at most 10,001.
     pub window_samples: usize,
-    /// Order of the polynomial, 2 to 5, less than the rows in the window.
+    /// Order of the polynomial, 2 to 5, less than the number of rows in the window.
     pub order: usize,
 }
 
-/// Limit on the rows of a window, which set the cost of every row of a record.
+/// Maximum number of rows of a window, which sets the computation per row of a record.
 const MAX_WINDOW_ROWS: usize = 10_001;
 
 impl Default for SavitzkyGolay {
@@ -36,7 +36,7 @@ impl Default for SavitzkyGolay {
 }
 
 impl SavitzkyGolay {
-    /// Three rows and a parabola: central differences.
+    /// Central differences: three rows and a parabola.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
     /// Fails if the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or exceeds
@@ -57,8 +57,8 @@ impl SavitzkyGolay {
     }
 }
 
-/// Weights of every row of a window in c₀, c₁ and c₂ (value, slope and half the second derivative), kept from one
-/// window to the next as long as the spacing of the rows repeats: with even sampling they are computed once.
+/// Weights of every row of a window in c₀, c₁ and c₂ (value, slope and half the second derivative), kept while the
+/// spacing of the rows repeats: with even sampling they are computed once.
 #[derive(Debug)]
 pub struct WindowWeights<'a> {
     filter: &'a SavitzkyGolay,
@@ -79,7 +79,7 @@ impl<'a> WindowWeights<'a> {
     pub fn at(&mut self, time: &[f64], k: usize) -> Option<(Range<usize>, &[[f64; 3]])> {
         let window = self.filter.window(k, time.len())?;
         let times = &time[window.clone()];
-        // Times such as 0.1 k carry rounding errors that are no change of spacing.
+        // Rounding errors of times such as 0.1 k are not a change of spacing.
         let tolerance = 1e-9 * (times[times.len() - 1] - times[0]);
         let repeats = self.relative.len() == times.len()
             && times.iter().zip(&self.relative).all(|(t, before)| (t - time[k] - before).abs() <= tolerance);
@@ -108,8 +108,8 @@ impl<'a> WindowWeights<'a> {
 
 /// Coefficients cₚ of Σ cₚ (t − `centre`)ᵖ, p ≤ `order`, fitted by least squares to points of equal weight; zero above.
 ///
-/// `time` and `value` have the same length; times differ. cₚ has the unit of the value over sᵖ. `None` with no more
-/// points than the order, or when the equations are singular.
+/// `time` and `value` have the same length; times differ. cₚ has the unit of the value over sᵖ. `None` if there are not
+/// more points than the order, or if the equations are singular.
 ///
 /// Source: Savitzky and Golay (1964), here for any spacing.
 pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) -> Option<[f64; COEFFICIENTS]> {
@@ -117,7 +117,7 @@ pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) 
     coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
 }
 
-/// The linear map from the values of a window to the coefficients of its polynomial.
+/// Linear map from the values of a window to the coefficients of the local polynomial.
 #[derive(Debug)]
 pub struct LocalFit<'a> {
     time: &'a [f64],
@@ -149,7 +149,7 @@ impl<'a> LocalFit<'a> {
         Some(Self { time, centre, order, reach, normal: normal.cholesky()? })
     }
 
-    /// The coefficients for one value per row.
+    /// Coefficients for one value per row.
     pub fn coefficients(&self, value: &[f64]) -> [f64; COEFFICIENTS] {
         let right =
             self.time.iter().zip(value).fold(Vector6::zeros(), |right, (t, &y)| {
@@ -158,7 +158,7 @@ impl<'a> LocalFit<'a> {
         self.rescaled(self.normal.solve(&right).into())
     }
 
-    /// The weight of every row in Σ `functional`ₚ cₚ.
+    /// Weight of every row in Σ `functional`ₚ cₚ.
     pub fn weights(&self, functional: [f64; COEFFICIENTS]) -> impl Iterator<Item = f64> {
         let scaled = Vector6::from(self.rescaled(functional));
         let used = Vector6::from_fn(|p, _| if p <= self.order { scaled[p] } else { 0.0 });
@@ -166,7 +166,7 @@ impl<'a> LocalFit<'a> {
         self.time.iter().map(move |t| solved.dot(&powers((t - self.centre) / self.reach, self.order)))
     }
 
-    /// Divides by powers of the reach: from powers of the scaled distance to powers of seconds.
+    /// Coefficients divided by powers of the reach: from powers of the scaled distance to powers of seconds.
     fn rescaled(&self, mut coefficients: [f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
         let mut scale = 1.0;
         for coefficient in &mut coefficients {
@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
 
-    /// Weights of coefficient `p` in a window of five, by feeding unit impulses.
+    /// Weights of coefficient `p` in a window of five rows, from unit impulses.
     fn weights(order: usize, p: usize) -> Vec<f64> {
         let time = [0.0, 1.0, 2.0, 3.0, 4.0];
         let impulse = |k: usize| std::array::from_fn::<f64, 5, _>(|i| if i == k { 1.0 } else { 0.0 });

@@ -1,8 +1,8 @@
 //! Scan of the profiled sum of squares of a first-order fit over many values of 1/T at once.
 //!
 //! [`crate::profile`] computes it by projection, to the last digit and for a single 1/T; this module uses normal
-//! equations for several values side by side: half the digits, which locate the valleys, in a small part of the time.
-//! Source: variable projection, Golub and Pereyra (1973).
+//! equations for several values in parallel: half the digits, which suffice to locate the valleys, in a small part of
+//! the time. Source: variable projection, Golub and Pereyra (1973).
 
 use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
@@ -11,12 +11,12 @@ use ship::first_order::Transition;
 use crate::likelihood::track::{Track, TrackStep, differs, is_backward};
 use crate::profile::solve2;
 
-/// Values of 1/T side by side.
+/// Number of values of 1/T in parallel.
 const LANES: usize = 8;
 
 type Lanes = [f64; LANES];
 
-/// The best fit of a ship with a given 1/T.
+/// Best fit of a ship with a given 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
     /// Sum of squares, rad².
@@ -25,7 +25,7 @@ pub(crate) struct Fit {
     pub gain: f64,
 }
 
-/// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` if the columns are dependent.
+/// Best fit for every value of `inverse_time` (1/s), in increasing order; `None` if the columns are dependent.
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
 /// [thinned](Track::thinned) tracks.
@@ -75,7 +75,7 @@ impl Products {
         self.explained += other.explained;
     }
 
-    /// The fit, for headings whose squares about their means add up to `squares`.
+    /// Fit, for headings whose squares about their means add up to `squares`.
     fn fit(&self, squares: f64) -> Option<Fit> {
         let moment = Vector2::new(self.g_psi, self.h_psi);
         let steering = solve2(&Matrix2::new(self.gg, self.gh, self.gh, self.hh), &moment)?;
@@ -84,14 +84,14 @@ impl Products {
     }
 }
 
-/// One pass over a track with its heading less its mean, all lanes on the same side of zero.
+/// Pass over a track with its heading minus the mean, all lanes on one side of zero.
 struct Sweep<'a> {
     track: &'a Track,
     heading: &'a [f64],
     inverse_time: &'a Lanes,
 }
 
-/// Σ over rows of columns and of products of columns, by lane. f, g, h stand for φ₁, G, H.
+/// Σ over rows of columns and of products of columns, by lane. f, g, h denote φ₁, G, H.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     f: Lanes,
@@ -129,7 +129,7 @@ impl Sums {
 impl estimation::lanes::Kernel for Sweep<'_> {
     type Output = [Products; LANES];
 
-    /// The recursions of [`Track::fill`] in every lane. The anchor row has only zeros and is left out.
+    /// Recursions of [`Track::fill`] in every lane. The anchor row has only zeros and is left out.
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Self { track, heading, inverse_time } = self;

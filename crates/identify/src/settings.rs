@@ -3,15 +3,15 @@
 use ship::ShortNumber;
 use thiserror::Error;
 
-/// A setting out of its range.
+/// Setting out of its range.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{key} = {found}: expected {expected}")]
 pub struct SettingsError {
-    /// The key as it is written in a scenario.
+    /// Key, as written in a scenario.
     pub key: &'static str,
-    /// The value found.
+    /// Value found.
     pub found: String,
-    /// The accepted values, as text.
+    /// Accepted values, as text.
     pub expected: &'static str,
 }
 
@@ -22,10 +22,10 @@ impl SettingsError {
     }
 }
 
-/// Limit on the steps of an iteration: an iteration that has not settled by then never does.
+/// Maximum number of steps of an iteration: one that has not converged by then never does.
 pub(crate) const MAX_ITERATIONS: usize = 1000;
 
-/// Refuses a setting whose condition does not hold, with its value and the accepted values.
+/// Fails if the condition of a setting does not hold, with its value and the accepted values.
 pub(crate) fn require(
     is_valid: bool,
     key: &'static str,
@@ -35,17 +35,17 @@ pub(crate) fn require(
     if is_valid { Ok(()) } else { Err(SettingsError::new(key, value, expected)) }
 }
 
-/// Refuses a number of iterations outside 1 to 1000.
+/// Fails for a number of iterations outside 1 to 1000.
 pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(), SettingsError> {
     require((1..=MAX_ITERATIONS).contains(&iterations), key, iterations, "1 to 1000")
 }
 
-/// Refuses a `condition-limit` of 1 or less, and NaN.
+/// Fails for a `condition-limit` of 1 or less, and NaN.
 pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
     require(limit > 1.0, "condition-limit", ShortNumber(limit), "a number above 1")
 }
 
-/// Refuses a `longest-gap-s` that is not positive.
+/// Fails for a `longest-gap-s` that is not positive.
 pub(crate) fn check_longest_gap(gap_s: Option<f64>) -> Result<(), SettingsError> {
     gap_s.map_or(Ok(()), |gap| require(gap > 0.0, "longest-gap-s", ShortNumber(gap), "a positive time"))
 }

@@ -1,5 +1,5 @@
-//! Zig-zag records of an exact first-order ship, for tests of this crate only: no integration error, so that what a
-//! test measures is the method. The rudder is recorded at the rows and linear between them, as in a real record.
+//! Zig-zag records of an exact first-order ship, for tests of this crate only: there is no integration error, so that a
+//! test measures only the method. The rudder is recorded at the rows and linear between them, as in a real record.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::collections::BTreeMap;
@@ -10,18 +10,18 @@ use ship::first_order::{FirstOrder, State, Transition};
 use statrs::distribution::{ContinuousCDF, Normal};
 use trial::{Channel, Columns, Origin, Trial};
 
-/// Where the record begins.
+/// Beginning of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Start {
     /// At the first execute, ship at rest.
     Rest,
     /// 1.2 s after the first reversal of the rudder was ordered.
     Mid,
-    /// This many seconds after the first execute.
+    /// Time after the first execute, s.
     At(f64),
 }
 
-/// A zig-zag trial and its record; the default is 10/10, K = 0.1 1/s, T = 16.3 s, 271 rows at 1 s, no noise.
+/// Zig-zag trial and its record; the default is 10/10, K = 0.1 1/s, T = 16.3 s, 271 rows at 1 s, no noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
     /// K, 1/s.
@@ -36,9 +36,9 @@ pub struct Case {
     pub rate_deg_s: f64,
     /// Rudder bias δ_r, deg.
     pub bias_deg: f64,
-    /// Where the record begins.
+    /// Beginning of the record.
     pub start: Start,
-    /// Rows.
+    /// Number of rows.
     pub samples: usize,
     /// Time between rows, s.
     pub period_s: f64,
@@ -66,7 +66,7 @@ impl Default for Case {
     }
 }
 
-/// The noise-free motion at the rows of a record.
+/// Noise-free motion at the rows of a record.
 #[derive(Debug, Clone, Default)]
 pub struct Truth {
     /// Time since the first row, s.
@@ -81,7 +81,7 @@ pub struct Truth {
     pub rudder: Vec<f64>,
 }
 
-/// A stretch of the run with a rudder that is linear in time.
+/// Piece of the run with a rudder that is linear in time.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     t: f64,
@@ -102,12 +102,12 @@ impl Piece {
 }
 
 impl Case {
-    /// The ship.
+    /// First-order ship.
     pub fn ship(&self) -> FirstOrder {
         FirstOrder::from_indices(self.K, self.T, from_deg(self.bias_deg))
     }
 
-    /// The noise-free motion at the rows.
+    /// Noise-free motion at the rows.
     pub fn truth(&self) -> Truth {
         let ship = self.ship();
         let length = (self.samples - 1) as f64 * self.period_s;
@@ -132,7 +132,7 @@ impl Case {
         truth
     }
 
-    /// The record, with noise on the heading.
+    /// Record with noise on the heading.
     pub fn trial(&self) -> Trial {
         let truth = self.truth();
         let normal = Normal::standard();
@@ -141,13 +141,13 @@ impl Case {
         let heading = truth
             .heading
             .iter()
-            // Half a step of the generator away from 0 and 1, where the quantile is infinite.
+            // Half a step of the generator away from 0 and 1, if the quantile is infinite.
             .map(|psi| psi + sd * normal.inverse_cdf((f64::from(generator.random::<u32>()) + 0.5) / 4294967296.0))
             .collect();
         record("zigzag", truth.time, heading, truth.rudder)
     }
 
-    /// Times of the executes, s after the first, of the first `count`.
+    /// Times of the first `count` executes, s after the first.
     pub fn executes(&self, count: usize) -> Vec<f64> {
         let mut length = 100.0;
         loop {
@@ -175,7 +175,7 @@ impl Case {
             pieces.push(now);
             let target = side * angle.abs();
             let stop = if now.slope == 0.0 { f64::INFINITY } else { (target - now.rudder) / now.slope };
-            // March until the heading is past its limit or the rudder has arrived.
+            // Steps until the heading is past its limit or the rudder has reached its order.
             let beyond = |h: f64| side * now.state(ship, h).heading >= limit;
             let mut h = 0.0;
             while h < stop && !beyond(h) && now.t + h <= last(&executes) {
@@ -201,12 +201,12 @@ impl Case {
     }
 }
 
-/// A record of these columns, s and rad.
+/// Record of these columns, s and rad.
 pub fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     from_channels(name, time, [(Channel::Heading, heading), (Channel::Rudder, rudder)].into())
 }
 
-/// The same with a gyro, rad/s.
+/// Record of these columns with a gyro, rad/s.
 pub fn record_with_gyro(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>, yaw_rate: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::YawRate, yaw_rate)];
     from_channels("gyro", time, channels.into())
@@ -242,7 +242,7 @@ mod tests {
     use ship::angle::to_deg;
 
     /// Executes of K = 0.1, T = 16.3 at 2.5 deg/s, from an independent RK4 simulation with a step of 0.01 s, whose
-    /// executes are late by up to a step each, and the lateness adds up: tolerance 0.05 s.
+    /// executes are each late by up to a step; the delays add up: tolerance 0.05 s.
     #[test]
     fn executes_are_those_of_an_independent_simulation() {
         let case = Case::default();

@@ -1,6 +1,6 @@
-//! Verdict over the answers of several methods: the recommended answer, or why none can be taken.
+//! Verdict over the estimates of several methods: the recommended estimate, or the reason why none is accepted.
 //!
-//! The rule is that of [`Recommendation`]; [`answer::entry`](crate::answer::entry) makes the entries of the answers.
+//! The rule is that of [`Recommendation`]; [`answer::entry`](crate::answer::entry) makes the entries of the estimates.
 
 use document::fit::{Belief, VerdictEntry, VerdictReason};
 use document::method::MethodEntry;
@@ -13,17 +13,17 @@ use crate::lack_of_fit::LackOfFit;
 use crate::recommended::Recommendation;
 use crate::replay::pooled;
 
-/// Maximum ratio of a replay error to that of the best; beyond it a method is listed apart.
+/// Maximum ratio of a replay error to the smallest; above it a method is listed separately.
 const MAX_ERROR_RATIO: f64 = 10.0;
 
-/// Minimum share of the variance of the headings that a replay has to explain. First-order responses to sound records
-/// of ships and models explain 0.97 and more, also of strongly nonlinear ones and in gusts.
+/// Minimum share of the variance of the headings explained by a replay. First-order responses to sound records of ships
+/// and models explain 0.97 and more, also for strongly nonlinear ships and in gusts.
 const MIN_EXPLAINED_SHARE: f64 = 0.9;
 
 /// Reference methods for contradictions.
-const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
+pub const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Verdict over the answers of some methods to some records; `None` if no method has an answer.
+/// Verdict over the estimates of some methods to some records; `None` if no method gives an estimate.
 pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
@@ -38,11 +38,11 @@ pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)])
     Some(verdict)
 }
 
-/// Why no K and T can be taken from records whose headings have this scatter about straight lines, deg; `None` if
-/// they can.
+/// Reason why no K and T are accepted from records whose headings have this scatter about straight lines, deg; `None`
+/// if they are accepted.
 ///
-/// A random moment turns the ship, too, so it is the nearest replay that has to explain the headings. An unstable ship
-/// has K and T below zero: the interval of T has to show it.
+/// A random moment turns the ship, too, so the nearest replay must explain the headings. An unstable ship has K and T
+/// below zero: the interval of T must show it.
 fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Option<f64>) -> Option<String> {
     let taken = entries.iter().find(|entry| entry.method == verdict.method)?;
     let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
@@ -84,9 +84,9 @@ fn tenths(degrees: f64) -> String {
     format!("{degrees:.1}")
 }
 
-/// The answer to take: the recommended one, or the nearest replay where that is not among the entries or no answer is
-/// one. `straight` is what a ship without an effect of her rudder leaves of the headings, the straight line nearest to
-/// each record, deg.
+/// Accepted estimate: the recommended estimate, or the nearest replay if no recommended estimate is among the entries
+/// or none is accepted. `straight` is the heading residual of a ship without an effect of her rudder, about the
+/// straight line nearest to each record, deg.
 fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Option<f64>) -> Option<VerdictEntry> {
     let answered = || entries.iter().filter(|entry| entry.parameters.is_some());
     let rms = |entry: &&MethodEntry| entry.heading_rmse_deg.unwrap_or(f64::INFINITY);
@@ -117,7 +117,7 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     })
 }
 
-/// `true` if the intervals of K or of T have nothing in common.
+/// `true` if the intervals of K or of T are disjoint.
 fn are_apart(a: &MethodEntry, b: &MethodEntry) -> bool {
     let (Some(a), Some(b)) = (a.parameters, b.parameters) else { return false };
     [(a.k_per_s, b.k_per_s), (a.t_s, b.t_s)]
@@ -132,8 +132,8 @@ mod tests {
 
     use super::*;
 
-    /// What explains too little of the headings, is of no usual method or below zero is no answer; a ship that is not
-    /// course-stable, and shows it, is.
+    /// An estimate is rejected if it explains too little of the headings, comes from no usual method or is below zero;
+    /// a ship that is clearly course-unstable is accepted.
     #[test]
     fn an_answer_that_cannot_be_taken_says_why() {
         let entry = |method: &str, k_and_t: Option<[Quantity; 2]>| MethodEntry {
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(reason(&biased[2..], 20.0), "");
     }
 
-    /// A method without an interval contradicts by its replay.
+    /// A method without an interval contradicts the estimate by its replay.
     #[test]
     fn a_replay_far_off_contradicts_the_answer() {
         let entry = |method: &str, t: f64, rms: f64| MethodEntry {

@@ -1,4 +1,4 @@
-//! A user's identification method in a study, beside those of the project and without changes to the workspace.
+//! A user's identification method in a study, next to those of the project and without changes to the workspace.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -13,11 +13,11 @@
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | identify K, T and δ_r with intervals | [`identify`] |
-//! | the recommended answer, or why there is none | [`identify::verdict`] |
+//! | the recommended estimate, or why there is none | [`identify::verdict`] |
 //! | trace the effects that a first-order model lacks | [`trace`](mod@trace) |
 //! | read the documents of a fit, trace or prediction | [`document`] |
 //! | read a scenario file | [`scenario`] |
-//! | run one to rows and summarise them | [`campaign`] |
+//! | run a scenario and summarise its rows | [`campaign`] |
 //! | compare methods on published records | [`campaign::benchmark`] |
 //!
 //! ```
@@ -37,14 +37,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this package fit a CSV as `study fit` does, compare an answer with the truth, trace a record, and
+//! The examples of this package fit a CSV as `study fit` does, compare an estimate with the truth, trace a record, and
 //! run a method of your own in a study.
 
 pub use campaign::scenario;
 pub use trial::find;
 pub use {campaign, document, identify, predict, ship, simulate, trace, trial};
 
-/// Names that most programs need.
+/// Names needed by most programs.
 pub mod prelude {
     pub use campaign::collect::{collect, in_memory};
     pub use campaign::folder::ResultFolder;
@@ -63,7 +63,7 @@ pub mod prelude {
     pub use trial::{Channel, Log, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
 }
 
-/// The README, whose example is compiled with the documentation tests.
+/// Text of the README, whose example is compiled with the documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A run of an example from the root of the workspace.
+/// Output of an example run from the root of the workspace.
 fn run(name: &str, arguments: &[&Path]) -> Output {
     let here = std::env::current_exe().expect("a test is a program");
     let built = here.ancestors().nth(2).expect("tests are two folders down").join("examples").join(name);
@@ -13,7 +13,7 @@ fn run(name: &str, arguments: &[&Path]) -> Output {
     run.unwrap_or_else(|error| panic!("{} is built by `cargo test`: {error}", program.display()))
 }
 
-/// What an example prints.
+/// Standard output of an example.
 fn output(name: &str) -> String {
     let output = run(name, &[]);
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
@@ -27,7 +27,7 @@ fn a_csv_is_fitted() {
     assert!(text.lines().any(|line| line.starts_with("take K = ") && line.contains("T = 16.")), "{text}");
 }
 
-/// The record twice, one after the other with a straight way between.
+/// The same record twice, one after the other with a straight leg between.
 #[test]
 fn a_log_with_two_zig_zags_is_refused() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/records/first-order.csv");

@@ -4,10 +4,9 @@
 //! manoeuvre by a model of the ship in that condition, F by a model of the ship at the other loading. Errors common to
 //! both models cancel; other errors do not, so both models must be of the same method.
 //!
-//! F and B are drawn independently, each with the errors of its parameters and the random moment of one trial, T with
-//! the standard deviation of its reading. The moment in B represents that in T. Where F is the hull of B at another
-//! loading, both share the errors of its trial ([`document::identified_hull`]). This module reads no file and fits no
-//! model.
+//! F and B are sampled independently, with the errors of the parameters and the random moment of one trial, T with the
+//! standard deviation of the reading. The moment in B represents that in T. If F is the hull of B at another loading, F
+//! and B share the errors of the trial ([`document::identified_hull`]). This module reads no file and fits no model.
 //!
 //! Source: MSC/Circ.1053 (2002), 3.4.1.2 and 3.4.1.3.
 
@@ -39,57 +38,58 @@ const MIN_LOWER_END: f64 = 0.2;
 /// Relative tolerance of equal approach speeds.
 const SPEED_TOLERANCE: f64 = 0.05;
 
-/// Figures that are read at the end of a turn.
+/// Characteristics read at the end of a turn.
 const AT_THE_END: [&str; 4] = ["steady_rate_deg_s", "speed_loss_share", "drift_angle_deg", "pivot_ahead_lengths"];
 
-/// Seed of the readings of T; those of ships are 0 and 1.
+/// Seed of the readings of T; the seeds of ships are 0 and 1.
 const READING: u64 = 2;
 
 /// Name of the loading of the criteria in messages and pages; another loading is named by its file.
 pub const FULL_LOAD: &str = "full load";
 
-/// A figure of merit corrected to another loading, in the unit of its name.
+/// Figure of merit corrected to another loading; the unit is in the name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Corrected {
-    /// T, measured in the condition of the trial.
+    /// T: measured in the condition of the trial.
     pub measured: f64,
-    /// Standard deviation of T, where the record gives it; otherwise T is treated as exact.
+    /// Standard deviation of T; `None` if the record gives none: T is then treated as exact.
     pub sd: Option<f64>,
     /// R = T F/B.
     #[serde(flatten)]
     pub result: PredictionInterval,
-    /// F/B.
+    /// Ratio F/B.
     pub factor: PredictionInterval,
     /// F: predicted by the model at the target loading.
     pub full: PredictionInterval,
     /// B: predicted by the model in the condition of the trial.
     pub ballast: PredictionInterval,
-    /// Warnings on this figure.
+    /// Warnings on this figure of merit.
     pub warnings: Vec<Warning>,
 }
 
 /// Correction of a record to another loading.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Correction {
-    /// The file as the user named it.
+    /// File, as the user named it.
     pub file: String,
     /// Name of the record.
     #[serde(default)]
     pub name: String,
-    /// Files of the models at that loading.
+    /// Files of the models at the other loading.
     pub full: Vec<String>,
     /// Files of the models in the condition of the trial.
     pub ballast: Vec<String>,
-    /// Its figures by name; empty if the record is neither a zig-zag nor a turn.
+    /// Corrected figures of merit by name; empty if the record is neither a zig-zag nor a turn.
     pub figures: IndexMap<String, Corrected>,
-    /// Warnings on all figures.
+    /// Warnings on all figures of merit.
     pub warnings: Vec<Warning>,
 }
 
-/// Warnings on differences between two models to be compared, before they are scaled to a record; `loading` is that of
-/// the first.
+/// Warnings on differences between two models before they are scaled to a record; `loading` is the loading of the
+/// first.
 ///
-/// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
+/// The structures of the most probable members are compared. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one
+/// method.
 pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<Warning> {
     let structure = |ship: &IdentifiedShip| {
         if !ship.hulls.is_empty() {
@@ -118,13 +118,13 @@ pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str)
     warnings
 }
 
-/// The warning of two models that differ in something, the first at `loading`.
+/// Warning on a difference between two models, the first at `loading`.
 pub fn difference_warning(what: &str, full: &str, trial: &str, loading: &str) -> Warning {
     let text = format!("different {what}: {full} at {loading}, {trial} in the condition of the trial");
     WarningCode::ModelsApart.warning(text)
 }
 
-/// Results of the drawn ships in order; `None` for a ship that does not complete the manoeuvre.
+/// Results of the sampled ships in order; `None` for a ship that does not complete the manoeuvre.
 type Draws = Vec<Option<DrawResult>>;
 
 /// Manoeuvre of a record, simulated with both models.
@@ -133,20 +133,20 @@ struct PairedManoeuvre {
     rudder: f64,
     full: Draws,
     trial: Draws,
-    /// Figures of the record.
+    /// Characteristics of the record.
     shown: Vec<(&'static str, Quantity)>,
 }
 
-/// Corrects the figures of a record to a loading, [`FULL_LOAD`] or the name of another; both ships must be of its
-/// scale.
+/// Corrects the figures of merit of a record to a loading, [`FULL_LOAD`] or the name of another; both ships must be at
+/// the scale of the record.
 ///
 /// R = T F/B, draw by draw; the 50 and 90 % intervals include the errors of both models, the random moment of one trial
 /// each and the reading of T. Two mixtures of the same files share their draws, so that F/B is 1. A zig-zag is steered
-/// as in the record, with its rudder rate and its first yaw rate; a turn has the recorded rudder, held longer for a
-/// slower ship; figures at the end of a turn are taken at the end of the record. Figures that the record does not show
-/// are left out; a record that is neither a zig-zag nor a turn has none.
+/// as in the record, with the recorded rudder rate and initial yaw rate; a turn has the recorded rudder, held longer
+/// for a slower ship. Characteristics at the end of a turn are read at the end of the record. Characteristics that the
+/// record does not show are left out; a record that is neither a zig-zag nor a turn has none.
 ///
-/// Fails if less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
+/// Fails if less than half of the sampled ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
 pub fn correct(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -191,7 +191,7 @@ pub fn correct(
     Ok(Correction { file, name, figures, warnings, ..Correction::default() })
 }
 
-/// The zig-zag of a record, steered with both models; `None` if the record begins within the trial.
+/// Zig-zag of a record, steered with both models; `None` if the record begins within the trial.
 fn zig_zag(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -206,7 +206,7 @@ fn zig_zag(
     Some(PairedManoeuvre { rudder: steered.kind.rudder(), full, trial, shown })
 }
 
-/// The turn of a record, simulated with both models; `None` for a record without a turn.
+/// Turn of a record, simulated with both models; `None` for a record without a turn.
 fn turned(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -229,7 +229,7 @@ fn turned(
         ship.yaw_rate = rate.0 + rate.1 * standard_normal;
         let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.whole_figures(&passage);
-        // Figures at the end are taken after the duration of the record for both ships.
+        // Characteristics at the end are read after the duration of the record for both ships.
         figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
         Some(DrawResult { figures, largest_rate: passage.largest_rate() })
     };
@@ -237,13 +237,13 @@ fn turned(
     Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
 }
 
-/// Four digits, as far as they are behind the point.
+/// Number with four significant digits and at most six decimals.
 fn short(value: f64) -> String {
     let decimals = if value == 0.0 { 1.0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
     format!("{value:.*}", decimals as usize)
 }
 
-/// R = T F/B of one figure; `None` if less than half of the pairs of ships have it.
+/// R = T F/B of one figure of merit; `None` if less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
     let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
@@ -292,7 +292,7 @@ mod tests {
     use crate::testing::{self, mixture};
     use ship::angle::from_deg;
 
-    /// The made-up ship, and the same at full load: heavier, and less stable on her course.
+    /// Synthetic ship, and the same ship at full load: heavier, and less stable on course.
     fn ships() -> [IdentifiedShip; 2] {
         let ballast = testing::identified_ship();
         let mut full = testing::identified_ship();
@@ -308,7 +308,7 @@ mod tests {
         testing::record(mixture, kind, number, noise, 0.5)
     }
 
-    /// Records of ballast ships are corrected to what ships at full load do, in nine of ten cases.
+    /// The 90 % interval of a corrected record contains the value of the ship at full load in nine of ten cases.
     #[test]
     fn the_truth_at_full_load_is_in_the_interval() {
         let [full, ballast] = ships().map(mixture);
@@ -335,7 +335,7 @@ mod tests {
         assert!(all >= 80 && (0.80..=1.0).contains(&share), "{held} of {all}");
     }
 
-    /// Without uncertainty R is the figure of the ship at full load, within the reading error of T.
+    /// Without uncertainty R is the figure of merit of the ship at full load, within the reading error of T.
     #[test]
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut identified| {
@@ -360,7 +360,7 @@ mod tests {
         }
     }
 
-    /// The same file twice is F = B draw by draw; the same ship in two files is so within its interval.
+    /// For one file given twice F = B in every draw; for one ship in two files F = B within the interval.
     #[test]
     fn the_same_ship_corrects_nothing() {
         let [_, ballast] = ships();
@@ -380,7 +380,7 @@ mod tests {
         }
     }
 
-    /// A hull that is taken from that of the trial with all that it has wrong corrects nothing, in a calm.
+    /// A hull converted from the hull of the trial has the same errors, so that the correction in a calm is 1.
     #[test]
     fn a_hull_taken_from_that_of_the_trial_has_its_errors() {
         let hulls = vec![testing::hull("quadratic")];
@@ -392,7 +392,7 @@ mod tests {
         assert_eq!(correction.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
-    /// A ship at full load turns more slowly than the record lasts: the rudder is held on for her.
+    /// A ship at full load turns for longer than the record: the rudder is held on for her.
     #[test]
     fn a_turn_is_corrected_too() {
         let [mut full, ballast] = ships();

@@ -16,32 +16,32 @@ use crate::replay::RecordReplay;
 /// Value of `schema`.
 pub const SCHEMA: &str = "predict/2";
 
-/// `predict.json`. Its curves, marked `skip`, are in a separate file: PredictCurves.
+/// Document of a prediction, `predict.json`. The curves, marked `skip`, are in a separate file: PredictCurves.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictDocument {
-    /// `predict/2`.
+    /// Version of the schema: `predict/2`.
     #[schemars(extend("const" = "predict/2"))]
     pub schema: String,
-    /// The models of the mixture.
+    /// Models of the mixture.
     pub models: Vec<ModelWeight>,
-    /// Number of drawn ships.
+    /// Number of sampled ships.
     pub draws: usize,
     /// `true` if the weather of the records was left out.
     pub calm: bool,
-    /// Length of the ship.
+    /// Length of the ship, m.
     pub length_m: Option<f64>,
-    /// Approach speed of the ship.
+    /// Approach speed of the ship, m/s.
     pub speed_m_s: Option<f64>,
-    /// The manoeuvres.
+    /// Predicted manoeuvres.
     pub manoeuvres: Vec<Prediction>,
     /// Records with their replays.
     pub replays: Vec<RecordReplay>,
-    /// Criteria of IMO, where length and speed are known.
+    /// Criteria of IMO; empty if length or speed is unknown.
     pub imo: Vec<PredictedCriterion>,
-    /// The records that were corrected to full load, or to the loading of `load`.
+    /// Records corrected to full load, or to the loading of `load`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corrected: Vec<Correction>,
-    /// The form of MSC/Circ.1053, where it was requested.
+    /// Form of MSC/Circ.1053, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<Vec<ImoFormEntry>>,
     /// Remarks on the form.
@@ -56,13 +56,13 @@ pub struct PredictDocument {
     /// `true` if a hull takes the place of the yaw response.
     #[serde(default)]
     pub hull: bool,
-    /// The loading that the hulls are converted to; none for that of their records.
+    /// Loading to which the hulls are converted; `None` for the loading of the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<OtherLoading>,
     /// Range of the records of the ship.
     #[serde(default)]
     pub seen: ValidityRange,
-    /// The drawn ships, where they were requested.
+    /// Parameters of the sampled ships, if requested.
     #[serde(skip)]
     pub drawn: Vec<DrawnParameters>,
     /// Warnings of models, records and manoeuvres, the worst first.
@@ -70,10 +70,10 @@ pub struct PredictDocument {
     pub warnings: Vec<Warning>,
 }
 
-/// A loading that hulls are converted to by the formulas of particulars.
+/// Loading to which hulls are converted by the formulas of particulars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OtherLoading {
-    /// The file that describes it.
+    /// File that describes the loading.
     pub file: String,
     /// Mean draught of every model at its trials, at their scale.
     pub draughts_at_trials_m: Vec<f64>,
@@ -90,26 +90,26 @@ impl OtherLoading {
     }
 }
 
-/// A model of the mixture of a prediction.
+/// Model of the mixture of a prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelWeight {
-    /// Its file.
+    /// File of the model.
     pub file: String,
-    /// Its share of the draws.
+    /// Share of the draws.
     pub weight: f64,
 }
 
-/// The curves of a prediction, in a file beside the document; angles in rad.
+/// Curves of a prediction, in a file next to the document; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PredictCurves {
     /// Curves of every manoeuvre, in the order of the document.
     pub manoeuvres: Vec<ManoeuvreCurves>,
-    /// Curves of every replayed record: rudder over time, heading with its band, and measured headings.
+    /// Curves of every replayed record: rudder against time, heading with bands, and measured headings.
     pub replays: Vec<([Vec<f64>; 2], Bands, Vec<f64>)>,
 }
 
 impl PredictDocument {
-    /// The curves, which [`with_curves`](Self::with_curves) restores.
+    /// Curves, which [`with_curves`](Self::with_curves) restores.
     pub fn curves(&self) -> PredictCurves {
         let replay_curves = |r: &RecordReplay| (r.rudder.clone(), r.heading.clone(), r.measured.clone());
         PredictCurves {
@@ -118,7 +118,7 @@ impl PredictDocument {
         }
     }
 
-    /// The document that was read from its file, with the curves from theirs.
+    /// Document read from its file, with the curves of the separate file.
     pub fn with_curves(mut self, curves: PredictCurves) -> Self {
         self.manoeuvres.iter_mut().zip(curves.manoeuvres).for_each(|(prediction, curves)| prediction.curves = curves);
         for (replay, curves) in self.replays.iter_mut().zip(curves.replays) {
@@ -127,7 +127,7 @@ impl PredictDocument {
         self
     }
 
-    /// The files of the models, separated by commas, and that of the loading they are converted to.
+    /// Files of the models, separated by commas, and the file of the loading to which they are converted.
     pub fn model_files(&self) -> String {
         let files = self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
         if self.load.is_some() { format!("{files} at {}", OtherLoading::name(self.load.as_ref())) } else { files }

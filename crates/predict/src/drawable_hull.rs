@@ -1,4 +1,4 @@
-//! Ships drawn from a hull of three degrees of freedom, from the normal law of its coefficients.
+//! Ships sampled from the normal law of the coefficients of a hull of three degrees of freedom.
 
 use document::{IdentifiedHull, IdentifiedShipError};
 use nalgebra::{DMatrix, DVector};
@@ -11,11 +11,11 @@ use ship::vessel::scaled::ScaledHull;
 use crate::error::PredictError;
 use crate::root::root_of;
 
-/// Maximum number of rejected draws, outside the ends of a coefficient or without a ship, before the stored values are
-/// taken.
+/// Maximum number of rejected samples, outside the range of a coefficient or without a ship; then the stored values are
+/// used.
 const MAX_TRIES: usize = 100;
 
-/// A hull that ships are drawn from.
+/// Hull from which ships are sampled.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableHull {
     pub stored: IdentifiedHull,
@@ -23,7 +23,7 @@ pub(crate) struct DrawableHull {
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
     root: DMatrix<f64>,
-    /// The hull of the trials, and the gain G on its coefficients.
+    /// Hull of the trials, and the gain G on its coefficients.
     from: Option<(Box<DrawableHull>, DMatrix<f64>)>,
 }
 
@@ -33,7 +33,7 @@ pub fn check(hull: &IdentifiedHull) -> Result<(), PredictError> {
 }
 
 impl DrawableHull {
-    /// Prepares the draws; fails as [`check`] does.
+    /// Prepares the sampling; fails as [`check`] does.
     pub fn new(stored: &IdentifiedHull) -> Result<Self, PredictError> {
         let form = stored.form()?;
         let range = |key| Particular::named(key).expect("it is one").range;
@@ -69,18 +69,18 @@ impl DrawableHull {
         (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
     }
 
-    /// The hull with the stored values.
+    /// Hull with the stored values.
     pub fn most_probable(&self) -> ScaledHull {
         self.with(&self.stored.values()).expect("checked when it was made")
     }
 
-    /// The hull of these coefficients, or the most probable hull if they make none.
+    /// Hull with these coefficients, or the most probable hull if they are not valid.
     pub fn made_of(&self, values: &[f64]) -> ScaledHull {
         self.with(values).unwrap_or_else(|| self.most_probable())
     }
 
-    /// Drawn coefficients, by their covariance and within their ends. At another loading `rng` draws the hull of the
-    /// trials, which this hull follows, and `independent` the part that is independent of the trials.
+    /// Sample of the coefficients, by their covariance and within their ranges. At another loading `rng` samples the
+    /// hull of the trials, which this hull follows, and `independent` the part that is independent of the trials.
     pub fn drawn(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
         let mean = DVector::from(self.stored.values());
         let values = match &self.from {
@@ -94,7 +94,7 @@ impl DrawableHull {
         values.as_slice().to_vec()
     }
 
-    /// Values drawn about a mean, within their ends; the stored values after too many rejections.
+    /// Sample of the coefficients about a mean, within their ranges; the stored values after [`MAX_TRIES`] rejections.
     fn values(&self, rng: &mut impl rand::Rng, mean: &DVector<f64>) -> DVector<f64> {
         let is_within = |values: &DVector<f64>| {
             self.coefficients.iter().zip(values).all(|(prior, value)| (prior.ends[0]..=prior.ends[1]).contains(value))
@@ -124,7 +124,7 @@ mod tests {
         mixture.predict(&kind, draws, true).expect("a turn")
     }
 
-    /// A ship with hulls is drawn from them, by their weights, and shows a track of her own.
+    /// A ship with hulls is sampled from them by their weights and has a track.
     #[test]
     fn hulls_take_the_place_of_the_structures() {
         let mut stored = ship();
@@ -146,7 +146,7 @@ mod tests {
         assert!(spiral.figures["rate_starboard_deg_s"].interval.median > 0.0);
     }
 
-    /// One number is one draw, in any company; without doubt it is the most probable ship.
+    /// A number gives one sample, whatever else is sampled; without uncertainty it is the most probable ship.
     #[test]
     fn one_number_is_one_draw() {
         let mixture = testing::mixture(ship());
@@ -161,7 +161,7 @@ mod tests {
         assert!((0..300).map(draw).all(|hull| bound(&hull)), "coefficients keep within their ends");
     }
 
-    /// At the same Froude number times grow with the root of the scale, and what is random with them.
+    /// At the same Froude number times grow with the root of the scale, including those of the random moment.
     #[test]
     fn a_hull_at_another_scale_moves_alike() {
         let stored = testing::hull("mmg");
@@ -185,8 +185,8 @@ mod tests {
         assert_eq!(large.particulars, stored.particulars);
     }
 
-    /// With G the identity and three times the deviations, errors of the hull of the trial are once in that at another
-    /// loading, and eight times their variance beside them. δ_r is the same.
+    /// With G the identity and three times the standard deviations, the hull at another loading has the errors of the
+    /// hull of the trial and independent errors of eight times their variance. δ_r is equal in both.
     #[test]
     fn a_hull_at_another_loading_follows_that_of_the_trial() {
         let one = testing::hull("quadratic");

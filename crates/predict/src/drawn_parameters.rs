@@ -1,4 +1,4 @@
-//! Structure and parameters of a drawn ship or estimate, for other programs.
+//! Structure and parameters of a sampled ship or estimate, for other programs.
 
 use document::IdentifiedShip;
 use ship::ResponseModel;
@@ -7,14 +7,14 @@ use simulate::{Purpose, StreamKey};
 use crate::error::PredictError;
 use crate::mixture::{DrawableStructure, DrawnShip, GOLDEN, ShipMixture, UncertaintySource, chosen};
 
-/// Structure and parameters of a drawn ship; SI units and radians.
+/// Structure and parameters of a sampled ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnParameters {
-    /// Place of its file among those of the mixture.
+    /// Index of the file in the mixture.
     pub file: usize,
-    /// Form of its hull, or the effects of its response, joined by ` + `; `first_order` for none.
+    /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for none.
     pub structure: String,
-    /// Probability of this structure or hull among all of the mixture.
+    /// Probability of this structure or hull in the mixture.
     pub weight: f64,
     /// Rate of the rudder, rad/s; `None` if the rudder moves at once.
     pub gear_rate_rad_s: Option<f64>,
@@ -26,7 +26,7 @@ pub struct DrawnParameters {
 }
 
 impl ShipMixture {
-    /// Structure and parameters of ship `number`, drawn from all sources of uncertainty as for the prediction of
+    /// Structure and parameters of ship `number`, sampled from all sources of uncertainty as for the prediction of
     /// manoeuvres.
     pub fn parameters(&self, number: u64) -> DrawnParameters {
         let part = self.chosen(number);
@@ -45,7 +45,7 @@ impl ShipMixture {
     }
 }
 
-/// The name of a structure, and its parameters by theirs.
+/// Name of a structure, and its parameters by name.
 fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) {
     let base = ship::response::BASE.iter().map(|parameter| parameter.key.to_owned());
     let of_effects = model.effects().iter().flat_map(|effect| {
@@ -56,19 +56,19 @@ fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) 
     (structure, base.chain(of_effects).zip(values.iter().copied()).collect())
 }
 
-/// Structure and parameters of a response, drawn from what an estimate says of it; SI units and radians.
+/// Structure and parameters of a response, sampled from the law of an estimate; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnEstimate {
-    /// Its effects, joined by ` + `; `first_order` for none.
+    /// Effects of the response, joined by ` + `; `first_order` for none.
     pub structure: String,
-    /// Probability of this structure among all.
+    /// Probability of this structure.
     pub weight: f64,
     /// Parameters by name: `inverse_T`, `K_over_T`, `rudder_bias`, `EFFECT.KEY`.
     pub parameters: Vec<(String, f64)>,
 }
 
-/// Draws from an estimate: a structure by its probability, its parameters by their covariance. What is drawn is the
-/// response that records tell, not a ship: no hull, no steering gear and no random moment.
+/// Samples of an estimate: a structure by its probability, the parameters by their covariance. A sample is a response,
+/// not a ship: it has no hull, no steering gear and no random moment.
 #[derive(Debug, Clone)]
 pub struct EstimateDraws {
     structures: Vec<DrawableStructure>,
@@ -76,7 +76,7 @@ pub struct EstimateDraws {
 }
 
 impl EstimateDraws {
-    /// The draws of an estimate with this seed; fails for what no file of this program holds.
+    /// Samples of an estimate with this seed; fails if the estimate is not valid.
     pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
         let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
         let structures = estimate.members.iter().map(|member| DrawableStructure::new(member, member.weight / total, 0));
@@ -84,7 +84,7 @@ impl EstimateDraws {
         if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
     }
 
-    /// Draw number `number`: the same for the same seed, whatever else is drawn.
+    /// Sample number `number`: equal for equal seeds, whatever else is sampled.
     pub fn draw(&self, number: u64) -> DrawnEstimate {
         let share = (0.5 + number as f64 * GOLDEN).fract();
         let structure = chosen(&self.structures, share).unwrap_or(&self.structures[0]);
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::testing;
 
-    /// Draws of a seed are the same again, and have the mean of the estimate.
+    /// Samples of a seed are repeatable and have the mean of the estimate.
     #[test]
     fn an_estimate_is_drawn_again_with_its_seed() {
         let estimate = testing::identified_ship();
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(EstimateDraws::new(&none, 0).err(), Some(PredictError::Empty));
     }
 
-    /// Structure, parameters and weight are those that the ship is steered with.
+    /// Structure, parameters and weight agree with the steered ship.
     #[test]
     fn a_drawn_ship_is_reported_as_it_is_steered() {
         let mixture = testing::mixture(testing::identified_ship());

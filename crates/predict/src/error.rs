@@ -3,16 +3,16 @@
 use document::IdentifiedShipError;
 use thiserror::Error;
 
-/// Why a prediction is refused.
+/// Reason why a prediction is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PredictError {
-    /// The ship of the file cannot be restored, or not at another scale.
+    /// The ship of the file cannot be restored, or cannot be scaled.
     #[error(transparent)]
     Ship(#[from] IdentifiedShipError),
     /// The covariance of the parameters is not positive definite.
     #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
     Covariance,
-    /// There is no model.
+    /// No model is given.
     #[error("there is no model to predict from")]
     Empty,
     /// The model needs a channel that is not predicted.
@@ -21,19 +21,19 @@ pub enum PredictError {
          --speed-kn where the record has no speed, to fit or trace so that a hull is fitted, or trace with --without {option}"
     )]
     Needs {
-        /// The channel, as text.
+        /// Name of the channel.
         channel: &'static str,
-        /// The channel as an option of a trace.
+        /// Effect for the option `--without` of a trace.
         option: &'static str,
     },
-    /// Too few drawn ships complete a manoeuvre.
+    /// Too few sampled ships complete a manoeuvre.
     #[error("{kind}: only {made} of {draws} drawn ships complete it; the model is not valid there")]
     Lost {
         /// The manoeuvre.
         kind: String,
         /// Ships that do.
         made: usize,
-        /// Ships drawn.
+        /// Ships sampled.
         draws: usize,
     },
 }

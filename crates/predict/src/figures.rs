@@ -23,9 +23,9 @@ pub(crate) const OVERSHOOTS: [&str; EXECUTES - 2] =
 pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
     ["second_execute_s", "third_execute_s", "fourth_execute_s", "fifth_execute_s", "sixth_execute_s"];
 
-/// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
+/// Characteristics of a manoeuvre: overshoots, times, diameters; lengths in ship lengths if length and speed are known.
 ///
-/// The distance of the initial turning is V times its time for a model without speed.
+/// For a model without speed the distance of the initial turning is V times the time.
 pub fn characteristics(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
     let side = kind.side().sign();
     let last = passage.heading.last().copied();
@@ -71,7 +71,7 @@ pub(crate) fn initial_turning(
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
-/// Figures of the track of a turn with its execute at `execute` s; none without a track.
+/// Characteristics of the track of a turn with the execute at `execute` s; none without a track.
 pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
@@ -90,7 +90,7 @@ pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
     ])
 }
 
-/// `true` if an interval is possible for a figure: sizes of a turning circle are above zero.
+/// `true` if an interval is possible for a characteristic: sizes of a turning circle are above zero.
 pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
     let is_size = ["advance", "transfer", "tactical_diameter"].iter().any(|size| name.starts_with(size));
     !is_size || interval.ci90[0] > 0.0
@@ -115,8 +115,8 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
     figures.insert("period_s", period(executes));
 }
 
-/// Mean time between executes to the same side, s. The cycle from the second execute on includes the transient of the
-/// start and counts only without a later cycle, as in a record ([`trial::ZigZag::period`]).
+/// Mean time between executes to the same side, s. The cycle from the second execute on includes the initial transient
+/// and counts only if there is no later cycle, as in a record ([`trial::ZigZag::period`]).
 pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
     let first = if executes.len() > 4 { 2 } else { 1 };
     let ends = executes.iter().skip(first + 2);
@@ -171,8 +171,8 @@ mod tests {
         figures.get(name).copied().flatten().unwrap_or(f64::NAN)
     }
 
-    /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed apart with
-    /// a step of 0.01 s that lets executes be late.
+    /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed
+    /// independently with a step of 0.01 s, by which executes may be late.
     #[test]
     fn overshoots_are_those_of_the_reference() {
         let kind: Manoeuvre = "zig-zag:10/10".parse().expect("known");
@@ -184,7 +184,7 @@ mod tests {
         assert!((value(&twenty, "first_overshoot_deg") - 18.8).abs() < 0.06, "{twenty:?}");
     }
 
-    /// A steady turn of K δ, and a rate that dies out.
+    /// Steady turn of K δ, and decay of the rate.
     #[test]
     fn turns_settle_where_the_ship_does() {
         let kind: Manoeuvre = "turning-circle:-10".parse().expect("known");
@@ -198,7 +198,7 @@ mod tests {
         assert!(value(&pull_out, "residual_rate_deg_s").abs() < 1e-3, "{pull_out:?}");
     }
 
-    /// A mirrored manoeuvre has the same figures.
+    /// A mirrored manoeuvre has the same characteristics.
     #[test]
     fn sides_are_mirrored() {
         for [original, mirrored] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {

@@ -1,6 +1,6 @@
-//! The form for reporting manoeuvring data to IMO: every entry with its value, its limit and its source.
+//! Form for reporting manoeuvring data to IMO: entries with value, limit and source.
 //!
-//! An entry is measured where a record is that manoeuvre, corrected where the record was made in ballast and two models
+//! An entry is measured if a record is of that manoeuvre, corrected if the record was made in ballast and two models
 //! give the factor, and otherwise predicted. Undeclared data are reported as missing. The stopping trial is never
 //! predicted: no model of this program has a propeller that goes astern.
 //!
@@ -34,7 +34,7 @@ pub const STOPPING: &str = "stopping";
 /// Maximum number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
 pub const MAX_DECIMALS: usize = 2;
 
-/// The form.
+/// Form of MSC/Circ.1053.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
     /// Entries in the order of the form.
@@ -43,7 +43,7 @@ pub struct Form {
     pub remarks: Vec<String>,
 }
 
-/// The manoeuvres of the form, to both sides.
+/// Manoeuvres of the form, to both sides.
 ///
 /// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
@@ -60,7 +60,7 @@ struct Declared<'a> {
 const SHIP: &str = "ship data (full load)";
 const TRIALS: &str = "trials data";
 
-/// Ratio L/V, which is that of the predictions.
+/// Name of the ratio L/V of the predictions.
 const SCALE: &str = "L/V";
 
 /// Section, name, unit and value of a declared entry.
@@ -109,10 +109,10 @@ fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: S
     }
 }
 
-/// Fills in the form.
+/// Fills in the form from records, declarations and predictions.
 ///
-/// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag; `models` is the
-/// name of their source. Declarations of the ship are those of the first record that has them; `declared` are
+/// `particulars` are at the scale of the predictions; their L/V sets the limits of the 10/10 zig-zag. `models` names
+/// the source of the predictions. Declarations of the ship come from the first record that has them; `declared` are
 /// declarations without a record, from a file.
 pub fn fill<'a>(
     predictions: &[Prediction],
@@ -170,8 +170,8 @@ pub fn fill<'a>(
     Form { entries, remarks }
 }
 
-/// Value and source of a figure that a record shows: a record at full load or with a correction is preferred to a
-/// record at partial load.
+/// Value and source of a characteristic that a record shows: a record at full load or with a correction is preferred to
+/// a record at partial load.
 fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
@@ -204,7 +204,7 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<Imo
     entries.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
 }
 
-/// Value and source of a figure that is predicted.
+/// Value and source of a predicted characteristic.
 fn predicted(
     limit: &Limit,
     side: &str,
@@ -239,12 +239,12 @@ fn of_interval(interval: &PredictionInterval, source: String) -> ImoFormEntry {
     ImoFormEntry { median: Some(interval.median), ci90: Some(interval.ci90), source, ..ImoFormEntry::default() }
 }
 
-/// Decimals of an entry.
+/// Number of decimals of an entry.
 fn decimals(interval: &PredictionInterval) -> usize {
     interval.decimals().min(MAX_DECIMALS)
 }
 
-/// Number with a true minus sign, and without a sign before a zero.
+/// Number with a minus sign, and without a sign before a zero.
 fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -254,7 +254,7 @@ fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The interval of nine tenths of the draws.
+/// Text of the 90 % interval.
 fn range(interval: &PredictionInterval) -> String {
     let [low, high] = interval.ci90.map(|end| fixed(end, decimals(interval)));
     format!("[{low}, {high}]")
@@ -350,7 +350,7 @@ mod tests {
         assert!(plain.remarks.iter().any(|remark| remark.contains("--ballast")), "{:?}", plain.remarks);
     }
 
-    /// A record of another manoeuvre has no entry and gives a remark.
+    /// A record of another manoeuvre gives a remark and no entry.
     #[test]
     fn other_manoeuvres_are_reported() {
         let ship = testing::mixture(testing::identified_ship());

@@ -1,5 +1,5 @@
 //! Simulation of a measured zig-zag by a helm that reverses the rudder at the recorded headings, because a replayed
-//! rudder does not follow the heading; and the figures of the record for comparison.
+//! rudder does not follow the heading; and the characteristics of the record for comparison.
 
 use ship::Particulars;
 use ship::angle::to_deg;
@@ -15,7 +15,7 @@ use crate::standard::{self, EXECUTES};
 /// Relative tolerance between a mean angle of a zig-zag and the nominal angle.
 const TOLERANCE: f64 = 0.05;
 
-/// Result of one drawn ship.
+/// Result of one sampled ship.
 pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Figures,
@@ -26,19 +26,19 @@ pub(crate) struct DrawResult {
 /// Helm of a measured zig-zag.
 pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
-    /// Change of heading that ends the initial turning, rad: the nominal change, for a helm that is late.
+    /// Change of heading that ends the initial turning, rad: the nominal change, also if the helm is late.
     turned: f64,
     /// Number of executes of the record, which determine its period.
     executes: usize,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
-    /// Rate of the rudder where the record shows it, rad/s.
+    /// Rudder rate, rad/s; `None` if the record does not show it.
     rudder_rate: Option<f64>,
 }
 
 impl SteeredZigZag {
-    /// The zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of
-    /// the ship, rad/s. `None` if the record begins within the trial, or has a single execute.
+    /// Zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of the
+    /// ship, rad/s. `None` if the record begins within the trial, or has a single execute.
     pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
         let side = measured.side?;
         let executes = &measured.executes;
@@ -68,7 +68,7 @@ impl SteeredZigZag {
         Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
-    /// Results of drawn ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
+    /// Results of sampled ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
         let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         // The record gives the yaw rate of the approach.
@@ -89,9 +89,9 @@ impl SteeredZigZag {
     }
 }
 
-/// Figure of a measured zig-zag by its name; angles in degrees, times in s from the first execute.
+/// Characteristic of a measured zig-zag by name; angles in degrees, times in s from the first execute.
 ///
-/// The distance of the initial turning uses the recorded speed, or V times its time where `particulars` are given.
+/// The distance of the initial turning uses the recorded speed, or V times the time if `particulars` are given.
 pub(crate) fn shown(
     trial: &Trial,
     measured: &Measured,

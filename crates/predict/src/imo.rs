@@ -1,4 +1,4 @@
-//! The criteria of IMO resolution MSC.137(76), as the probability that the ship passes them.
+//! Criteria of IMO resolution MSC.137(76), with the probability that the ship passes them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,12 +10,12 @@ use trial::imo::{self, Unit};
 use crate::interval::PredictionInterval;
 use crate::prediction::Prediction;
 
-/// One criterion.
+/// Criterion with the predicted value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictedCriterion {
-    /// The limited quantity.
+    /// Limited quantity.
     pub criterion: String,
-    /// The manoeuvre of the quantity.
+    /// Manoeuvre of the quantity.
     pub manoeuvre: String,
     /// Maximum value allowed.
     pub limit: f64,
@@ -24,7 +24,7 @@ pub struct PredictedCriterion {
     /// Predicted value.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Share of the drawn ships within the limit; a ship without the figure counts as outside.
+    /// Share of the sampled ships within the limit; a ship without the characteristic counts as outside.
     pub probability_of_passing: f64,
     /// `true` if the manoeuvre is beyond the range of the records.
     pub extrapolated: bool,
@@ -37,18 +37,18 @@ pub(crate) const TEN: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const TWENTY: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
 
-/// Rudder of that circle and its tolerance, rad. The resolution also allows the largest rudder angle, which no model
-/// states.
+/// Rudder of that circle and its tolerance, rad. The resolution also allows the maximum rudder angle, which no model
+/// gives.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
 pub(crate) const TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
-/// A limit of the resolution.
+/// Limit of the resolution.
 pub(crate) struct Limit {
-    /// Its name, and its section and field in the form.
+    /// Name of the limit, and its section and field in the form.
     pub name: &'static str,
     pub section: &'static str,
     pub field: &'static str,
-    /// The manoeuvre and its figure of merit.
+    /// Manoeuvre and figure of merit.
     pub manoeuvre: FormManoeuvre,
     pub figure: &'static str,
     pub unit: Unit,
@@ -76,7 +76,7 @@ const IN_TEN: Limit = Limit {
     value: |scale| scale.map(imo::first_overshoot_10_10_limit_deg),
 };
 
-/// All limits. Source: MSC.137(76), 5.3.
+/// Limits of the resolution. Source: MSC.137(76), 5.3.
 pub(crate) const LIMITS: [Limit; 6] = [
     Limit {
         name: "initial turning",
@@ -113,7 +113,8 @@ pub(crate) const LIMITS: [Limit; 6] = [
 ];
 
 impl Limit {
-    /// `true` if a manoeuvre gives its figure, to either side: for the 10/10 also an initial turning with 10°.
+    /// `true` if a manoeuvre to either side gives the limited characteristic: for the 10/10 also an initial turning
+    /// with 10°.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
         let is_pair =
@@ -128,8 +129,8 @@ impl Limit {
     }
 }
 
-/// The criterion that limits a figure of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit for a
-/// ship with this L/V, s; `None` if none does.
+/// Criterion that limits a characteristic of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit
+/// for a ship with this L/V, s; `None` if there is none.
 pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
@@ -137,7 +138,7 @@ pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f
     LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
-/// The criteria of some predicted manoeuvres, for a ship of this length and speed.
+/// Criteria of some predicted manoeuvres, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;

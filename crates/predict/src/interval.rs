@@ -1,13 +1,13 @@
-//! Quantiles of drawn values, and their significant digits.
+//! Quantiles of samples, and their significant digits.
 
 use estimation::statistics::quantile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Median with the intervals that hold half and nine tenths of the draws.
+/// Median with the 50 % and 90 % intervals of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictionInterval {
-    /// Half of the draws are below.
+    /// Median.
     pub median: f64,
     /// Quantiles of 25 and 75 %.
     pub ci50: [f64; 2],
@@ -25,20 +25,20 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
 }
 
 impl PredictionInterval {
-    /// The interval of some draws, which are sorted in place; `None` without draws.
+    /// Intervals of some samples, which are sorted in place; `None` without samples.
     pub fn of(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 
-    /// Decimals that give two digits of its width, at most six.
+    /// Number of decimals that shows two digits of the width, at most six.
     pub fn decimals(&self) -> usize {
         let width = self.ci90[1] - self.ci90[0];
         let decimals = if width > 0.0 { (1.0 - width.log10().floor()).max(0.0) } else { 2.0 };
         (decimals as usize).min(6)
     }
 
-    /// `true` if a value lies within nine tenths of the draws.
+    /// `true` if a value lies within the 90 % interval.
     pub fn contains_90(&self, value: f64) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&value)
     }

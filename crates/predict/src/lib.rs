@@ -1,13 +1,13 @@
 //! Prediction of manoeuvres of an identified ship, with intervals.
 //!
-//! A fit gives a model with a covariance and a noise law. Ships are drawn from it, each is steered through the
+//! A fit gives a model with a covariance and a noise law. Ships are sampled from it, each is steered through the
 //! manoeuvre, and the results are medians with intervals of 50 and 90 %. An interval includes the errors of the
 //! parameters, the structures that the records do not distinguish, the random moment of one trial, the rudder rate and
 //! the yaw rate of the approach; the share of each source is reported.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | drawn ships | [`mixture`], [`drawn_parameters`] |
+//! | sampled ships | [`mixture`], [`drawn_parameters`] |
 //! | the manoeuvres and their ends | [`standard`] |
 //! | figures of merit | [`figures`] |
 //! | the prediction of a manoeuvre | [`prediction`] |
@@ -19,7 +19,8 @@
 //! | the form of MSC/Circ.1053 | [`form`] |
 //! | the document of a prediction | [`document`] |
 //!
-//! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
+//! Time is in seconds from the first execute; other quantities are in SI units and radians unless a name states another
+//! unit.
 
 pub mod correction;
 pub mod document;

@@ -3,10 +3,10 @@
 /// Straight line through points, with its residual variance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StraightLine {
-    /// Means of the points along and across.
+    /// Mean abscissa and mean ordinate.
     pub mean: [f64; 2],
     pub slope: f64,
-    /// Sum of squares along, about the mean.
+    /// Sum of squares of the abscissae about their mean.
     spread: f64,
     /// Variance of the residuals.
     variance: f64,
@@ -14,7 +14,7 @@ pub(crate) struct StraightLine {
 }
 
 impl StraightLine {
-    /// The line through the finite points; `None` for less than three, or all at the same abscissa.
+    /// Line through the finite points; `None` for fewer than three points, or if all have one abscissa.
     pub fn through(points: impl Iterator<Item = (f64, f64)>) -> Option<Self> {
         let points: Vec<(f64, f64)> = points.filter(|(_, y)| y.is_finite()).collect();
         let count = points.len() as f64;
@@ -31,7 +31,7 @@ impl StraightLine {
         (self.variance / self.spread).sqrt()
     }
 
-    /// Value at zero with its standard deviation.
+    /// Ordinate at abscissa zero with its standard deviation.
     pub fn at_zero(&self) -> (f64, f64) {
         let [x, y] = self.mean;
         (y - self.slope * x, (self.variance / self.count + self.variance * x * x / self.spread).sqrt())

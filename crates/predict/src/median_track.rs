@@ -1,5 +1,5 @@
-//! The median circle of drawn ships: at every change of heading the median place of all that come so far. Its advance,
-//! transfer and tactical diameter are the medians of the draws, which no single ship has all of.
+//! Median turning circle of sampled ships: at every change of heading the median position of the ships that reach it.
+//! Its advance, transfer and tactical diameter are the medians of the samples; no single ship has all three.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,14 +8,14 @@ use crate::interval::band;
 /// Change of heading from one point to the next, rad; 90° and 180° are points.
 const STEP: f64 = PI / 60.0;
 
-/// Track of a turn, a place for every heading, which grows with the turn from zero at the execute, rad.
+/// Track of a turn, a position for every heading; the heading grows with the turn from zero at the execute, rad.
 pub(crate) struct Turn<'a> {
     pub heading: &'a [f64],
     pub track: &'a [[f64; 2]],
 }
 
 impl Turn<'_> {
-    /// The place where the heading has changed by an angle, straight between rows.
+    /// Position at which the heading has changed by an angle, linear between rows.
     fn at(&self, side: f64, angle: f64) -> Option<[f64; 2]> {
         let change = |row: usize| side * (self.heading[row] - self.heading[0]);
         let rows = self.heading.len().min(self.track.len());
@@ -26,8 +26,7 @@ impl Turn<'_> {
     }
 }
 
-/// The median circle of some turns to a side (±1), as far as half of them go and once around at most; empty without a
-/// turn.
+/// Median circle of some turns to a side (±1), as far as half of them go and at most once around; empty without a turn.
 pub(crate) fn median_track(turns: &[Turn], side: f64) -> Vec<[f64; 2]> {
     let place = |point: usize| {
         let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();
@@ -41,7 +40,7 @@ pub(crate) fn median_track(turns: &[Turn], side: f64) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// Half circles to port, of radii 1, 2 and 4: of the median the advance at 90° is 2 and the diameter 4.
+    /// Half circles to port, of radii 1, 2 and 4: the median has an advance at 90° of 2 and a diameter of 4.
     #[test]
     fn the_median_circle_has_the_median_figures() {
         let rows = 181;

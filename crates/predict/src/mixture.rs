@@ -1,7 +1,7 @@
-//! Ships drawn from the models of one or several files: a structure by its probability, parameters by their covariance,
-//! and the random disturbances of one trial. Every source can be switched off, so that its share of an interval can be
-//! computed. Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a tutorial, Statistical
-//! Science 14, 382–417.
+//! Ships sampled from the models of one or several files: a structure by its probability, parameters by their
+//! covariance, and the random disturbances of one trial. Every source can be switched off, so that its share of an
+//! interval can be computed. Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a
+//! tutorial, Statistical Science 14, 382–417.
 
 use document::{IdentifiedShip, IdentifiedShipError, RandomMoment, RandomYawMoment, WeightedStructure};
 use nalgebra::{DMatrix, DVector};
@@ -23,11 +23,11 @@ pub enum UncertaintySource {
     Parameters,
     /// Structures that the records do not distinguish.
     Structure,
-    /// The random yaw moment, and the error of a hull in the first seconds.
+    /// Random yaw moment, and the error of a hull in the first seconds.
     ProcessNoise,
-    /// The rate of the rudder.
+    /// Rudder rate.
     SteeringGear,
-    /// The yaw rate at the first execute.
+    /// Yaw rate at the first execute.
     InitialState,
 }
 
@@ -48,13 +48,13 @@ impl UncertaintySource {
     }
 }
 
-/// Maximum number of rejected draws, outside the range of a parameter, before its bound is taken.
+/// Maximum number of samples outside the range of a parameter; then it is set to its bound.
 const MAX_TRIES: usize = 100;
 
-/// Correlation time of the process that approximates a white moment, in times of the ship.
+/// Correlation time of the process that approximates a white moment, in timescales of the ship.
 const WHITE_CORRELATION_TIME: f64 = 0.05;
 
-/// A structure with the square root of its covariance; for a file with hulls, a hull with the most probable structure.
+/// Structure with the square root of its covariance; for a file with hulls, a hull with the most probable structure.
 #[derive(Debug, Clone)]
 pub(crate) struct DrawableStructure {
     /// Probability among all structures.
@@ -62,11 +62,11 @@ pub(crate) struct DrawableStructure {
     pub model: ResponseModel,
     stored: WeightedStructure,
     root: DMatrix<f64>,
-    /// Places of dead times among the parameters.
+    /// Indices of dead times among the parameters.
     dead_times: Vec<usize>,
-    /// The hull that takes its place.
+    /// Hull that replaces the structure.
     pub hull: Option<DrawableHull>,
-    /// The file it is from.
+    /// Index of the file.
     pub file: usize,
 }
 
@@ -75,33 +75,33 @@ pub(crate) struct DrawableStructure {
 pub struct ShipMixture {
     parts: Vec<DrawableStructure>,
     files: Vec<IdentifiedShip>,
-    /// Probability of every file.
+    /// Probabilities of the files.
     shares: Vec<f64>,
     timescale: f64,
-    /// `true` if its random numbers are independent of those of another mixture.
+    /// `true` if the random numbers are independent of another mixture.
     apart: bool,
-    /// `true` if its hulls nevertheless follow those of the other mixture, each at another loading.
+    /// `true` if the hulls nevertheless follow the hulls of the other mixture, each at another loading.
     follows: bool,
     /// Wind on the hulls; direction relative to the approach heading.
     pub(crate) wind: Option<Wind>,
 }
 
-/// A ship for one trial.
+/// Ship for one trial.
 #[derive(Debug, Clone)]
 pub struct DrawnShip {
-    /// Its yaw response.
+    /// Yaw response.
     pub response: Response,
-    /// Its hull, where one was fitted, which replaces the response.
+    /// Hull, if one was fitted; it replaces the response.
     pub hull: Option<ScaledHull>,
-    /// The coefficients of the hull.
+    /// Coefficients of the hull.
     pub coefficients: Vec<f64>,
-    /// Its steering gear.
+    /// Steering gear.
     pub gear: SteeringGear,
-    /// Its disturbances.
+    /// Disturbances.
     pub disturbances: Disturbances,
-    /// Initial yaw rate, rad/s: that of the approach, and the error of a hull.
+    /// Initial yaw rate, rad/s: of the approach, plus the error of a hull.
     pub yaw_rate: f64,
-    /// Stream of its random moment.
+    /// Stream of the random moment.
     pub key: StreamKey,
 }
 
@@ -133,8 +133,8 @@ impl ShipMixture {
         Ok(Self { parts, files, shares, timescale, apart: false, follows: false, wind: None })
     }
 
-    /// The same ships with independent random numbers; only the errors of the trials stay common, where every ship has
-    /// a single hull that is converted from the hull of the other mixture.
+    /// Same ships with independent random numbers. The errors of the trials stay common if every ship has a single hull
+    /// converted from the hull of the other mixture.
     pub fn independent_of(self, other: &Self) -> Self {
         let follows = |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
             ([hull], [source]) => hull.is_from(source),
@@ -144,27 +144,27 @@ impl ShipMixture {
         Self { apart: true, follows, ..self }
     }
 
-    /// A time of the ship, s: about L/U.
+    /// Timescale of the ship, s: about L/U.
     pub fn timescale(&self) -> f64 {
         self.timescale
     }
 
-    /// The ship of the first file.
+    /// Ship of the first file.
     pub fn first(&self) -> &IdentifiedShip {
         &self.files[0]
     }
 
-    /// The files.
+    /// Files of the mixture.
     pub fn files(&self) -> &[IdentifiedShip] {
         &self.files
     }
 
-    /// The most probable ship of the most probable file, without disturbances.
+    /// Most probable ship of the most probable file, without disturbances.
     pub fn most_probable(&self) -> DrawnShip {
         self.draw(0, &[])
     }
 
-    /// Ship number `number`, drawn from the given sources of uncertainty and otherwise the most probable ship.
+    /// Ship number `number`, sampled from the given sources of uncertainty and otherwise the most probable ship.
     pub fn draw(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
@@ -225,22 +225,22 @@ impl ShipMixture {
         disturbances
     }
 
-    /// The most probable structure of the most probable file, the first of equals: several hulls do not lower the rank
-    /// of a file.
+    /// Most probable structure of the most probable file, the first of equals; several hulls do not lower the rank of a
+    /// file.
     fn likeliest(&self) -> &DrawableStructure {
         let file = (0..self.files.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
-    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of an
-    /// independent mixture follow √2, which is incommensurable with it.
+    /// Structure of a sample: for any number of samples the shares follow the probabilities (golden ratio). Samples of
+    /// an independent mixture follow √2, which is incommensurable with it.
     pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         chosen(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }
 
-/// Golden ratio less one.
+/// Golden ratio minus one.
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
@@ -251,12 +251,12 @@ pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&Dra
     })
 }
 
-/// The most probable structure, the first of equals.
+/// Most probable structure, the first of equals.
 fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a DrawableStructure>) -> Option<&'a DrawableStructure> {
     parts.rev().max_by(|a, b| a.weight.total_cmp(&b.weight))
 }
 
-/// A valid weight; `stored` is the value in the file.
+/// Weight, checked; `stored` is the value in the file.
 fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
     let is_weight = weight.is_finite() && weight >= 0.0;
     if is_weight { Ok(weight) } else { Err(IdentifiedShipError::Value { key: "weight", value: stored }.into()) }
@@ -269,7 +269,7 @@ impl DrawableStructure {
         Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
     }
 
-    /// The same structure, checked to have all that its effects need in a manoeuvre.
+    /// Same structure, checked to have all channels that its effects need in a manoeuvre.
     fn sailing(self, ship: &IdentifiedShip) -> Result<Self, PredictError> {
         for (regressor, channel, option) in
             [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
@@ -282,7 +282,7 @@ impl DrawableStructure {
         Ok(self)
     }
 
-    /// Random yaw moment: of the form of the hull, or of the structure.
+    /// Random yaw moment of the form of the hull, or of the structure.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
         let Some(moment) = self.hull.as_ref().map(|hull| hull.stored.moment) else { return ship.noise.moment };
         let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = moment;
@@ -292,7 +292,7 @@ impl DrawableStructure {
         }
     }
 
-    /// Drawn parameters, by their covariance and inside the ranges of the effects: normal, or Student's t.
+    /// Sample of the parameters, by their covariance and within the ranges of the effects: normal, or Student's t.
     pub(crate) fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: stored, fitted, degrees_of_freedom, .. } = &self.stored;
         let mut values = stored.clone();
@@ -325,7 +325,7 @@ mod tests {
     use crate::testing;
     use document::identified_hull::IdentifiedHull;
 
-    /// Mean and covariance of the draws are those that are known.
+    /// Mean and covariance of the samples agree with the stored law.
     #[test]
     fn draws_have_the_stored_law() {
         let mixture = testing::mixture(testing::identified_ship());
@@ -363,7 +363,7 @@ mod tests {
         assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
     }
 
-    /// Of two files that are as probable it is the first, though its two hulls share what the one of the other has.
+    /// Of two equally probable files the first is chosen, although its two hulls share the weight.
     #[test]
     fn the_most_probable_ship_is_of_the_most_probable_file() {
         let hull = |weight| IdentifiedHull { weight, ..testing::hull("quadratic") };
@@ -376,7 +376,7 @@ mod tests {
         assert_eq!(mixture.likeliest().weight, 0.3);
     }
 
-    /// Ships that are drawn from a hull begin with what its replays begin with, those in a calm do not.
+    /// Ships sampled from a hull begin with the initial error of its replays; ships in a calm do not.
     #[test]
     fn hulls_begin_with_the_error_of_their_replays() {
         let rate = 1e-3;

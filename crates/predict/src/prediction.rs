@@ -1,5 +1,5 @@
-//! Prediction of a manoeuvre: every figure of merit with its intervals and their sources, and bands of its curves.
-//! Source of the method: propagation of distributions by Monte Carlo, JCGM 101:2008 (Supplement 1 to the GUM).
+//! Prediction of a manoeuvre: figures of merit with intervals and their sources, and bands of the curves. Source of the
+//! method: propagation of distributions by Monte Carlo, JCGM 101:2008 (Supplement 1 to the GUM).
 
 use document::identified_ship::ValidityRange;
 use estimation::statistics::median;
@@ -19,53 +19,54 @@ use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
 use crate::steady::SteadyCurve;
 
-/// Number of draws over that for a single source.
+/// Number of samples, relative to the number for a single source.
 const RATIO: usize = 4;
 
-/// Share of the draws that must complete a manoeuvre.
+/// Minimum share of the samples that complete a manoeuvre.
 const MIN_COMPLETED_SHARE: f64 = 0.5;
 
-/// Tolerance of the range of the records: a rudder overshoots its order, and a largest rate is that of a single record.
+/// Tolerance of the range of the records: a rudder overshoots its order, and the maximum rate comes from a single
+/// record.
 const TOLERANCE: f64 = 1.05;
 
-/// A figure of merit.
+/// Predicted figure of merit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Predicted {
-    /// Median and intervals of the draws that have it.
+    /// Median and intervals of the samples that have it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// `true` if rudder or yaw rate of the manoeuvre are beyond those of the records.
+    /// `true` if rudder or yaw rate of the manoeuvre are beyond the range of the records.
     pub extrapolated: bool,
-    /// Share of the draws that have the figure.
+    /// Share of the samples that have the figure of merit.
     pub defined: f64,
     /// Share of every source of uncertainty in the spread.
     pub shares: IndexMap<String, f64>,
-    /// The draws, in the order of their numbers.
+    /// Samples, in the order of their numbers.
     #[serde(skip)]
     pub draws: Vec<Option<f64>>,
 }
 
 impl Predicted {
-    /// Share of the drawn ships within a limit; a ship without the figure counts as outside.
+    /// Share of the sampled ships within a limit; a ship without the figure of merit counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
         let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
         kept as f64 / self.draws.len() as f64
     }
 }
 
-/// A curve over time with its bands; angles in rad.
+/// Curve against time with bands; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
     /// Time from the first execute, s.
     pub time: Vec<f64>,
-    /// The most probable ship without disturbances, to its end; NaN beyond.
+    /// Most probable ship without disturbances, to the end of its manoeuvre; NaN after it.
     #[serde(deserialize_with = "with_gaps")]
     pub most_probable: Vec<f64>,
     /// Quantiles of 5, 25, 50, 75 and 95 % of the draws.
     pub quantiles: Vec<[f64; 5]>,
 }
 
-/// Numbers of a list in JSON, where null represents NaN.
+/// Numbers of a list in JSON, with null for NaN.
 fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
     let numbers = Vec::<Option<f64>>::deserialize(list)?;
     Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
@@ -74,32 +75,33 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
 /// Prediction of a manoeuvre; its curves are in a separate file (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
-    /// The manoeuvre.
+    /// Manoeuvre.
     #[serde(serialize_with = "serialize_text", deserialize_with = "deserialize_text")]
     #[schemars(with = "String")]
     pub kind: Manoeuvre,
-    /// Its figures by name, with the unit.
+    /// Figures of merit by name; the unit is in the name.
     pub figures: IndexMap<String, Predicted>,
-    /// Draws that did not complete the manoeuvre.
+    /// Number of samples that did not complete the manoeuvre.
     pub lost: usize,
     /// Sizes of a turning circle whose interval reaches below zero: the records do not determine them.
     #[serde(skip)]
     pub undetermined: Vec<(String, PredictionInterval)>,
-    /// Its curves.
+    /// Curves.
     #[serde(skip)]
     pub curves: ManoeuvreCurves,
 }
 
-/// The curves of a manoeuvre; angles in rad.
+/// Curves of a manoeuvre; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ManoeuvreCurves {
     /// Heading; empty for a spiral.
     pub heading: Bands,
-    /// The most probable ship without disturbances; `None` for a spiral.
+    /// Most probable ship without disturbances; `None` for a spiral.
     pub most_probable: Option<SimulatedManoeuvre>,
-    /// Tracks of some of the draws, north and east, m; empty for a model without speed and drift.
+    /// Tracks of some samples, north and east, m; empty for a model without speed and drift.
     pub tracks: Vec<Vec<[f64; 2]>>,
-    /// Median track of a turning circle: at every change of heading the median place of the draws, north and east, m.
+    /// Median track of a turning circle: at every change of heading the median position of the samples, north and east,
+    /// m.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub median_track: Vec<[f64; 2]>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
@@ -107,12 +109,12 @@ pub struct ManoeuvreCurves {
     pub steady: Vec<SteadyCurve>,
 }
 
-/// What is kept of the manoeuvre of a drawn ship.
+/// Results kept from the manoeuvre of a sampled ship.
 struct DrawnSeries {
     heading: Vec<f64>,
     largest_rate: f64,
     track: Option<Vec<[f64; 2]>>,
-    /// `true` if its track is one of those that are shown.
+    /// `true` if the track is plotted.
     is_shown: bool,
 }
 
@@ -123,34 +125,34 @@ impl DrawnSeries {
 }
 
 impl Prediction {
-    /// `true` if rudder or yaw rate are beyond those of the records.
+    /// `true` if rudder or yaw rate are beyond the range of the records.
     pub fn is_extrapolated(&self) -> bool {
         self.figures.values().any(|figure| figure.extrapolated)
     }
 }
 
-/// Draws whose tracks are kept.
+/// Number of samples whose tracks are kept.
 const TRACKS: u64 = 40;
 
-/// Error for a manoeuvre that too few drawn ships complete.
+/// Error for a manoeuvre that too few sampled ships complete.
 pub(crate) fn lost(what: impl ToString, made: usize, draws: usize) -> PredictError {
     PredictError::Lost { kind: what.to_string(), made, draws }
 }
 
-/// Fails if less than half of the drawn ships complete a manoeuvre.
+/// Fails if less than half of the sampled ships complete a manoeuvre.
 pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
     if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
 }
 
 impl ShipMixture {
-    /// Length and speed, where the first file has them.
+    /// Length and speed; `None` if the first file has none.
     pub fn particulars(&self) -> Option<Particulars> {
         self.first().particulars()
     }
 
-    /// Predicts a manoeuvre from so many draws; `shares` adds the share of every source of uncertainty.
+    /// Predicts a manoeuvre from `draws` samples; `shares` adds the share of every source of uncertainty.
     ///
-    /// Fails if less than half of the drawn ships complete it.
+    /// Fails if less than half of the sampled ships complete the manoeuvre.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
         let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
@@ -213,7 +215,7 @@ impl ShipMixture {
         Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
     }
 
-    /// `true` if a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond the range of the records.
+    /// `true` if a rudder (rad) or the median of the maximum yaw rates (rad/s) is beyond the range of the records.
     pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let end =
@@ -222,12 +224,12 @@ impl ShipMixture {
     }
 }
 
-/// Results of so many draws, computed in parallel, in the order of their numbers.
+/// Results of `draws` samples, computed in parallel, in the order of their numbers.
 pub(crate) fn drawn<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
-/// Figures from the draws, with the shares of sources that are drawn alone.
+/// Figures of merit of the samples, with the shares of single sources.
 fn predicted(
     draws: &[Option<Figures>],
     extrapolated: bool,
@@ -255,7 +257,7 @@ fn predicted(
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
-/// Quantiles row by row, up to the end of a tenth of the draws.
+/// Quantiles row by row, up to the row that a tenth of the samples reach.
 fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
     let mut bands = Bands::default();
     let mut values = Vec::with_capacity(draws.len());
@@ -288,7 +290,7 @@ mod tests {
         text.parse().expect("known")
     }
 
-    /// Without doubt every draw is the most probable ship.
+    /// Without uncertainty every sample is the most probable ship.
     #[test]
     fn what_is_known_for_certain_has_no_interval() {
         let sure = mixture(|known| {
@@ -307,7 +309,7 @@ mod tests {
         assert!(prediction.curves.heading.time.len() > 100);
     }
 
-    /// A source that is not there has no share, and shares are shares.
+    /// An absent source has a share of zero, and the shares add up to one.
     #[test]
     fn shares_add_up_and_name_the_source() {
         let noisy = mixture(|known| {
@@ -334,7 +336,7 @@ mod tests {
         assert_eq!(spiral.figures[2].interval.median, 0.0, "a stable ship has no loop");
     }
 
-    /// The same in any number of threads, and for the mirrored ship on the other side.
+    /// Equal results in any number of threads, and for the mirrored ship on the opposite side.
     #[test]
     fn predictions_are_repeated_to_the_bit() {
         let ship = mixture(|_| {});

@@ -22,36 +22,36 @@ use crate::prediction::{Bands, drawn, enough, lost};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
-/// Duration at the start of a record for the fit of its initial heading and yaw rate, in times of the ship.
+/// Duration of the fit of the initial heading and yaw rate of a record, in timescales of the ship.
 const BEGINNING: f64 = 1.0;
 
-/// Readings needed for that fit.
+/// Minimum number of readings for that fit.
 const MIN_READINGS: usize = 5;
 
-/// A figure of a record with its prediction.
+/// Figure of merit of a record with its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compared {
     /// Measured value.
     pub measured: f64,
-    /// Predicted interval, with the error of the measured value where the record gives it.
+    /// Predicted interval, with the error of the measured value if the record gives it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
     /// `true` if the 90 % interval contains the measured value.
     pub inside90: bool,
 }
 
-/// A record with its prediction; its curves are in a separate file (PredictCurves).
+/// Record with its prediction; the curves are in a separate file (PredictCurves).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
-    /// The file as the user named it.
+    /// File, as the user named it.
     pub file: String,
     /// Share of the measured headings inside the 90 % band of a reading.
     pub band_coverage_90: f64,
     /// Root mean square difference between the headings and the most probable ship.
     pub heading_rmse_deg: f64,
-    /// The current that was removed from the track.
+    /// Current removed from the track.
     pub current: Option<Current>,
-    /// Figures that the record shows, by name.
+    /// Figures of merit that the record shows, by name.
     pub figures: IndexMap<String, Compared>,
     /// Name of the record.
     #[serde(default)]
@@ -70,7 +70,7 @@ pub struct RecordReplay {
     pub measured: Vec<f64>,
 }
 
-/// The file of a record as the user named it.
+/// File of a record, as the user named it.
 pub fn file_of(trial: &Trial) -> &str {
     match trial.origin() {
         Origin::Measured { file, .. } => file,
@@ -81,7 +81,7 @@ pub fn file_of(trial: &Trial) -> &str {
 /// Tolerance of a straight rudder between two readings, rad: a hundredth of a degree.
 const STRAIGHT_TOLERANCE_RAD: f64 = 2e-4;
 
-/// The corners of a rudder (Douglas and Peucker 1973), at which the steps of the solver end.
+/// Corners of a rudder (Douglas and Peucker 1973), at which the steps of the solver end.
 pub(crate) fn thinned(signal: &Polyline) -> Polyline {
     let (times, values) = (signal.times(), signal.values());
     let last = times.len() - 1;
@@ -102,13 +102,13 @@ pub(crate) fn thinned(signal: &Polyline) -> Polyline {
 }
 
 impl ShipMixture {
-    /// Replays the rudder of a record and compares the prediction with it; the ship must be of its scale.
+    /// Replays the rudder of a record and compares the prediction with it; the ship must be at the scale of the record.
     ///
-    /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
-    /// of a helm that reverses the rudder at the recorded headings, because a replayed rudder does not follow the
-    /// heading. A hull is in the mean wind of the record, where it was measured. `current` is that removed from the
-    /// positions of the record ([`without_current`](turn::without_current)). `None` if the record has too few
-    /// headings at its beginning.
+    /// The band is for the recorded rudder from the first heading and yaw rate on. Characteristics of a zig-zag are
+    /// computed with a helm that reverses the rudder at the recorded headings, because a replayed rudder does not
+    /// follow the heading. A hull is in the mean wind of the record, if it was measured. `current` is the current
+    /// removed from the positions of the record ([`without_current`](turn::without_current)). `None` if the record has
+    /// too few headings at its beginning.
     pub fn replay(
         &self,
         trial: &Trial,
@@ -169,7 +169,7 @@ impl ShipMixture {
         }))
     }
 
-    /// The same ships in the mean wind of a record, where it was measured; it acts on hulls only.
+    /// Same ships in the mean wind of a record, if measured; it acts on hulls only.
     fn in_wind_of(&self, trial: &Trial) -> Self {
         let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
         let mut ships = self.clone();
@@ -193,8 +193,8 @@ impl ShipMixture {
         Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
     }
 
-    /// A figure of a measured zig-zag. For a model without speed the distance of the initial turning is V times its
-    /// time, in the record as in the prediction.
+    /// Characteristic of a measured zig-zag. For a model without speed the distance of the initial turning is V times
+    /// the time, in the record as in the prediction.
     pub(crate) fn shown(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
         let particulars = self.particulars();
         let has_way = !self.first().hulls.is_empty();
@@ -203,8 +203,8 @@ impl ShipMixture {
     }
 
     /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, from this ship: a straight line
-    /// through the differences between the first readings and her replay from heading 0 without a yaw rate. `None`
-    /// where the record has too few headings at its beginning.
+    /// through the differences between the first readings and the replay from zero heading and yaw rate. `None` if the
+    /// record has too few headings at its beginning.
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale());
@@ -220,10 +220,10 @@ impl ShipMixture {
     }
 }
 
-/// Figures by name.
+/// Comparisons by name.
 type ByName = IndexMap<String, Compared>;
 
-/// Comparison of measured figures with their draws, each draw with the error of the measured figure.
+/// Comparison of measured characteristics with their draws, each draw with the error of the measured characteristic.
 fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
     let figure = |(number, &name): (usize, &&'static str)| {
         let Quantity { value: measured, sd, .. } = shown(name)?;
@@ -236,7 +236,7 @@ fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByNa
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
 }
 
-/// Figures of a record that is a turn, and its tracks.
+/// Characteristics of a recorded turn, and its tracks.
 ///
 /// The uncertainty of a removed current is included in the prediction.
 fn turns(
@@ -267,7 +267,7 @@ mod tests {
     use ship::angle::from_deg;
     use trial::{Channel, Columns};
 
-    /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
+    /// Records of ships sampled as in the prediction lie within its 90 % intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
         let mixture = testing::mixture(testing::identified_ship());
@@ -309,8 +309,8 @@ mod tests {
         assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT_TOLERANCE_RAD));
     }
 
-    /// A hull meets the mean wind of a record from off the course of the approach, a structure meets none, and in a
-    /// calm the wind does nothing.
+    /// The mean wind of a record acts on a hull relative to the course of the approach, but not on a structure and not
+    /// in a calm.
     #[test]
     fn hulls_meet_the_wind_of_a_record() {
         let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::error::PredictError;
 
-/// The square root of a covariance: U √Λ of its eigenvalues, of which small negative values count as zero. Fails with
+/// Square root U √Λ of a covariance with eigenvalues Λ; small negative eigenvalues count as zero. Fails with
 /// [`PredictError::Covariance`] for a matrix that is not a covariance.
 pub(crate) fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     let count = covariance.len();

@@ -1,4 +1,4 @@
-//! Simulation of one manoeuvre of a drawn ship.
+//! Simulation of one manoeuvre of a sampled ship.
 
 use std::sync::Arc;
 
@@ -13,17 +13,16 @@ use trial::{Channel, Trial};
 
 use crate::mixture::DrawnShip;
 
-/// Rows per time of the ship.
+/// Rows per timescale of the ship.
 const ROWS_PER_TIMESCALE: f64 = 20.0;
 
-/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the
-/// response.
+/// Solver steps per minimum time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the response.
 const STEPS_PER_TIME_CONSTANT: f64 = 6.0;
 
-/// Shortest step, s.
+/// Minimum step, s.
 const MIN_STEP_S: f64 = 1e-3;
 
-/// Limit on the wait for a heading, in times of the ship: a circle of 540° with very little rudder.
+/// Maximum wait for a heading, in timescales of the ship: a circle of 540° with very little rudder.
 const MAX_WAIT_TIMESCALES: f64 = 500.0;
 
 /// Motion of a ship; time in s from the first execute, angles in rad.
@@ -40,7 +39,7 @@ pub struct SimulatedManoeuvre {
     /// Orders of the helm; not written to a file.
     #[serde(skip)]
     pub executes: Vec<HelmOrder>,
-    /// Velocity and track; none for a model without speed and drift.
+    /// Velocity and track; `None` for a model without speed and drift.
     pub way: Option<PlanarMotion>,
 }
 
@@ -56,7 +55,7 @@ pub struct PlanarMotion {
 }
 
 impl PlanarMotion {
-    /// Velocity and track of a ship of this length, m, where her record has speed and sway.
+    /// Velocity and track of a ship of this length, m; `None` if the record has no speed or sway.
     fn of(length: f64, trial: &Trial, heading: &[f64]) -> Option<Self> {
         let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
         let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
@@ -71,12 +70,12 @@ pub(crate) fn period(timescale: f64) -> f64 {
     (timescale / ROWS_PER_TIMESCALE).clamp(2e-3, 900.0)
 }
 
-/// Limits on the time step of the weather: in s, and relative to its correlation time, so that the moment is within 2 %
-/// of the process.
+/// Maximum time step of the weather: in s, and relative to its correlation time, so that the moment is within 2 % of
+/// the process.
 const MAX_CELL_S: f64 = 60.0;
 const MAX_CORRELATION_SHARE: f64 = 0.5;
 
-/// The simulated vessel of a drawn ship.
+/// Simulated vessel of a sampled ship.
 fn vessel(ship: &DrawnShip) -> Vessel {
     match &ship.hull {
         Some(hull) => Vessel::from_dynamics(Arc::new(hull.clone()))
@@ -108,9 +107,9 @@ impl SimulatedManoeuvre {
         Some(whole + (time - self.time(rows)) * speed(rows))
     }
 
-    /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
+    /// Steers a ship through a manoeuvre; `timescale` is the timescale of the ship, s.
     ///
-    /// Fails if the ship does not reach a heading that the helm waits for, turns for ever, or exceeds the speeds for
+    /// Fails if the ship does not reach a heading that the helm waits for, turns without end, or exceeds the speeds for
     /// which the equations of a hull are valid.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
@@ -146,7 +145,8 @@ impl SimulatedManoeuvre {
         self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
-    /// Motion of any simulated ship; sampling period and longest wait follow from `timescale`, a time of the ship, s.
+    /// Motion of any simulated ship; sampling period and maximum wait follow from `timescale`, the timescale of the
+    /// ship, s.
     ///
     /// Fails as the simulation does.
     pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
@@ -159,7 +159,7 @@ impl SimulatedManoeuvre {
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 
-    /// Rotates the motion to another course: every heading increases by `angle` (rad).
+    /// Rotates the motion to another course: headings increase by `angle` (rad).
     pub fn turn_about(&mut self, angle: f64) {
         self.heading.iter_mut().for_each(|heading| *heading += angle);
         let (sin, cos) = angle.sin_cos();
@@ -169,7 +169,7 @@ impl SimulatedManoeuvre {
         }
     }
 
-    /// The same motion up to `time` s.
+    /// Motion up to `time` s.
     pub fn until(&self, time: f64) -> Self {
         let rows = (time / self.period).floor() as usize + 1;
         let mut cut = self.clone();
@@ -181,7 +181,7 @@ impl SimulatedManoeuvre {
         cut
     }
 
-    /// Maximum size of the yaw rate, rad/s.
+    /// Maximum |yaw rate|, rad/s.
     pub fn largest_rate(&self) -> f64 {
         self.yaw_rate.iter().fold(0.0, |largest, rate| largest.max(rate.abs()))
     }
@@ -199,8 +199,8 @@ impl SimulatedManoeuvre {
         Some(self.time(before) + self.period * (angle - low) / (high - low))
     }
 
-    /// Maximum heading to the side `side` (±1), rad, between two times, s: where the yaw rate changes its sign between
-    /// rows the peak of the parabola.
+    /// Maximum heading to the side `side` (±1), rad, between two times, s: if the yaw rate changes sign between rows,
+    /// the peak of the parabola.
     pub fn peak(&self, side: f64, from: f64, until: f64) -> Option<f64> {
         let first = (from / self.period).floor() as usize;
         let last = ((until / self.period).ceil() as usize).min(self.heading.len().checked_sub(1)?);

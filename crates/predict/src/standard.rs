@@ -1,29 +1,28 @@
-//! The predicted manoeuvres: those of the IMO criteria, and the end of a manoeuvre that does not specify it.
+//! Predicted manoeuvres: the manoeuvres of the IMO criteria, and the end of a manoeuvre that does not specify it.
 
 use ship::angle::from_deg;
 use simulate::Manoeuvre;
 
-/// Executes of a predicted zig-zag, which give four complete overshoots.
+/// Number of executes of a predicted zig-zag, which gives four complete overshoots.
 pub(crate) const EXECUTES: usize = 6;
 
 /// Change of heading of a predicted turning circle, rad: a little more than the 540° after which speed, drift and pivot
 /// of a steady turn can be read.
 const TURN: f64 = 3.05 * std::f64::consts::PI;
 
-/// Duration of the turn of a pull-out, and of the time after it, in times of the ship.
+/// Duration of the turn of a pull-out, and of the motion after it, in timescales of the ship.
 const PULL_OUT: f64 = 40.0;
 
-/// Duration after the last order of a Williamson turn, in times of the ship.
+/// Duration after the last order of a Williamson turn, in timescales of the ship.
 const AFTER_WILLIAMSON: f64 = 20.0;
 
-/// The manoeuvres of the IMO criteria, to starboard.
+/// Manoeuvres of the IMO criteria, to starboard.
 pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
     let zig_zag = |angle_deg| Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(angle_deg));
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// The manoeuvre with its end, for a ship with this timescale, s; `None` for a spiral, which is a curve of steady
-/// turns.
+/// Manoeuvre with its end, for a ship with this timescale, s; `None` for a spiral, which is a curve of steady turns.
 pub fn steered(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {

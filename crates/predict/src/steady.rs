@@ -7,13 +7,13 @@ use ship::angle::to_deg;
 use crate::figures::Figures;
 use crate::mixture::DrawnShip;
 
-/// Points to either side of a straight course.
+/// Number of points to either side of a straight course.
 const POINTS: usize = 24;
 
-/// Doublings of the search for a rate beyond the largest rudder, and halvings to approach it.
+/// Number of doublings in the search for a rate beyond the maximum rudder, and of halvings to approach it.
 const DOUBLINGS: usize = 12;
 
-/// Rudder (rad) over yaw rate (rad/s) of steady turns, in the order of the yaw rate.
+/// Rudder (rad) against yaw rate (rad/s) of steady turns, in the order of the yaw rate.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SteadyCurve {
     /// Yaw rates, rad/s.
@@ -22,17 +22,17 @@ pub struct SteadyCurve {
     pub rudder: Vec<f64>,
 }
 
-/// The part of a steady curve over which the ship is unstable.
+/// Instability loop: the part of a steady curve over which the ship is unstable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loop {
-    /// Difference of the rudders at its ends, rad.
+    /// Difference of the rudder angles at the ends of the loop, rad.
     pub width: f64,
-    /// Difference of the yaw rates of the outer branches at the rudder in the middle of it, rad/s.
+    /// Difference of the yaw rates of the outer branches at the rudder in the middle of the loop, rad/s.
     pub height: f64,
 }
 
 impl SteadyCurve {
-    /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates
+    /// Curve of a ship up to `largest` rad of rudder to either side; `timescale` is the timescale of the ship, s. Rates
     /// without a rudder are left out.
     pub fn of(ship: &DrawnShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
@@ -81,13 +81,13 @@ impl SteadyCurve {
         })
     }
 
-    /// Yaw rate at a rudder (rad) on the outer branch of its side, rad/s.
+    /// Yaw rate at a rudder (rad) on the outer branch of that side, rad/s.
     pub fn outer(&self, rudder: f64) -> Option<f64> {
         let mut rates = self.rates_at(rudder);
         if rudder < 0.0 { rates.next() } else { rates.next_back() }
     }
 
-    /// The loop of a course-unstable ship; `None` for a stable ship.
+    /// Loop of a course-unstable ship; `None` for a stable ship.
     pub fn instability(&self) -> Option<Loop> {
         let falls = |pair: &[f64]| pair[1] < pair[0];
         let from = self.rudder.windows(2).position(falls)?;
@@ -98,7 +98,7 @@ impl SteadyCurve {
         Some(Loop { width: high - low, height: rates.next_back().unwrap_or(first) - first })
     }
 
-    /// Figures of a spiral up to this rudder, rad.
+    /// Characteristics of a spiral up to this rudder, rad.
     pub(crate) fn figures(&self, rudder: f64) -> Figures {
         let instability = self.instability();
         let of_loop = |value: fn(Loop) -> f64| Some(to_deg(instability.map_or(0.0, value)));

@@ -14,7 +14,7 @@ use trial::Trial;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::standard;
 
-/// A ship of K = 0.1 1/s and T = 16.3 s whose damping grows with the cube of its yaw rate, 75 m long at 6 m/s.
+/// Ship of K = 0.1 1/s and T = 16.3 s whose damping grows with the cube of its yaw rate, 75 m long at 6 m/s.
 pub(crate) fn identified_ship() -> IdentifiedShip {
     let parameters = vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 60.0];
     let sd = [2e-3, 1.5e-4, 1e-3, 6.0];
@@ -50,7 +50,7 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
     }
 }
 
-/// A hull of a form as it is expected of the ship of [`identified_ship`], with a tenth of the expected deviations.
+/// Hull of a form with the expected coefficients of [`identified_ship`] and a tenth of the expected deviations.
 pub(crate) fn hull(form: &str) -> IdentifiedHull {
     let (length_m, speed_m_s) = (75.0, 6.0);
     let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
@@ -83,7 +83,7 @@ pub(crate) fn hull(form: &str) -> IdentifiedHull {
     }
 }
 
-/// A hull taken from another one to the same loading, with deviations so many times those of the other.
+/// Hull converted from another hull at the same loading, with its deviations times `factor`.
 pub(crate) fn at_same_loading(hull: &IdentifiedHull, factor: f64) -> IdentifiedHull {
     let form = hull.form().expect("made up");
     let size = hull.coefficients.len();
@@ -92,13 +92,13 @@ pub(crate) fn at_same_loading(hull: &IdentifiedHull, factor: f64) -> IdentifiedH
     hull.at_loading(&ship, form.coefficients(), [covariance, DMatrix::identity(size, size)])
 }
 
-/// The ships of what is known.
+/// Mixture of one identified ship.
 pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
     ShipMixture::new(vec![(known, 1.0)]).expect("made up")
 }
 
-/// A record of a drawn ship, a row every `period` s, with noise of the heading in rad; with number 0 of the most
-/// probable one in a calm.
+/// Record of a sampled ship, a row every `period` s, with noise of the heading in rad; number 0 is the most probable
+/// ship in a calm.
 pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
     let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
     let requested: Manoeuvre = kind.parse().expect("known");

@@ -1,4 +1,5 @@
-//! A recorded turn with a held rudder: its figures, and those of drawn ships under the same rudder.
+//! Recorded turn with a held rudder: its characteristics, and the characteristics of sampled ships under the same
+//! rudder.
 
 use rand::RngExt;
 use rand_distr::StandardNormal;
@@ -11,19 +12,19 @@ use crate::figures::{self, Figures};
 use crate::median_track::{Turn, median_track};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
-/// Rudder angle, relative to the largest, above which the rudder counts as held.
+/// Minimum rudder angle of a held rudder, relative to the maximum.
 const MIN_HELD: f64 = 0.8;
 
-/// Extension of the held rudder for ships that turn more slowly than that of the record, relative to its time.
+/// Extension of the held rudder for ships that turn more slowly than the recorded ship, relative to the recorded time.
 const EXTENSION: f64 = 2.0;
 
 /// Change of heading at which a track ends, rad: one and a half circles.
 const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
 
-/// Assumed duration of a record of unknown length and speed, in times of the ship.
+/// Assumed duration of a record of unknown length and speed, in timescales of the ship.
 const DEFAULT_TIMESCALES: f64 = 40.0;
 
-/// Drawn ships whose tracks are kept.
+/// Number of sampled ships whose tracks are kept.
 const DRAWN_TRACKS: usize = 40;
 
 /// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
@@ -38,8 +39,8 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
     simulate::motion::current(&at_rows(trial.time()), &at_rows(trial.heading()), &track)
 }
 
-/// The record with the current removed from its positions, and that current: the given current, or else that of the
-/// record, if it determines one.
+/// Record with the current removed from the positions, and that current: the given one, or else the current that the
+/// record determines.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
     match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
         Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
@@ -47,7 +48,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
     }
 }
 
-/// The motion of a drawn ship with a random error of the removed current, from the first row on.
+/// Motion of a sampled ship with a random error of the removed current, from the first row on.
 pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
@@ -59,10 +60,10 @@ pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: 
     passage
 }
 
-/// A rudder that is put over and held; times on the clock of the record, s.
+/// Turn with a rudder that is put over and held; times on the clock of the record, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldTurn {
-    /// First row of the record.
+    /// Time of the first row of the record.
     start: f64,
     /// Time of the execute.
     pub execute: f64,
@@ -72,12 +73,12 @@ pub struct HeldTurn {
     pub side: f64,
     /// Maximum rudder angle to that side, rad.
     pub rudder: f64,
-    /// Rudder angle before, rad.
+    /// Rudder angle before the execute, rad.
     pub before: f64,
 }
 
 impl HeldTurn {
-    /// The turn with the largest rudder; `None` for a rudder that never moves.
+    /// Turn with the maximum rudder; `None` for a rudder that never moves.
     pub fn of(trial: &Trial) -> Option<Self> {
         let (times, values) = (trial.rudder_signal().times(), trial.rudder_signal().values());
         let away = |value: f64| value - values[0];
@@ -115,12 +116,12 @@ impl HeldTurn {
         &passage.heading[self.first_row(passage).min(passage.heading.len())..]
     }
 
-    /// Figures of a turn up to the end of that of the record.
+    /// Characteristics of a turn up to the end of the recorded turn.
     pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         self.whole_figures(&passage.until(self.until - self.start))
     }
 
-    /// Figures of a turn up to its end; its clock starts with the record.
+    /// Characteristics of a turn up to its end; the clock starts with the record.
     pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
         let first = self.first_row(passage);
         let begin = passage.at(&passage.heading, self.approach());
@@ -131,8 +132,8 @@ impl HeldTurn {
         figures
     }
 
-    /// The track from the execute on, where the course is north: north and east in lengths of the ship, one and a half
-    /// circles at most. `None` if there is no track.
+    /// Track from the execute on, where the course is north: north and east in ship lengths, at most one and a half
+    /// circles. `None` if there is no track.
     fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
         let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
         let first = self.first_row(passage);
@@ -146,7 +147,7 @@ impl HeldTurn {
         Some((first..track.len()).take_while(is_shown).map(place).collect())
     }
 
-    /// The rudder of the record up to the end of the turn, and held from there.
+    /// Rudder of the record up to the end of the turn, and held from there.
     pub(crate) fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
@@ -156,12 +157,12 @@ impl HeldTurn {
     }
 }
 
-/// A recorded turning circle.
+/// Recorded turning circle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredCircle {
-    /// The rudder.
+    /// Held rudder.
     pub turn: HeldTurn,
-    /// Its figures of merit.
+    /// Figures of merit.
     pub figures: Figures,
     /// North and east in ship lengths from the execute on, where the course is north; `None` without positions or
     /// length.
@@ -169,7 +170,7 @@ pub struct MeasuredCircle {
 }
 
 impl MeasuredCircle {
-    /// The circle of a record without the current that it shows; `None` of a zig-zag, and of a turn of less than 90°.
+    /// Turning circle of a record, with its current removed; `None` for a zig-zag, and for a turn of less than 90°.
     pub fn of(trial: &Trial) -> Option<Self> {
         if ZigZag::of(trial).is_ok() {
             return None;
@@ -186,17 +187,16 @@ impl MeasuredCircle {
     }
 }
 
-/// A recorded turn from above, with its prediction: tracks of north and east in lengths of the ship, from the execute
-/// on.
+/// Plan view of a recorded turn with its prediction: tracks of north and east in ship lengths, from the execute on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnTracks {
     /// Recorded track.
     pub measured: Vec<[f64; 2]>,
     /// Track of the most probable ship.
     pub most_probable: Vec<[f64; 2]>,
-    /// Tracks of some drawn ships.
+    /// Tracks of some sampled ships.
     pub drawn: Vec<Vec<[f64; 2]>>,
-    /// At every change of heading the median place of all drawn ships.
+    /// Median position of the sampled ships at every change of heading.
     pub median: Vec<[f64; 2]>,
 }
 
@@ -221,8 +221,8 @@ impl TurnTracks {
     }
 }
 
-/// A record resampled to the rows of a simulation with this timescale, s; with velocity and track where it has
-/// positions and a length, m. `None` without headings.
+/// Record resampled to the rows of a simulation with this timescale, s; with velocity and track if it has positions and
+/// a length, m. `None` without headings.
 pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
     let period = simulated_manoeuvre::period(timescale);
     let count = (trial.duration() / period) as usize + 1;
@@ -255,7 +255,7 @@ mod tests {
     use super::*;
     use trial::{Columns, Origin};
 
-    /// A circle of radius 50 m after a straight approach to the north-east, in lengths of 10 m; the rudder moves in the
+    /// Circle of radius 50 m after a straight approach to the north-east, in lengths of 10 m; the rudder moves in the
     /// second before it, on the last metre of the approach.
     #[test]
     fn a_recorded_circle_has_its_advance_and_diameter() {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use campaign::failure::Failure;
 use study::work::earlier::EarlierModel;
 
-/// Name of a model, with its text unless it is a file.
+/// Name of a model, with its text unless the model is a file.
 pub type ModelText = (String, Option<String>);
 
-/// Models of earlier trials, read from files or texts.
+/// Models of earlier trials, read from files or texts. Fails if a file or text is not a model.
 pub fn earlier(models: &[ModelText]) -> Result<Vec<EarlierModel>, Failure> {
     let read = |(name, text): &ModelText| match text {
         Some(text) => EarlierModel::of_document(name, text).map(|model| vec![model]),

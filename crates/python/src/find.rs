@@ -1,4 +1,4 @@
-//! `find`: the manoeuvres inside long logs.
+//! `find`: manoeuvres in long logs.
 
 use document::Warnings;
 use pyo3::prelude::*;
@@ -10,7 +10,7 @@ use crate::options::request;
 use crate::record::sentences;
 use crate::wait::patiently;
 
-/// Document of the manoeuvres found, and warnings; `options` are those of the command line.
+/// Document of the manoeuvres found, and warnings; `options` are options of the command line.
 #[pyfunction]
 pub fn find(py: Python<'_>, logs: Vec<String>, options: Vec<String>) -> PyResult<(String, Vec<String>)> {
     patiently(py, move || {

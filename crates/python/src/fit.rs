@@ -1,4 +1,4 @@
-//! `fit`: every method on the records together.
+//! `fit`: joint fits of records by several methods.
 
 use campaign::failure::Failure;
 use campaign::scenario::name;
@@ -31,20 +31,20 @@ pub struct PyFit {
 
 #[pymethods]
 impl PyFit {
-    /// Record number `place` as fitted, at the scale of the first.
+    /// Record number `place` as fitted, at the scale of the first record; `None` if there is none.
     fn record(&self, place: usize) -> Option<PyRecord> {
         self.trials.get(place).cloned().map(PyRecord::plain)
     }
 
-    /// Replay of a record by the estimate of a method; `None` if the method has none.
+    /// Replay of a record by the estimate of a method; `None` if the method gives no estimate.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
     }
 }
 
-/// Fit of records by the named methods, or by the default ones, and by the caller's functions; `priors` are models of
-/// earlier trials.
+/// Fit of records by the named methods, or by the default methods, and by functions of the caller; `priors` are models
+/// of earlier trials.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
@@ -55,7 +55,7 @@ pub fn fit(
     seed: Option<u64>,
     priors: Vec<ModelText>,
 ) -> PyResult<PyFit> {
-    // The document lists warnings of reading, as on the command line; Python has already issued them.
+    // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, validation) = (trials(&records), trials(&validate));
     patiently(py, move || {

@@ -14,8 +14,8 @@ use crate::options::request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
-/// Document of a prediction, and warnings. `models` are file names, or names with a text; `options` are those of the
-/// command line, `priors` models of earlier trials.
+/// Document of a prediction, and warnings. `models` are file names, or names with a text; `options` are options of the
+/// command line, `priors` are models of earlier trials.
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
@@ -24,7 +24,7 @@ pub fn predict(
     options: Vec<String>,
     priors: Vec<ModelText>,
 ) -> PyResult<(String, Vec<String>)> {
-    // The document lists warnings of reading, as on the command line; Python has already issued them.
+    // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&replay).collect();
     let records = trials(&replay);
     patiently(py, move || {

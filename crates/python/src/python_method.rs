@@ -9,7 +9,7 @@ use trial::Trial;
 
 use crate::record::PyRecord;
 
-/// Labelled functions. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and optionally their
+/// Labelled Python functions. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and optionally their
 /// covariance, row by row.
 pub type PythonMethods = Vec<(String, Py<PyAny>)>;
 

@@ -1,4 +1,4 @@
-//! Failures as exceptions, with the message that the command line would show.
+//! Failures as Python exceptions, with the message of the command line.
 
 use campaign::failure::{Blame, Failure};
 use pyo3::create_exception;
@@ -15,7 +15,7 @@ create_exception!(
 create_exception!(kempf, WorkError, PyRuntimeError, "The work could not be done, as when a disk is full.");
 create_exception!(kempf, KempfWarning, PyUserWarning, "A remark on a record or a result, which remains valid.");
 
-/// The exception of a failure.
+/// Python exception for a failure.
 pub fn raised(failure: Failure) -> PyErr {
     match failure.blame {
         Blame::Input => KempfError::new_err(failure.message),

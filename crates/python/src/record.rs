@@ -16,16 +16,16 @@ use crate::options::request;
 use crate::raise::raised;
 use crate::wait::patiently;
 
-/// A record as the methods see it.
+/// Record as used by the methods.
 #[pyclass(frozen, name = "Record", module = "kempf._kempf")]
 pub struct PyRecord {
-    /// The record.
+    /// Trial of the record.
     pub trial: Trial,
     warnings: Vec<Warning>,
 }
 
 impl PyRecord {
-    /// Record without warnings.
+    /// Record of a trial, without warnings.
     pub fn plain(trial: Trial) -> Self {
         Self { trial, warnings: Vec::new() }
     }
@@ -87,14 +87,14 @@ impl PyRecord {
         self.trial.heading_from_yaw_rate()
     }
 
-    /// Names of the columns, as they are written to a file.
+    /// Names of the columns, as in a file.
     fn columns(&self) -> Vec<String> {
         let channels = Channel::ALL.into_iter().filter(|channel| self.trial.channel(*channel).is_some());
         let unknown = self.trial.unknown().iter().map(|(name, _)| name.clone());
         std::iter::once(TIME_COLUMN.to_owned()).chain(channels.map(Channel::column_name)).chain(unknown).collect()
     }
 
-    /// Column in the unit of its name; `None` for a missing one.
+    /// Column in the unit of its name; `None` if the column is missing.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> Option<Bound<'py, PyArray1<f64>>> {
         if name == TIME_COLUMN {
             return Some(PyArray1::from_slice(py, self.trial.time()));
@@ -121,7 +121,7 @@ impl PyRecord {
     }
 }
 
-/// Records of a file or of a folder; `options` are those of the command line.
+/// Records of a file or of a folder; `options` are options of the command line.
 #[pyfunction]
 pub fn read(py: Python<'_>, path: PathBuf, options: Vec<String>) -> PyResult<Vec<PyRecord>> {
     patiently(py, move || {
@@ -135,16 +135,16 @@ pub fn read(py: Python<'_>, path: PathBuf, options: Vec<String>) -> PyResult<Vec
     })
 }
 
-/// A column passed from Python.
+/// Column passed from Python.
 #[derive(FromPyObject)]
 pub enum PyColumn<'py> {
-    /// Numbers; NaN for a missing one.
+    /// Numbers; NaN for a missing value.
     Numbers(PyReadonlyArray1<'py, f64>),
-    /// Anything else, such as stamps of date and time.
+    /// Texts of any other content, such as stamps of date and time.
     Texts(Vec<String>),
 }
 
-/// Record from columns, read like a file of them.
+/// Record from columns, read like a file with these columns.
 #[pyfunction]
 pub fn record_of(
     py: Python<'_>,
@@ -174,7 +174,7 @@ pub fn of_table(
     Ok(PyRecord { trial, warnings: warnings.ranked() })
 }
 
-/// CSV text of columns, with the digits that reproduce every number.
+/// CSV text of columns, with the digits that reproduce every number. Fails if lengths differ.
 fn table(columns: &[(String, PyColumn)]) -> Result<Vec<u8>, Failure> {
     let lengths: Vec<usize> = columns.iter().map(|(_, column)| column.len()).collect();
     let rows = lengths.first().copied().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `run`: a whole scenario, as the command line runs it.
+//! `run`: a complete scenario, as run by the command line.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -68,7 +68,7 @@ impl Observer for Watch {
     }
 }
 
-/// Thread pool of a study.
+/// Thread pool of a study. Fails if the number of threads is out of range or the threads cannot be started.
 fn pool(count: i64) -> Result<ThreadPool, Failure> {
     if !(1..=MAX_THREADS).contains(&count) {
         return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MAX_THREADS}")));
@@ -77,7 +77,7 @@ fn pool(count: i64) -> Result<ThreadPool, Failure> {
     pool.map_err(|error| Failure::work(format!("failed to start {count} threads: {error}")))
 }
 
-/// Runs the missing trials of a study and publishes it; returns its document.
+/// Document of a study, after its missing trials were run and the study was published.
 fn study(
     scene: &ScenarioInput,
     out: Option<PathBuf>,
@@ -97,8 +97,8 @@ fn study(
     publish::document(&stored, &summary, &folder)
 }
 
-/// Runs a scenario; returns its document, notes and warnings. `progress` is called with the number of finished trials
-/// and the largest number of trials.
+/// Document, notes and warnings of a scenario that is run. `progress` is called with the number of finished trials and
+/// the maximum number of trials.
 #[pyfunction]
 #[pyo3(signature = (scene, out, threads, seed, restart, progress))]
 pub fn run(
@@ -118,7 +118,8 @@ pub fn run(
     Ok((text, notes, warnings))
 }
 
-/// Waits for observed work; `progress` is called with the number of finished steps and the largest number of steps.
+/// Result of observed work, after waiting; `progress` is called with the number of finished steps and the maximum
+/// number of steps.
 pub fn watched<T: Send + 'static>(
     py: Python<'_>,
     watch: &Watch,
@@ -144,7 +145,7 @@ pub fn watched<T: Send + 'static>(
     }
 }
 
-/// Requests a stop and waits until the rows are stored, or for a second signal. The message of the interruption says
+/// Requests a stop and waits until the rows are stored, or for a second signal. The message of the interruption states
 /// what was stored.
 fn stopped<T: Send + 'static>(py: Python<'_>, watch: &Watch, mut underway: Underway<T>, raised: PyErr) -> PyErr {
     watch.is_asked.store(true, Ordering::Relaxed);

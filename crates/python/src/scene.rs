@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use crate::raise::raised;
 
-/// A scenario as passed from Python.
+/// Scenario as passed from Python.
 #[derive(FromPyObject)]
 pub struct ScenarioInput {
     /// Path of the file, or name of the text in messages.
@@ -21,7 +21,7 @@ pub struct ScenarioInput {
 }
 
 impl ScenarioInput {
-    /// Resolves the scenario; fails like the command line.
+    /// Resolved scenario; fails if the command line would fail.
     pub fn read(&self, seed: Option<u64>) -> Result<Scenario, Failure> {
         let Some(text) = &self.text else { return Scenario::read(&self.path, seed) };
         let name = self.path.file_stem().unwrap_or(Path::new("scenario").as_os_str());
@@ -34,7 +34,7 @@ impl ScenarioInput {
     }
 }
 
-/// TOML text of a JSON document.
+/// TOML text of a JSON document. Fails if the document has no form in TOML.
 #[pyfunction]
 pub fn toml_of(json: &str) -> PyResult<String> {
     let value: Value = serde_json::from_str(json).map_err(|error| raised(Failure::input(error)))?;

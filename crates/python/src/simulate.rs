@@ -12,7 +12,7 @@ use crate::record::{PyRecord, of_table};
 use crate::scene::ScenarioInput;
 use crate::wait::patiently;
 
-/// Selected trials, each with its truth as JSON. Records pass through the file format, as from the command line.
+/// Selected trials, each with its truth as JSON. Records pass through the file format, as on the command line.
 #[pyfunction]
 pub fn simulate(
     py: Python<'_>,

@@ -27,18 +27,18 @@ pub struct PyTrace {
 
 #[pymethods]
 impl PyTrace {
-    /// Record number `place` as fitted, at the scale of the first.
+    /// Record number `place` as fitted, at the scale of the first record; `None` if there is none.
     fn record(&self, place: usize) -> Option<PyRecord> {
         self.records.get(place).map(|record| PyRecord::plain(record.trial.clone()))
     }
 
-    /// Replays of a record by the base, and by the average of the structures.
+    /// Replays of a record by the base, and by the average of the structures; `None` without this record.
     fn replays<'py>(&self, py: Python<'py>, place: usize) -> Option<[ReplayArrays<'py>; 2]> {
         Some(self.records.get(place)?.replays.each_ref().map(|replay| curve(py, replay)))
     }
 }
 
-/// Trace of records; `options` are those of the command line, `priors` models of earlier trials.
+/// Trace of records; `options` are options of the command line, `priors` are models of earlier trials.
 #[pyfunction]
 pub fn trace(
     py: Python<'_>,
@@ -47,7 +47,7 @@ pub fn trace(
     options: Vec<String>,
     priors: Vec<ModelText>,
 ) -> PyResult<PyTrace> {
-    // The document lists warnings of reading, as on the command line; Python has already issued them.
+    // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, validation) = (trials(&records), trials(&validate));
     patiently(py, move || {

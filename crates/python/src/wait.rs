@@ -12,24 +12,24 @@ use crate::raise::raised;
 /// Polling interval for signals.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Stack size of the thread, bytes: that of the main thread of the command line.
+/// Stack size of the thread, bytes: equal to the main thread of the command line.
 const STACK: usize = 8 << 20;
 
 /// Running work.
 pub struct Underway<T>(Receiver<Result<T, Failure>>);
 
 impl<T: Send + 'static> Underway<T> {
-    /// Starts work. Fails if no thread can be created.
+    /// Work started on a new thread. Fails if no thread can be created.
     pub fn start(work: impl FnOnce() -> Result<T, Failure> + Send + 'static) -> PyResult<Self> {
         let (send, receive) = channel();
-        // The receiver is gone after the wait was given up.
+        // The receiver no longer exists if the wait was abandoned.
         let run = move || drop(send.send(work()));
         let thread = thread::Builder::new().name("kempf".into()).stack_size(STACK).spawn(run);
         thread.map_err(|error| raised(Failure::work(format!("failed to start a thread: {error}"))))?;
         Ok(Self(receive))
     }
 
-    /// Waits one interval for the result, without the interpreter lock; `None` while the work runs.
+    /// Result after a wait of one interval, without the interpreter lock; `None` while the work runs.
     pub fn wait(&mut self, py: Python<'_>) -> Option<PyResult<T>> {
         let receive = &mut self.0;
         match py.detach(move || receive.recv_timeout(LOOK)) {
@@ -42,8 +42,8 @@ impl<T: Send + 'static> Underway<T> {
     }
 }
 
-/// Runs work and waits for its result. A signal that raises, such as Ctrl-C, ends the wait at once, while the work runs
-/// to its end.
+/// Result of work that is run and waited for. A signal that raises, such as Ctrl-C, ends the wait at once, while the
+/// work continues to its end.
 pub fn patiently<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,

@@ -1,5 +1,5 @@
-//! An axis over the coordinate ranges of plotters: linear, logarithmic, logarithmic with a separate place for zero, and
-//! a list of names; with its ticks.
+//! An axis over the coordinate ranges of plotters, with its ticks: linear, logarithmic, logarithmic with a separate
+//! place for zero, or a list of names.
 
 use std::ops::Range;
 
@@ -12,23 +12,23 @@ use crate::fonts::text_width;
 use crate::lines::wrap;
 use crate::number;
 
-/// Share of a logarithmic axis that belongs to zero and the break; where in it zero stands, and where the break.
+/// Share of a logarithmic axis that belongs to zero and the break; the places of zero and of the break.
 const ZERO_SLOT: f64 = 0.21;
 const ZERO_AT: f64 = 0.08;
 const BREAK_AT: f64 = 0.155;
 /// Maximum magnitude on a linear axis.
 const MAX_MAGNITUDE: f64 = 1e100;
-/// Lengths of the axis beyond its ends where all that lies farther off is drawn: lines run the same way, and whole
-/// numbers would overflow.
+/// Maximum distance beyond the ends of an axis at which values are drawn, in lengths of the axis. Lines keep their
+/// direction, and larger distances would overflow integers.
 const FAR: f64 = 20.0;
-/// Maximum number of intervals between ticks that an axis asks for.
+/// Maximum number of intervals between the ticks of an axis.
 pub(crate) const MAX_TICKS: usize = 10;
-/// Room for labels right of an axis, in font sizes.
+/// Margin for labels right of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
-/// Decades of a logarithmic axis, up to which it has lines between them.
+/// Maximum number of decades of a logarithmic axis with lines between the decades.
 const MAX_TICKED_DECADES: i32 = 6;
 
-/// How an axis is divided.
+/// Division of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Division {
     /// Equal steps of 1, 2 or 5 times a power of ten.
@@ -38,14 +38,14 @@ pub enum Division {
     Angle,
     /// Seconds and minutes, without free space at the ends.
     Time,
-    /// Equal factors; a zero has a place of its own beyond a break, negative values are left out.
+    /// Equal factors; zero has a separate place beyond a break, and negative values are omitted.
     Factors,
     /// From 0 to 100 %, whatever the data.
     Percent,
 }
 
 impl Division {
-    /// What a reader counts in over a span: units, thirds of a right angle or of a minute, right angles or minutes.
+    /// Unit of the ticks over a span: one, 30° or 30 s, 90° or 60 s.
     fn unit(self, span: f64) -> f64 {
         match (self, span) {
             (Self::Time, 1e3..) => 60.0,
@@ -62,21 +62,21 @@ enum AxisScale {
     Log {
         zero: bool,
     },
-    /// One unit a name, the first at 0.
+    /// One unit per name, the first at 0.
     Names,
 }
 
-/// One axis of a panel: the ends, the scale, and the ticks that are drawn.
+/// One axis of a panel: the ends, the scale, and the ticks.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Axis {
     /// Value at the left or lower end.
     lo: f64,
-    /// Value at the right or upper end, below `lo` where names run downwards.
+    /// Value at the right or upper end, below `lo` if names run downwards.
     hi: f64,
     scale: AxisScale,
-    /// The last value with a tick: beyond is room for text.
+    /// Maximum value with a tick: the range beyond is free for text.
     last: f64,
-    /// Values with their labels.
+    /// Tick values with their labels.
     pub ticks: Vec<(f64, String)>,
 }
 
@@ -85,7 +85,7 @@ impl Axis {
         Self { lo, hi, scale, last: f64::INFINITY, ticks: Vec::new() }
     }
 
-    /// From `lo` to `hi`; a range that is empty or not finite is widened to something that can be drawn.
+    /// Linear axis from `lo` to `hi`; a range that is empty or not finite is widened to one that can be drawn.
     pub(crate) fn linear(lo: f64, hi: f64, division: Division) -> Self {
         let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
             (true, true) => (lo.min(hi), lo.max(hi)),
@@ -93,7 +93,7 @@ impl Axis {
             (false, true) => (hi, hi),
             (false, false) => (0.0, 1.0),
         };
-        // Beyond the largest the arithmetic of ticks overflows, below the smallest all values are one to plotters.
+        // Beyond the maximum the arithmetic of ticks overflows; below the minimum all values are equal for plotters.
         let (lo, hi) = (lo.clamp(-MAX_MAGNITUDE, MAX_MAGNITUDE), hi.clamp(-MAX_MAGNITUDE, MAX_MAGNITUDE));
         let smallest = (1e-9 * lo.abs().max(hi.abs())).max(1e-15);
         let half = if lo.abs() < smallest { 1.0 } else { 0.05 * lo.abs() };
@@ -101,13 +101,13 @@ impl Axis {
         Self::new(lo, hi, AxisScale::Linear(division))
     }
 
-    /// Covers the finite `values` with a margin of `pad` of their range on either side.
+    /// Axis over the finite `values`, with a margin of `pad` times their range on either side.
     pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, division: Division) -> Self {
         let (lo, hi) = range(values).unwrap_or((f64::NAN, f64::NAN));
         Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), division)
     }
 
-    /// Covers the positive `values` on a logarithmic scale; a zero among them gets a place of its own before a break.
+    /// Logarithmic axis over the positive `values`; a zero among them gets a separate place before a break.
     pub(crate) fn log_covering(values: &[f64]) -> Self {
         let positive = range(values.iter().copied().filter(|v| *v > 0.0));
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
@@ -116,12 +116,12 @@ impl Axis {
         Self::new(lo / widen, hi * widen, AxisScale::Log { zero: values.contains(&0.0) })
     }
 
-    /// Names of rows, one unit each, the first at the top; the axis ends at the edges of the rows.
+    /// Axis of row names, one unit each, the first at the top; it ends at the edges of the rows.
     pub(crate) fn rows(names: &[String], edge: f64) -> Self {
         Self::names(names, [names.len().max(1) as f64 - 1.0 + edge, -edge])
     }
 
-    /// Names of columns, one unit each, the first at the left.
+    /// Axis of column names, one unit each, the first at the left.
     pub(crate) fn columns(names: &[String]) -> Self {
         Self::names(names, [-0.5, names.len().max(1) as f64 - 0.5])
     }
@@ -131,17 +131,18 @@ impl Axis {
         Self { ticks, ..Self::new(lo, hi, AxisScale::Names) }
     }
 
-    /// The same axis without ticks beyond a value above its lower end.
+    /// The axis without ticks above the value `last`.
     pub(crate) fn labelled_until(self, last: f64) -> Self {
         Self { last, ..self }
     }
 
-    /// The same axis from `lo` to `hi`, which are in order.
+    /// The axis from `lo` to `hi`, which are in order.
     pub(crate) fn between(self, lo: f64, hi: f64) -> Self {
         Self { lo, hi, ..self }
     }
 
-    /// Kind, ends and where the scale begins as a fraction, or the names: what a value is found with from its place.
+    /// Description from which a value can be computed from its place: kind, ends, and the fraction where the scale
+    /// begins, or the names.
     pub(crate) fn described(&self) -> String {
         let (lo, hi) = (self.lo.min(self.hi), self.lo.max(self.hi));
         match &self.scale {
@@ -151,22 +152,22 @@ impl Axis {
         }
     }
 
-    /// Values at its ends.
+    /// Values at the ends of the axis.
     pub(crate) fn ends(&self) -> (f64, f64) {
         (self.lo, self.hi)
     }
 
-    /// `true` if it is logarithmic.
+    /// `true` if the axis is logarithmic.
     pub(crate) fn is_logarithmic(&self) -> bool {
         matches!(self.scale, AxisScale::Log { .. })
     }
 
-    /// `true` if it is a list of names.
+    /// `true` if the axis is a list of names.
     pub(crate) fn is_names(&self) -> bool {
         self.scale == AxisScale::Names
     }
 
-    /// Where the axis is broken, as a fraction.
+    /// Place of the break, as a fraction of the axis; `None` without a break.
     pub(crate) fn break_at(&self) -> Option<f64> {
         (self.scale == AxisScale::Log { zero: true }).then_some(BREAK_AT)
     }
@@ -180,12 +181,12 @@ impl Axis {
         is_on_scale && value.is_finite()
     }
 
-    /// The labels of its ticks.
+    /// Labels of the ticks.
     pub(crate) fn labels(&self) -> impl Iterator<Item = &str> {
         self.ticks.iter().map(|(_, label)| label.as_str())
     }
 
-    /// The label of a tick.
+    /// Label of a tick.
     pub(crate) fn label(&self, value: f64) -> String {
         self.ticks.iter().find(|(tick, _)| *tick == value).map_or_else(String::new, |(_, label)| label.clone())
     }
@@ -195,13 +196,13 @@ impl Axis {
         self.labels().map(|label| text_width(label, font, false)).fold(0.0, f64::max)
     }
 
-    /// The same axis with labels broken into lines of a width, points.
+    /// The axis with labels wrapped to a width, points.
     pub(crate) fn wrapped(mut self, font: f64, width: f64) -> Self {
         self.ticks.iter_mut().for_each(|(_, label)| *label = wrap(label, font, false, width).join("\n"));
         self
     }
 
-    /// The same axis with about so many intervals between its ticks, and two ticks at least; names are all shown.
+    /// The axis with about `count` intervals between its ticks, and at least two ticks; names are all shown.
     pub(crate) fn ticked(mut self, count: usize) -> Self {
         match self.scale {
             AxisScale::Linear(division) => self.ticks = self.linear_ticks(count.max(1), division),
@@ -211,8 +212,8 @@ impl Axis {
         self
     }
 
-    /// The same axis with as many ticks as their labels leave room for, `width` and `font` in points. Names are broken
-    /// into lines where their words leave room for that.
+    /// The axis with as many ticks as there is room for labels, `width` and `font` in points. Names are wrapped if
+    /// their words fit.
     pub(crate) fn fitted(self, width: f64, font: f64) -> Self {
         let pitch = width / self.ticks.len().max(1) as f64 - 0.4 * font;
         let has_room = |label: &str| label.split(' ').all(|word| text_width(word, font, false) <= pitch);
@@ -223,13 +224,13 @@ impl Axis {
         let fitting = (2..=MAX_TICKS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
         let mut fewest = fitting.unwrap_or_else(|| self.ticked(1));
         if !fewest.fits(width, font) && fewest.ticks.len() > 2 {
-            // The ends alone tell the scale.
+            // The ends alone determine the scale.
             fewest.ticks.drain(1..fewest.ticks.len() - 1);
         }
         fewest
     }
 
-    /// `true` if the labels under an axis of this width stand clear of each other, and of what is beside it.
+    /// `true` if the labels under an axis of this width do not touch each other, nor the next panel.
     pub(crate) fn fits(&self, width: f64, font: f64) -> bool {
         let place = |value: f64| f64::from(self.map(&value, (0, 1_000_000))) * 1e-6 * width;
         let half = |label: &str| text_width(label, font, false) / 2.0;
@@ -242,7 +243,7 @@ impl Axis {
     fn linear_ticks(&self, count: usize, division: Division) -> Vec<(f64, String)> {
         let (lo, hi) = (self.lo, self.hi.min(self.last));
         let unit = division.unit(hi - lo);
-        // A single label says nothing about the scale, so the step shrinks until there are two.
+        // A single label does not determine the scale, so the step shrinks until there are two.
         let mut values =
             (count + 1..count + 20).map(|most| RangedCoordf64::from(lo / unit..hi / unit).key_points(most));
         let values: Vec<f64> = values.find(|values| values.len() > 1).unwrap_or_default();
@@ -251,8 +252,8 @@ impl Axis {
         values.into_iter().zip(labels).collect()
     }
 
-    /// Powers of ten; where they are few, the digits between them that are needed to read the scale; equal steps where
-    /// not even those give two labels.
+    /// Ticks of a logarithmic axis: powers of ten; if these are few, also the digits between them that are needed to
+    /// read the scale; equal steps if even these give fewer than two labels.
     fn log_ticks(&self, count: usize, zero: bool) -> Vec<(f64, String)> {
         const LEADING: [&[i32]; 4] = [&[1], &[1, 2, 5], &[1, 2, 3, 5], &[1, 2, 3, 4, 5, 6, 7, 8, 9]];
         let (first, last) = ((self.lo.log10() - 1e-9).ceil() as i32, (self.hi.log10() + 1e-9).floor() as i32);
@@ -287,7 +288,7 @@ impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
-    /// Place of a value; one without a place is far beyond the lower end.
+    /// Place of a value; a value without a place is far beyond the lower end.
     fn map(&self, value: &f64, limit: PixelRange) -> i32 {
         let (start, end) = limit;
         let AxisScale::Log { zero } = self.scale else {
@@ -304,7 +305,7 @@ impl Ranged for Axis {
         LogCoord::from((self.lo..self.hi).log_scale()).map(&value, (part(if zero { ZERO_SLOT } else { 0.0 }), end))
     }
 
-    /// The ticks; between those of a logarithmic axis of few decades the other digits, where light lines are requested.
+    /// Key points: the ticks; for light lines on a logarithmic axis of few decades, the other digits between them.
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         if !hint.weight().allow_light_points() {
             return self.ticks.iter().map(|(value, _)| *value).collect();
@@ -323,7 +324,7 @@ impl Ranged for Axis {
     }
 }
 
-/// Labels of equidistant ticks, all with the decimals that their distance needs.
+/// Labels of equidistant ticks, all with the decimals that their distance requires.
 fn linear_labels(ticks: &[f64]) -> Vec<String> {
     let step = if let [first, second, ..] = ticks { second - first } else { 0.0 };
     let largest = ticks.iter().fold(0.0_f64, |most, tick| most.max(tick.abs()));
@@ -332,7 +333,7 @@ fn linear_labels(ticks: &[f64]) -> Vec<String> {
         (scaled - scaled.round()).abs() < 1e-6 * scaled.max(1.0)
     };
     let decimals = (0..9).find(is_whole).unwrap_or(9) as usize;
-    // As many as tell a tick from the next.
+    // Enough digits to distinguish neighbouring ticks.
     let digits = (largest / step).log10().clamp(1.0, 12.0).ceil() as usize + 1;
     let label = |tick: &f64| match (step < 1e-5 || largest >= 1e6, tick.abs() < step / 2.0) {
         (true, true) => String::from("0"),
@@ -342,7 +343,7 @@ fn linear_labels(ticks: &[f64]) -> Vec<String> {
     ticks.iter().map(label).collect()
 }
 
-/// Minimum and largest finite value.
+/// Minimum and maximum finite value; `None` if there is none.
 pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.into_iter().filter(|v| v.is_finite()).map(|v| (v, v));
     finite.reduce(|(lo, hi), (v, _)| (lo.min(v), hi.max(v)))
@@ -385,7 +386,8 @@ mod tests {
         }
     }
 
-    /// Ranges over twenty decades: no more ticks than allowed, two at least, inside the range, with different labels.
+    /// Ranges over twenty decades: at most the allowed number of ticks, at least two, inside the range, with different
+    /// labels.
     #[test]
     fn ticks_fit_every_range() {
         for (lo, hi) in [(2.05, 4.95), (5.1, 9.9), (0.015, 0.045), (3.1, 3.9), (1e-9, 1e9), (0.5, 2e3)] {

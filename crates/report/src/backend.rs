@@ -1,6 +1,6 @@
-//! The drawing backend of plotters that writes SVG: coordinates in twentieths of a point, text measured with the
-//! embedded font. It alone knows the elements of SVG. Lines of one stroke that follow each other are one path, and so
-//! are filled circles of one size: a browser is slow with many elements. Text stays text, which can be searched.
+//! Drawing backend of plotters that writes SVG: coordinates in twentieths of a point, text measured with the embedded
+//! font. No other module writes SVG elements. Successive lines of one stroke are one path, and so are filled circles of
+//! one size: a browser is slow with many elements. Text stays text, so that it can be searched.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -22,17 +22,17 @@ use crate::markup::{is_markup, runs};
 use crate::palette::{Dash, PAPER};
 use crate::printable::is_printable;
 
-/// Units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
+/// Units per point on the page: 2.4 per dot at 600 dpi, so rounding to whole units is invisible.
 pub(crate) const UNITS: f64 = 20.0;
 
-/// Height of the sheet that is drawn on, units; the page ends where the figure does.
+/// Height of the drawing sheet, units; the page ends where the figure ends.
 const TALLEST: u32 = 2_000_000;
 
-/// Maximum number of repetitions of a dash pattern. A longer line goes to and fro until it is a band without visible
-/// dashes.
+/// Maximum number of repetitions of a dash pattern. A longer line oscillates so densely that it is a band without
+/// visible dashes.
 const MAX_REPEATS: f64 = 5000.0;
 
-/// What drawing returns; memory does not fail.
+/// Result of drawing; writing to memory does not fail.
 pub(crate) type Plotted<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
 
 type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
@@ -45,45 +45,45 @@ pub(crate) fn units(points: f64) -> i32 {
 /// A rectangle in units: left, top, right and bottom.
 pub(crate) type Bounds = [i32; 4];
 
-/// What elements drawn together share.
+/// Attributes shared by elements that are drawn together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SvgGroup {
-    /// Name that the key of the figure gives them; a page in a browser finds them by it.
+    /// Series name in the key of the figure, by which a page in a browser finds the elements.
     pub series: Option<String>,
-    /// `true` if they are intervals of the values of that series, which are no values themselves.
+    /// `true` if the elements are intervals of the values of that series, not values.
     pub is_interval: bool,
-    /// Pattern of their lines in widths of the line, and that width in points.
+    /// Dash pattern of their lines in line widths, and the line width in points.
     pub dash: Option<(Dash, f64)>,
-    /// Rectangle beyond which they are cut off.
+    /// Clip rectangle of the elements.
     pub clip: Option<Bounds>,
 }
 
 impl SvgGroup {
-    /// What belongs to a series of the key, where it has a name there.
+    /// Group of a series, with its name if it has one in the key.
     pub(crate) fn named(series: Option<&str>) -> Self {
         Self { series: series.map(str::to_owned), ..Self::default() }
     }
 }
 
-/// A group that is being filled.
+/// Group that is being filled.
 struct OpenGroup {
     group: SvgGroup,
-    /// Where its elements begin in the document.
+    /// Offset of its first element in the document.
     start: usize,
-    /// `true` if one of them reaches beyond the rectangle that cuts them.
+    /// `true` if an element reaches beyond the clip rectangle.
     is_beyond: bool,
 }
 
-/// A document that is being written.
+/// Document that is being written.
 struct SvgDocument {
     elements: String,
-    /// Style and data of the path that is being lengthened.
+    /// Style and data of the open path.
     path: Option<(String, String)>,
     group: Option<OpenGroup>,
     changes: Arc<Changes>,
 }
 
-/// The backend. Clones write into the same document.
+/// SVG backend. Clones write into the same document.
 #[derive(Clone)]
 pub(crate) struct Svg {
     width: u32,
@@ -110,7 +110,7 @@ impl Svg {
         self.document.borrow_mut().close_group();
     }
 
-    /// Enters an empty group that says where a panel is and what its axes are: kind, ends and title of either.
+    /// Writes an empty group with the place of a panel and its axes: kind, ends and title of either axis.
     pub(crate) fn panel(&self, [left, top, right, bottom]: Bounds, axes: [(String, &str); 2]) {
         let [(x, x_title), (y, y_title)] = axes.map(|(axis, title)| (escaped(&axis), escaped(title)));
         let (width, height) = (right - left, bottom - top);
@@ -143,13 +143,13 @@ impl SvgDocument {
         }
     }
 
-    /// Writes an element, after the path that was open.
+    /// Writes an element, after closing the open path.
     fn put(&mut self, element: &str) {
         self.close_path();
         self.elements.push_str(element);
     }
 
-    /// Lengthens the open path, or begins another. Where ink adds up (`alone`), lines stay apart.
+    /// Extends the open path, or begins another. If the style is translucent (`alone`), lines stay separate.
     fn lengthen(&mut self, style: String, data: &str, alone: bool) {
         match &mut self.path {
             Some((open, longer)) if *open == style && !alone => longer.push_str(data),
@@ -176,10 +176,10 @@ impl SvgDocument {
             let parts: Vec<String> = dash.iter().map(|part| units(part * width).to_string()).collect();
             let _ = write!(attributes, " stroke-dasharray=\"{}\"", parts.join(" "));
         }
-        // To cut costs the rasteriser a layer, so only what reaches beyond is cut.
+        // Clipping costs the rasteriser a layer, so only groups that reach beyond the rectangle are clipped.
         if let Some([left, top, right, bottom]) = group.clip.filter(|_| is_beyond) {
             let (width, height) = (right - left, bottom - top);
-            // Groups of one name cut the same rectangle.
+            // Groups of one name have the same clip rectangle.
             let name = format!("clip-{left}-{top}-{width}-{height}");
             let _ = write!(attributes, " clip-path=\"url(#{name})\"");
             let path = format!(
@@ -201,7 +201,7 @@ impl SvgDocument {
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
 
-    /// Notes whether an element reaches beyond what cuts its group.
+    /// Records whether an element reaches beyond the clip rectangle of its group.
     fn reach(&mut self, (x, y): BackendCoord, radius: i32) {
         if let Some(OpenGroup { group: SvgGroup { clip: Some(clip), .. }, is_beyond, .. }) = &mut self.group {
             let [left, top, right, bottom] = *clip;
@@ -295,7 +295,7 @@ impl DrawingBackend for Svg {
         Ok(())
     }
 
-    /// A disc; a ring, which plotters draws at the value of an error bar, would lie below its mark and is left out.
+    /// Draws a disc. A ring, which plotters draws at the value of an error bar, would be below its mark and is omitted.
     fn draw_circle<S: BackendStyle>(&mut self, at: BackendCoord, radius: u32, style: &S, fill: bool) -> BackendResult {
         let ink = style.color();
         let mut document = self.document.borrow_mut();
@@ -356,12 +356,12 @@ impl DrawingBackend for Svg {
     }
 }
 
-/// An attribute for ink that is not opaque: that of an element would be a layer of its own, slow to draw.
+/// Opacity attribute of translucent ink; an attribute of the whole element would need a layer of its own, slow to draw.
 fn opacity(ink: &str, alpha: f64) -> String {
     if alpha < 1.0 { format!(" {ink}-opacity=\"{alpha}\"") } else { String::new() }
 }
 
-/// A text for an element or for the value of an attribute. XML allows neither control characters nor some others, not
+/// Text for an element or for the value of an attribute. XML allows neither control characters nor some others, not
 /// even escaped.
 fn escaped(text: &str) -> String {
     let clean: String = text.chars().filter(|&c| !is_markup(c) && is_printable(c)).collect();
@@ -443,7 +443,7 @@ mod tests {
             drawn(|area, _| area.draw(&plotters::element::Text::new(text.text.clone(), (200, 400), text.style())));
         assert!(svg.contains("\na &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"), "{svg}");
         assert!(!svg.contains(['\u{7}', '\u{fffe}', '\u{e000}']) && svg.contains("font-size=\"160\""));
-        // Centred on the middle of its two lines, which are 1.15 sizes apart.
+        // Centred on the middle of its two lines, which are 1.15 font sizes apart.
         assert!(svg.contains("x=\"200\" y=\"366\"") && svg.contains("x=\"200\" y=\"550\""), "{svg}");
     }
 }

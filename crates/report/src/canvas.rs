@@ -1,5 +1,5 @@
-//! The page in points, for what stands on it and in no chart: keys, notes, markers, dimension lines, arrow heads. All
-//! of it is made of plotters' elements; what has an undefined coordinate is left out.
+//! The page in points, for elements outside charts: keys, notes, markers, dimension lines, arrow heads. All are made of
+//! plotters' elements; elements with an undefined coordinate are omitted.
 
 use plotters::coord::Shift;
 use plotters::drawing::DrawingArea;
@@ -11,13 +11,13 @@ use crate::backend::{Plotted, Svg, SvgGroup, UNITS, units};
 use crate::fonts::{FAMILY, text_width};
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
-/// A place on the page, points from the upper left corner.
+/// Place on the page, points from the upper left corner.
 pub(crate) type PagePoint = (f64, f64);
 
-/// An element of plotters at a place of any coordinates.
+/// Element of plotters at a place of any coordinates.
 pub(crate) type Element<C> = DynElement<'static, Svg, C>;
 
-/// A rectangle on the page.
+/// Rectangle on the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rect {
     pub x: f64,
@@ -35,21 +35,21 @@ impl Rect {
         self.y + self.h
     }
 
-    /// `true` if a place lies in it or on its edge, to the width of a hair: places are rounded.
+    /// `true` if a place is inside the rectangle or on its edge, with a tolerance for rounding.
     pub(crate) fn contains(&self, (x, y): PagePoint) -> bool {
         let slack = 0.1;
         x >= self.x - slack && x <= self.right() + slack && y >= self.y - slack && y <= self.bottom() + slack
     }
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
     pub colour: RGBColor,
     pub opacity: f64,
-    /// Points.
+    /// Width, points.
     pub width: f64,
-    /// In widths of the line.
+    /// Dash pattern, in line widths.
     pub dash: Dash,
 }
 
@@ -58,7 +58,7 @@ impl Stroke {
         Self { colour, opacity: 1.0, width, dash: SOLID }
     }
 
-    /// As plotters wants it.
+    /// The same style for plotters.
     pub(crate) fn style(&self) -> ShapeStyle {
         ShapeStyle {
             color: self.colour.mix(self.opacity),
@@ -68,8 +68,8 @@ impl Stroke {
     }
 }
 
-/// A text with its looks; lines are parted by line breaks. The end of its anchor and the middle of its height stand at
-/// its place.
+/// Text with its style; lines are separated by line breaks. Its place is the end given by its anchor, at the middle of
+/// its height.
 #[derive(Clone)]
 pub(crate) struct TextLine {
     pub text: String,
@@ -77,7 +77,7 @@ pub(crate) struct TextLine {
     pub colour: RGBColor,
     pub bold: bool,
     pub anchor: HPos,
-    /// Turned a quarter to the left, as the title of a vertical axis.
+    /// `true` if turned a quarter to the left, as the title of a vertical axis.
     pub turned: bool,
 }
 
@@ -90,7 +90,7 @@ impl TextLine {
         text_width(&self.text, self.size, self.bold)
     }
 
-    /// The left and the right end of an unturned text at `x`.
+    /// Left and right end of an unturned text at `x`.
     pub(crate) fn ends(&self, x: f64) -> [f64; 2] {
         let left = match self.anchor {
             HPos::Left => x,
@@ -100,7 +100,7 @@ impl TextLine {
         [left, left + self.width()]
     }
 
-    /// As plotters wants it.
+    /// The same style for plotters.
     pub(crate) fn style(&self) -> TextStyle<'static> {
         let weight = if self.bold { FontStyle::Bold } else { FontStyle::Normal };
         let turn = if self.turned { FontTransform::Rotate270 } else { FontTransform::None };
@@ -130,7 +130,7 @@ impl Canvas {
         self.area.draw(&Polygon::new(points, colour.mix(opacity).filled()))
     }
 
-    /// The outline of a rectangle.
+    /// Outline of a rectangle.
     pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> Plotted {
         let corners = [at((rect.x, rect.y)), at((rect.right(), rect.bottom()))];
         self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
@@ -144,7 +144,7 @@ impl Canvas {
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
-    /// A text on a white ground, for places where lines run underneath.
+    /// Text on a white ground, for places with lines underneath.
     pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> Plotted {
         let [left, right] = text.ends(x);
         let (left, right, half) = (left - 0.12 * text.size, right + 0.12 * text.size, 0.5 * text.size);
@@ -152,12 +152,12 @@ impl Canvas {
         self.text((x, y), text)
     }
 
-    /// A marker or a ship.
+    /// Draws a marker or a ship.
     pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> Plotted {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
 
-    /// An arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
+    /// Arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
     pub(crate) fn head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> Plotted {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
@@ -165,7 +165,7 @@ impl Canvas {
     }
 }
 
-/// A place of the page in the units of the backend.
+/// Place on the page in the units of the backend.
 pub(crate) fn at((x, y): PagePoint) -> (i32, i32) {
     (units(x), units(y))
 }
@@ -185,13 +185,13 @@ const STAR: [(f64, f64); 10] = [
 const HULL: [(f64, f64); 7] =
     [(1.0, 0.0), (0.72, 0.19), (0.4, 0.3), (-1.0, 0.3), (-1.0, -0.3), (0.4, -0.3), (0.72, -0.19)];
 
-/// A polygon about a place, its corners in points from there.
+/// Polygon about a place, its corners in points from that place.
 fn polygon<C: Clone + 'static>(at: &C, corners: impl Iterator<Item = PagePoint>, colour: RGBColor) -> Element<C> {
     let corners: Vec<(i32, i32)> = corners.map(self::at).collect();
     (EmptyElement::at(at.clone()) + Polygon::new(corners, colour.filled())).into_dyn()
 }
 
-/// A marker of `radius` points, with a white edge that keeps it apart from lines and neighbours.
+/// Marker of `radius` points, with a white edge that separates it from lines and neighbours.
 pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec<Element<C>> {
     let circle = |scale: f64, colour: RGBColor| {
         let size = units(scale * radius).max(1) as u32;
@@ -221,8 +221,8 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
     [shape(1.25, PAPER, corners), shape(1.0, look.colour, corners)].into_iter().chain(hole).collect()
 }
 
-/// A ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`. A white edge keeps it apart
-/// from the lines under it.
+/// Ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`. A white edge separates it from
+/// the lines under it.
 pub(crate) fn hull<C: Clone + 'static>(at: C, (dx, dy): PagePoint, length: f64, colour: RGBColor) -> Vec<Element<C>> {
     let outline = |half: f64, beam: f64, colour: RGBColor| {
         let turned = HULL.iter().map(move |(forward, side)| {

@@ -1,5 +1,5 @@
-//! One pair of axes on the page: a chart of plotters, and what every figure draws in it. Everything is cut at the
-//! frame; undefined values are left out.
+//! One pair of axes on the page: a chart of plotters, and the elements that all figures draw in it. Everything is
+//! clipped at the frame; undefined values are omitted.
 
 use plotters::chart::ChartContext;
 use plotters::coord::cartesian::Cartesian2d;
@@ -15,14 +15,14 @@ use crate::curve::PlotCurve;
 use crate::palette::{INK, Look, PAPER};
 use crate::theme::Theme;
 
-/// A chart of plotters.
+/// Chart of plotters.
 pub(crate) type Context = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
 
-/// Distance beyond the frame, units, from which on plotters moves what is drawn to the edge; all beyond the frame is
-/// cut, so lines leave it where they do.
+/// Distance beyond the frame, units, from which plotters moves elements to the edge. Everything beyond the frame is
+/// clipped, so lines leave the frame at the correct places.
 const BEYOND: i32 = 1_000_000;
 
-/// A rectangle with two axes.
+/// Rectangle with two axes.
 pub(crate) struct Chart {
     data: DrawingArea<Svg, Cartesian2d<Axis, Axis>>,
     pub canvas: Canvas,
@@ -31,18 +31,18 @@ pub(crate) struct Chart {
     pub y: Axis,
 }
 
-/// An interval from left to right.
+/// Interval from left to right.
 pub(crate) struct Bar {
-    /// Its height, a value of the vertical axis.
+    /// Height of the interval, a value of the vertical axis.
     pub y: f64,
     pub ends: [f64; 2],
-    /// `true` if it has caps.
+    /// `true` if the interval has caps.
     pub is_capped: bool,
     pub stroke: Stroke,
 }
 
 impl Chart {
-    /// The chart on the page.
+    /// Chart on the page.
     pub(crate) fn new(context: &Context, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
         let (across, down) = context.plotting_area().get_pixel_range();
         let [left, right, top, bottom] =
@@ -52,7 +52,7 @@ impl Chart {
         Self { data: wide.apply_coord_spec(context.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
-    /// The frame in units.
+    /// Frame in units.
     pub(crate) fn bounds(&self) -> Bounds {
         [self.rect.x, self.rect.y, self.rect.right(), self.rect.bottom()].map(units)
     }
@@ -74,7 +74,7 @@ impl Chart {
         self.reach(x, y).filter(|_| self.has_place(&(x, y)))
     }
 
-    /// The same of values that are numbers; what has no place on a logarithmic axis lies far beyond its lower end.
+    /// Place of a pair of numbers; without a place on a logarithmic axis it is far beyond the lower end.
     pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
         (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS, f64::from(up) / UNITS))
@@ -85,7 +85,7 @@ impl Chart {
         self.place(x, y).filter(|place| self.rect.contains(*place))
     }
 
-    /// Draws elements at values, all that belong to a group.
+    /// Draws elements at values, all in one group.
     pub(crate) fn draw(&self, group: SvgGroup, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> Plotted {
         self.canvas.svg.begin(group);
         elements.into_iter().try_for_each(|element| self.data.draw(&element))?;
@@ -93,7 +93,7 @@ impl Chart {
         Ok(())
     }
 
-    /// The group of a series of the key, cut at the frame.
+    /// Group of a series of the key, clipped at the frame.
     fn cut(&self, name: Option<&str>) -> SvgGroup {
         SvgGroup { clip: Some(self.bounds()), ..SvgGroup::named(name) }
     }
@@ -102,7 +102,7 @@ impl Chart {
         self.x.has_place(*x) && self.y.has_place(*y)
     }
 
-    /// A line through pairs, broken at gaps.
+    /// Line through pairs, broken at gaps.
     pub(crate) fn line(
         &self,
         name: Option<&str>,
@@ -115,13 +115,13 @@ impl Chart {
         self.draw(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
-    /// The area between two curves.
+    /// Area between two curves.
     pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> Plotted {
         let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.has_place(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
 
-    /// An area with these corners.
+    /// Area with these corners.
     pub(crate) fn area(
         &self,
         name: Option<&str>,
@@ -132,7 +132,7 @@ impl Chart {
         self.draw(self.cut(name), [area.into_dyn()])
     }
 
-    /// A rectangle between two pairs of opposite corners.
+    /// Rectangle between two opposite corners.
     pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> Plotted {
         self.area(None, [(left, low), (right, low), (right, high), (left, high)], colour)
     }
@@ -149,14 +149,14 @@ impl Chart {
         self.draw(SvgGroup::named(name), pairs.into_iter().filter(|&(x, y)| self.inside(x, y).is_some()).map(dot))
     }
 
-    /// A marker at a pair inside the frame, whole where it stands on it.
+    /// Marker at a pair inside the frame, drawn whole even on the frame.
     pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, look: &Look) -> Plotted {
         let is_inside = self.inside(x, y).is_some();
         self.draw(SvgGroup::named(name), marker((x, y), radius, look).into_iter().filter(|_| is_inside))
     }
 
-    /// An interval, with an arrow head at an end that lies beyond the frame; returns whether one does. An end without
-    /// bound lies beyond every frame.
+    /// Interval with an arrow head at an end beyond the frame; returns whether there is such an end. An infinite end is
+    /// beyond every frame.
     pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Plotted<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
@@ -178,20 +178,20 @@ impl Chart {
         Ok(beyond.iter().any(|end| end.0))
     }
 
-    /// A line from bottom to top, where its value lies in the frame.
+    /// Line from bottom to top, if its value is inside the frame.
     pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Plotted {
         let is_inside = self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
         let (low, high) = self.y.ends();
         self.line(name, [(x, low), (x, high)].into_iter().filter(|_| is_inside), stroke)
     }
 
-    /// A line from left to right.
+    /// Line from left to right.
     pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> Plotted {
         let (low, high) = self.x.ends();
         self.line(None, [(low, y), (high, y)], stroke)
     }
 
-    /// The frame over the data, with two short slanted lines where a logarithmic axis jumps to zero.
+    /// Frame over the data, with two short slanted lines at the break of a logarithmic axis.
     pub(crate) fn frame(&self, theme: &Theme) -> Plotted {
         let stroke = Stroke::solid(INK, theme.thin);
         self.canvas.outline(self.rect, stroke)?;
@@ -202,7 +202,7 @@ impl Chart {
         ];
         let size = 0.45 * theme.tick_font;
         for (centre, along) in breaks.into_iter().flatten() {
-            // Perpendicular to the axis, leaning along it.
+            // Perpendicular to the axis, slanted along it.
             let (dx, dy) = (size * (along.1 + 0.4 * along.0), size * (along.0 + 0.4 * along.1));
             let [one, other] = [-0.35, 0.35].map(|side| {
                 let (x, y) = (centre.0 + side * size * along.0, centre.1 + side * size * along.1);

@@ -1,11 +1,11 @@
-//! Points handed to a figure. They are plain numbers in display units; nothing here interpolates or fits.
+//! Points of a figure: plain numbers in display units, without interpolation or fit.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A curve or a cloud of points: `y[i]` at `x[i]`, in the units the figure states.
+/// Curve or cloud of points: `y[i]` at `x[i]`, in the units of the figure.
 ///
-/// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. When the
-/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`PlotCurve::new`] has no more pairs
+/// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. If the
+/// lengths differ, the surplus is ignored. In JSON a gap is `null`. A curve from [`PlotCurve::new`] has no more pairs
 /// than a figure can show.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PlotCurve {
@@ -19,23 +19,23 @@ pub struct PlotCurve {
     pub y: Vec<f64>,
 }
 
-/// Pairs that are kept of every run of a curve with more: first, lowest, highest, last, and a gap.
+/// Maximum number of pairs kept of every run of a longer curve: first, lowest, highest, last, and a gap.
 const KEPT_OF_RUN: usize = 5;
 
 /// 95 % quantile of χ² with two degrees of freedom.
 const CHI_SQUARED: f64 = 5.991_464_547;
 
-/// Corners of a drawn ellipse.
+/// Number of corners of a drawn ellipse.
 const CORNERS: usize = 96;
 
 impl PlotCurve {
-    /// Most pairs of a curve.
+    /// Maximum number of pairs of a curve.
     pub const MAX_PAIRS: usize = 4000;
 
-    /// A curve from its two columns.
+    /// Curve from its two columns.
     ///
-    /// One with more than [`Self::MAX_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours,
-    /// all as long, the first, the lowest, the highest and the last, and a gap where there is one.
+    /// A curve with more than [`Self::MAX_PAIRS`] pairs is thinned to its visible extent: of every run of neighbours,
+    /// all of equal length, the first, the lowest, the highest and the last pair are kept, and a gap if there is one.
     pub fn new(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         let curve = Self { x: x.into(), y: y.into() };
         if curve.x.len().min(curve.y.len()) > Self::MAX_PAIRS { curve.thinned() } else { curve }
@@ -61,9 +61,10 @@ impl PlotCurve {
         thin
     }
 
-    /// The 95 % contour of a normal distribution in two dimensions, closed; empty when the covariance is none.
+    /// Closed 95 % contour of a bivariate normal distribution; empty if the covariance is not finite or its first
+    /// variance is not positive.
     pub fn contour95([x, y]: [f64; 2], [[a, b], [_, c]]: [[f64; 2]; 2]) -> Self {
-        // Cholesky: a point of the unit circle goes to L times it.
+        // Cholesky: a point of the unit circle is multiplied by L.
         let l11 = a.sqrt();
         let l21 = b / l11;
         let l22 = (c - l21 * l21).max(0.0).sqrt();
@@ -79,12 +80,12 @@ impl PlotCurve {
         Self { x, y }
     }
 
-    /// The pairs, gaps included.
+    /// Pairs of the curve, gaps included.
     pub fn pairs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.x.iter().copied().zip(self.y.iter().copied())
     }
 
-    /// The pairs that can be drawn.
+    /// Finite pairs of the curve.
     pub fn finite(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
     }

@@ -1,17 +1,17 @@
-//! What can go wrong while a figure becomes a file. Drawing itself never fails: undefined numbers are left out.
+//! Errors of writing a figure to a file. Drawing itself never fails: undefined numbers are omitted.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why a figure could not be made or written.
+/// Reason why a figure could not be made or written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The width of a printed figure is outside what a page can carry.
+    /// The width of a printed figure is outside the range of a page.
     #[error("a figure {width_mm} mm wide cannot be drawn: the width must lie between {min_mm} and {max_mm} mm")]
     Width {
-        /// The width requested, mm.
+        /// Requested width, mm.
         width_mm: f64,
         /// Minimum width, mm.
         min_mm: f64,
@@ -21,11 +21,11 @@ pub enum ReportError {
     /// The resolution of a printed figure is outside the accepted range.
     #[error("{dpi} dots per inch is not usable: the resolution must lie between {min} and {max} dpi")]
     Resolution {
-        /// The resolution requested, dots per inch.
+        /// Requested resolution, dots per inch.
         dpi: f64,
-        /// Lowest resolution, dots per inch.
+        /// Minimum resolution, dots per inch.
         min: f64,
-        /// Highest resolution, dots per inch.
+        /// Maximum resolution, dots per inch.
         max: f64,
     },
     /// The drawing needs more pixels than an image may have.
@@ -42,15 +42,15 @@ pub enum ReportError {
     /// The pixels could not be packed into a PNG.
     #[error("failed to encode the PNG")]
     Png(#[from] png::EncodingError),
-    /// The frame of a page could not be filled in.
+    /// The template of a page could not be filled in.
     #[error("failed to make the page")]
     Page(#[from] askama::Error),
     /// A file or folder could not be written.
     #[error("failed to write {}", path.display())]
     Write {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }

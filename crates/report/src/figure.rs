@@ -1,5 +1,5 @@
-//! A finished figure and its files: an SVG, and beside it a PNG of the same drawing with its resolution written inside,
-//! so that both come out at the intended size on a page. Same figure, same bytes.
+//! A finished figure and its files: an SVG, and a PNG of the same drawing with its resolution stored inside, so that
+//! both have the intended size on a page. Equal figures give equal bytes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,13 +13,13 @@ use crate::indexed::IndexedImage;
 
 const POINTS_PER_INCH: f64 = 72.0;
 const METRES_PER_INCH: f64 = 0.0254;
-/// No side of an image may be longer, pixels.
+/// Maximum side of an image, pixels.
 const MAX_SIDE_PX: u32 = 20_000;
 
-/// How hard PNGs are packed: the hardest.
+/// Compression level of PNGs: the maximum.
 const LEVEL: u8 = 9;
 
-/// A drawing that is ready to be written.
+/// Drawing that is ready to be written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     svg: String,
@@ -33,7 +33,7 @@ impl Drawing {
         Self { svg, width, height, dpi }
     }
 
-    /// The SVG document.
+    /// Text of the SVG document.
     pub fn svg(&self) -> &str {
         &self.svg
     }
@@ -49,9 +49,9 @@ impl Drawing {
         (side(self.width), side(self.height))
     }
 
-    /// The drawing as a PNG of at most 256 colours with its resolution in pixels per metre.
+    /// PNG of the drawing with at most 256 colours and its resolution in pixels per metre.
     ///
-    /// Fails with [`ReportError::TooLarge`] when a side is longer than 20 000 pixels.
+    /// Fails with [`ReportError::TooLarge`] if a side is longer than 20 000 pixels.
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
         let (width_px, height_px) = self.pixels();
         let too_large = || ReportError::TooLarge { width_px, height_px };
@@ -70,14 +70,14 @@ impl Drawing {
 
     fn encode(&self, pixmap: Pixmap) -> Result<Vec<u8>, ReportError> {
         let (width, height) = (pixmap.width(), pixmap.height());
-        // The page is opaque, so the alpha channel says nothing and the colours are not premultiplied.
+        // The page is opaque, so the alpha channel is constant and the colours are not premultiplied.
         let IndexedImage { palette, pixels } = IndexedImage::of(&pixmap.take());
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_palette(palette);
         encoder.set_deflate_compression(png::DeflateCompression::Level(LEVEL));
-        // Places in a palette are no quantities: a difference between neighbours says nothing.
+        // Indices of a palette are not quantities: a difference between neighbours carries no information.
         encoder.set_filter(png::Filter::NoFilter);
         let per_metre = (self.dpi / METRES_PER_INCH).round() as u32;
         let dims = png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter };
@@ -88,8 +88,7 @@ impl Drawing {
         Ok(bytes)
     }
 
-    /// Writes `stem.svg` and `stem.png` into `dir`, which is made when it is missing; returns their paths in this
-    /// order.
+    /// Writes `stem.svg` and `stem.png` into `dir`, which is made if it is missing; returns their paths in this order.
     pub fn write(&self, dir: &Path, stem: &str) -> Result<(PathBuf, PathBuf), ReportError> {
         let put = |path: PathBuf, bytes: &[u8]| match fs::write(&path, bytes) {
             Ok(()) => Ok(path),

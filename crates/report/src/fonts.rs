@@ -13,21 +13,21 @@ use crate::markup::is_markup;
 /// Name of the embedded family.
 pub(crate) const FAMILY: &str = "DejaVu Sans";
 
-/// What an SVG viewer is requested. Verdana comes second because its widths are nearest to those of DejaVu Sans, with
-/// which the labels are measured.
+/// Font families in an SVG. Verdana is second because its widths are nearest to those of DejaVu Sans, with which the
+/// labels are measured.
 pub(crate) const FAMILY_WITH_FALLBACK: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
-/// Distance of the lines of a text, in font sizes.
+/// Line spacing of a text, in font sizes.
 pub(crate) const LINE: f64 = 1.15;
 
-/// Units of the font in an em.
+/// Number of font units per em.
 const UNITS_PER_EM: f64 = 2048.0;
 
 static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold-subset.ttf");
 static OBLIQUE: &[u8] = include_bytes!("../fonts/DejaVuSans-Oblique-subset.ttf");
 
-/// The fonts as the rasteriser wants them.
+/// Fonts in the form that the rasteriser needs.
 pub(crate) fn database() -> Arc<Database> {
     static DATABASE: OnceLock<Arc<Database>> = OnceLock::new();
     DATABASE

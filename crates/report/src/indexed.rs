@@ -1,31 +1,31 @@
-//! The pixels of a drawing as places in a palette of 256 colours, which is half the size of a file of RGB. Flat colours
-//! stay as they are; where there are more, shades at the edges of lines and letters are joined.
+//! Pixels of a drawing as indices into a palette of 256 colours, half the size of an RGB file. Flat colours are
+//! unchanged; if there are more colours, shades at the edges of lines and letters are merged.
 
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
-/// Most colours of a palette whose places are bytes.
+/// Maximum number of colours of a palette with one-byte indices.
 const MAX_COLOURS: usize = 256;
 
-/// Colours that are never joined: those of the largest areas.
+/// Number of colours that are never merged: those of the largest areas.
 const FLAT: usize = 128;
 
-/// An opaque image of few colours.
+/// Opaque image of few colours.
 #[derive(Debug, PartialEq)]
 pub(crate) struct IndexedImage {
-    /// Red, green and blue of every colour, that of the largest area first.
+    /// Red, green and blue of every colour, in descending order of area.
     pub palette: Vec<u8>,
-    /// The colour of every pixel, row by row.
+    /// Palette index of every pixel, row by row.
     pub pixels: Vec<u8>,
 }
 
 type Rgb = [u8; 3];
 
 impl IndexedImage {
-    /// The image of opaque pixels of four bytes, whose last ones say nothing.
+    /// Image of opaque RGBA pixels, four bytes each; the alpha byte is ignored.
     ///
-    /// Beside the colours of large areas stand those that are the first ones on the finest of 256, 128, …, 4 levels a
-    /// channel that leaves few enough; every other colour becomes the nearest of them.
+    /// In addition to the colours of large areas, the palette holds the first colour of each level, on the finest of
+    /// 256, 128, …, 4 levels per channel that leaves few enough; all others become the nearest of these colours.
     pub fn of(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
         let runs =
@@ -44,7 +44,7 @@ impl IndexedImage {
     }
 }
 
-/// The flat colours, and of the others the first on each of some levels a channel.
+/// The flat colours, and of the others the first on each of some levels per channel.
 fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     let level = |channel: u8| (u32::from(channel) * levels + 127) / 255;
     let mut levels_seen = HashSet::new();
@@ -53,7 +53,7 @@ fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     kept.map(|(_, colour)| *colour).collect()
 }
 
-/// Place of the nearest colour.
+/// Index of the nearest colour.
 fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
     let distance = |candidate: &Rgb| (0..3).map(|k| u32::from(candidate[k].abs_diff(colour[k])).pow(2)).sum::<u32>();
     let place =
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn shades_are_joined_and_areas_are_not() {
-        // A ramp of 65 536 colours beside areas of two that are neighbours.
+        // A ramp of 65 536 colours, and areas of two neighbouring colours.
         let ramp = (0..=u16::MAX).flat_map(|k| [(k >> 8) as u8, (k & 255) as u8, 77, 255]);
         let areas = [[201, 33, 77, 255], [201, 34, 77, 255]].map(|pixel| pixel.repeat(1000)).concat();
         let rgba: Vec<u8> = ramp.chain(areas).collect();
@@ -86,7 +86,7 @@ mod tests {
         let of = |place: &u8| &palette[3 * usize::from(*place)..][..3];
         let apart = |(place, own): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(own[k])).max();
         let farthest = pixels.iter().zip(rgba.chunks_exact(4)).filter_map(apart).max();
-        // Eight levels a channel, each the first colour of it.
+        // Eight levels per channel, each with its first colour.
         assert!(farthest.is_some_and(|apart| apart <= 36), "{farthest:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The key of a figure: samples with their names, always outside the data.
+//! Key of a figure: samples with their names, always outside the data.
 
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
@@ -10,29 +10,29 @@ use crate::lines::wrap;
 use crate::palette::{CurveOrigin, Dash, INK, Look};
 use crate::theme::Theme;
 
-/// What stands before a name.
+/// Sample before a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum KeySample {
     Nothing,
-    /// A line, or an area as a thick one.
+    /// Line, or an area as a thick one.
     Line(Stroke),
     Dots(RGBColor),
     Marker(Look),
     LineAndMarker(Stroke, Look),
-    /// A short line from bottom to top.
+    /// Short line from bottom to top.
     Upright(Stroke),
-    /// An outlined cell.
+    /// Outlined cell.
     Outline(Dash),
-    /// A ship seen from above.
+    /// Ship seen from above.
     Hull(RGBColor),
 }
 
-/// How cells are outlined.
+/// Stroke of the outline of a cell.
 pub(crate) fn outline_stroke(dash: Dash, theme: &Theme) -> Stroke {
     Stroke { dash, ..Stroke::solid(INK, 1.4 * theme.line) }
 }
 
-/// A sample and its name.
+/// Sample and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct KeyEntry {
     pub sample: KeySample,
@@ -58,13 +58,13 @@ impl KeyEntry {
         self.sample_width(theme) + text_width(&self.label, theme.small_font, false)
     }
 
-    /// The lines of its name in a place this wide, sample and all.
+    /// Lines of the name in a width that includes the sample.
     pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
         wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }
 
-    /// Draws the entry in a place this wide, with the middle of its first line at `place`; returns how many lines its
-    /// name takes.
+    /// Draws the entry in a given width, with the middle of its first line at `place`; returns the number of lines of
+    /// its name.
     pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> Plotted<usize> {
         let width = self.sample_width(theme);
         let end = x + width - 0.5 * theme.small_font;
@@ -93,7 +93,7 @@ impl KeyEntry {
         }
         let lines = self.lines(room, theme);
         let name = TextLine::new(lines.join("\n"), theme.small_font, HPos::Left);
-        // A text of several lines stands with its middle at its place.
+        // The place of a text of several lines is its middle.
         let down = 0.5 * LINE * theme.small_font * (lines.len().max(1) - 1) as f64;
         canvas.text((x + width, y + down), &name)?;
         Ok(lines.len())

@@ -1,8 +1,8 @@
 //! Tables and journal-grade figures of stored results.
 //!
-//! This crate draws what it is handed and computes no science: every number in a table or a figure comes in as plain
-//! data, in the units a reader sees (degrees, seconds). Of the field it has the names of methods with their colours,
-//! the axes of heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
+//! This crate draws given data and computes no science: every number in a table or a figure is plain data in the units
+//! of the reader (degrees, seconds). From the field it has the names of methods with their colours, the axes of
+//! heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -11,10 +11,10 @@
 //! | which method has which colour, marker and dash | [`palette`] |
 //! | SVG and PNG files | [`figure`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
-//! | a page of words, tables and figures | [`Page`] |
-//! | a page for a browser, of the Markdown of a report and its figures | [`html`] |
+//! | a page of texts, tables and figures | [`Page`] |
+//! | a page for a browser, from the Markdown of a report and its figures | [`html`] |
 //! | values with uncertainty, intervals, missing values | [`number`] |
-//! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
+//! | text from outside, escaped for a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
 //! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, Ruler};
@@ -27,7 +27,7 @@
 //! assert!(figure.svg().contains("heading"));
 //! ```
 //!
-//! A figure never fails for its data: an undefined number is left out, and a figure without any data is an empty frame.
+//! A figure never fails for its data: an undefined number is omitted, and a figure without any data is an empty frame.
 
 pub mod curve;
 pub mod error;

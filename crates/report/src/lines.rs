@@ -1,11 +1,11 @@
-//! A text broken into lines of a width.
+//! Text broken into lines of a given width.
 
 use crate::fonts::text_width;
 
 /// Line spacing, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
-/// The lines of [`wrap`], as equal in length as they can be without breaking a word.
+/// Lines of [`wrap`], as equal in length as possible without breaking a word.
 pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let widest = wrap(text, size, bold, width);
     let mut narrower = (5..20).map(|twentieths| wrap(text, size, bold, 0.05 * f64::from(twentieths) * width));
@@ -13,7 +13,7 @@ pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<Str
     narrower.find(is_whole).unwrap_or(widest)
 }
 
-/// The words of a text; a unit in brackets is one.
+/// Words of a text; a unit in brackets is one word.
 fn words(text: &str) -> Vec<String> {
     let mut parts: Vec<String> = Vec::new();
     // Not at every white space: a no-break space keeps a symbol and its value together.
@@ -26,8 +26,8 @@ fn words(text: &str) -> Vec<String> {
     parts
 }
 
-/// Splits a text at (breaking) spaces into lines of at most `width` points; a unit in brackets and a per cent sign stay
-/// with the word before them. A longer word is broken, after a mark such as a dot where it has one.
+/// Lines of a text split at (breaking) spaces, at most `width` points each; a unit in brackets and a per cent sign stay
+/// with the word before them. A longer word is broken, after a mark such as a dot if it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut parts = words(text).into_iter().peekable();
@@ -47,7 +47,7 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
     lines
 }
 
-/// A word in several lines where it is too long for one. What has no room for a letter stays whole.
+/// Word in several lines if it is too long for one. A word stays whole if not even a letter fits.
 fn broken(word: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let (mut lines, mut rest) = (Vec::new(), word);
     while text_width(rest, size, bold) > width {

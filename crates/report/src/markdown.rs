@@ -1,9 +1,9 @@
-//! Text on its way into a Markdown page (the GitHub flavour): words that are to be read as they are, and prose that is
-//! Markdown itself. Neither brings HTML of its own.
+//! Escaping of text for a Markdown page (the GitHub flavour): literal text, and prose that is Markdown itself. Neither
+//! may contain HTML.
 
 use crate::printable::{escaped, is_printable};
 
-/// A text as it is, in a line or a cell: nothing in it is a mark.
+/// Literal text in a line or a cell, without any Markdown mark.
 pub fn text(text: &str) -> String {
     let text = escaped(text);
     let mut out = String::with_capacity(text.len() + 8);
@@ -14,7 +14,7 @@ pub fn text(text: &str) -> String {
             '\\' | '|' | '*' | '_' | '`' | '~' => true,
             '<' => opens_tag(after),
             '&' => after.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '#'),
-            // What makes a link of brackets; alone they may be those of an interval.
+            // A bracket after a bracket makes a link; alone it may be that of an interval.
             '(' | '[' => before == Some(']'),
             _ => false,
         };
@@ -27,7 +27,17 @@ pub fn text(text: &str) -> String {
     out
 }
 
-/// Prose that is Markdown: its marks stay, its HTML is shown and not obeyed.
+/// Text of the program whose commands in backticks stay code; everything else is as in [`text`].
+pub fn sentence(sentence: &str) -> String {
+    let is_command = |part: &str| part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, ' ' | '-'));
+    let parts: Vec<&str> = sentence.split('`').collect();
+    if parts.len() % 2 == 0 || !parts.iter().skip(1).step_by(2).all(|part| is_command(part)) {
+        return text(sentence);
+    }
+    parts.iter().enumerate().map(|(n, part)| if n % 2 == 1 { format!("`{part}`") } else { text(part) }).collect()
+}
+
+/// Prose that is Markdown: its marks are kept, its HTML is shown and not interpreted.
 pub fn prose(text: &str) -> String {
     const LINKS: [&str; 3] = ["http://", "https://", "mailto:"];
     let mut out = String::with_capacity(text.len() + 8);
@@ -47,12 +57,12 @@ pub fn prose(text: &str) -> String {
     out
 }
 
-/// `true` if a character that cannot be seen belongs into prose: a line break or a tab.
+/// `true` if an invisible character is allowed in prose: a line break or a tab.
 pub fn is_layout(c: char) -> bool {
     matches!(c, '\n' | '\r' | '\t')
 }
 
-/// `true` if `<` before this begins a tag, a comment or a link.
+/// `true` if `<` before this text begins a tag, a comment or a link.
 fn opens_tag(text: &str) -> bool {
     text.starts_with(|c: char| c.is_ascii_alphabetic() || matches!(c, '/' | '!' | '?'))
 }
@@ -60,6 +70,13 @@ fn opens_tag(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn commands_of_a_sentence_stay_code() {
+        assert_eq!(sentence("run `study trace`, a_b"), "run `study trace`, a\\_b");
+        assert_eq!(sentence("`<b>` and `c"), text("`<b>` and `c"));
+        assert_eq!(sentence("of `a|b`"), text("of `a|b`"));
+    }
 
     #[test]
     fn a_text_is_read_as_it_is() {

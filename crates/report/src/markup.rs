@@ -1,8 +1,9 @@
-//! Italic type inside a text: two marks around it, which measuring passes over and drawing turns into type.
+//! Italic type inside a text: two marks around it, ignored in measuring and converted to type in drawing.
 
-/// Opens italic type inside a text (a character of the private-use area; [`crate::svg`] turns it into markup).
+/// Start mark of italic type inside a text (a character of the private-use area; [`crate::backend`] turns it into
+/// markup).
 const ITALIC_ON: char = '\u{e000}';
-/// Ends italic type.
+/// End mark of italic type.
 const ITALIC_OFF: char = '\u{e001}';
 
 /// `true` if a character is one of the two marks around italic type.
@@ -10,12 +11,12 @@ pub(crate) fn is_markup(c: char) -> bool {
     c == ITALIC_ON || c == ITALIC_OFF
 }
 
-/// A quantity symbol, set in italic as ISO 80000-1 wants it: for titles and labels of figures, not for tables.
+/// Quantity symbol, set in italic as ISO 80000-1 requires: for titles and labels of figures, not for tables.
 pub fn symbol(text: &str) -> String {
     format!("{ITALIC_ON}{text}{ITALIC_OFF}")
 }
 
-/// Splits a text into runs of upright and italic type.
+/// Runs of upright and italic type of a text.
 pub(crate) fn runs(text: &str) -> Vec<(bool, &str)> {
     let mut italic = false;
     let mut runs = Vec::new();

@@ -1,24 +1,24 @@
-//! Numbers as a reader of tables and axes wants them: a true minus sign, as many digits as the uncertainty supports, a
-//! dash for what is not defined. All functions are pure; none rounds a value that is used again.
+//! Numbers for tables and axes: a true minus sign, as many digits as the uncertainty supports, a dash for an undefined
+//! value. All functions are pure; none rounds a value that is used again.
 
-/// What stands for a value that is not defined.
+/// Text for an undefined value.
 pub const MISSING: &str = "–";
 
-/// Minimum and largest magnitude written without a power of ten.
+/// Range of magnitudes written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
 
-/// More decimals than this say nothing about a double.
+/// Maximum number of decimals with information in a double.
 const MAX_DECIMALS: i32 = 15;
 
-/// Width of a 95 % interval in standard deviations, about.
+/// Approximate width of a 95 % interval in standard deviations.
 const STANDARD_DEVIATIONS: f64 = 4.0;
 
-/// How many there are of something, such as "1 record" and "2 records".
+/// Count with its word, such as "1 record" and "2 records".
 pub fn counted(count: u64, word: &str) -> String {
     format!("{count} {word}{}", if count == 1 { "" } else { "s" })
 }
 
-/// `value` with `decimals` decimals, a true minus sign and no negative zero; [`MISSING`] when it is not finite.
+/// `value` with `decimals` decimals, a true minus sign and no negative zero; [`MISSING`] if it is not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return MISSING.into();
@@ -46,10 +46,10 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', "−"), power_of_ten(exponent))
 }
 
-/// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two when it starts with 1 or 2 or would round up to
-/// 10, where a single digit says too little), the value to the same decimal.
+/// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two if it starts with 1 or 2 or would round up to 10,
+/// for which one digit is too coarse), the value to the same decimal.
 ///
-/// Without a usable uncertainty the value stands alone with five significant digits.
+/// Without a usable uncertainty the value is alone, with five significant digits.
 pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
     match sd.filter(|sd| sd.is_finite() && *sd > 0.0) {
         Some(sd) if value.is_finite() => {
@@ -60,7 +60,7 @@ pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
     }
 }
 
-/// The same for a value of any size: one below 0.001 or from 100,000 on with its power of ten, `(1.23 ± 0.04)×10⁻⁵`.
+/// `(1.23 ± 0.04)×10⁻⁵` for a value below 0.001 or from 100,000 on; otherwise as [`with_uncertainty`].
 pub fn uncertain(value: f64, sd: Option<f64>) -> String {
     if value != 0.0 && value.is_finite() && !(1e-3..1e5).contains(&value.abs()) {
         let exponent = value.abs().log10().floor() as i32;
@@ -71,7 +71,7 @@ pub fn uncertain(value: f64, sd: Option<f64>) -> String {
     with_uncertainty(value, sd)
 }
 
-/// `[0.0989, 0.1017]`: both ends to the decimal their distance supports; [`MISSING`] when there is none.
+/// `[0.0989, 0.1017]`: both ends to the decimal that their distance supports; [`MISSING`] if there is none.
 pub fn interval(bounds: Option<[f64; 2]>) -> String {
     match bounds {
         Some([lo, hi]) if lo.is_finite() && hi.is_finite() => {
@@ -118,7 +118,7 @@ fn decimals_for(value: f64, digits: usize) -> usize {
     (digits as i32 - 1 - exponent).clamp(0, MAX_DECIMALS) as usize
 }
 
-/// Decimals that show an uncertainty with one digit, or two when that digit would be a 1 or a 2.
+/// Decimals that show an uncertainty with one digit, or with two if that digit would be a 1 or a 2.
 fn decimals_of_uncertainty(sd: f64) -> usize {
     let leading = sd / 10f64.powi(exponent(sd, 2));
     decimals_for(sd, if (2.95..9.5).contains(&leading) { 1 } else { 2 })

@@ -1,26 +1,26 @@
-//! A page: a template of Markdown that was filled in, and its figures in the places that the template gives them.
+//! A page: a filled-in Markdown template, and its figures at the places given by the template.
 //!
-//! A template is Markdown with two marks of its own: a paragraph `![stem]` is the figure of that stem, and a headline
-//! `##~ Title` begins a part that a browser shows when it is requested.
+//! A template is Markdown with two additional marks: a paragraph `![stem]` is the figure of that stem, and a headline
+//! `##~ Title` begins a part that a browser shows on request.
 
 use crate::figures::Plot;
 use crate::markdown::{prose, text};
 
-/// A figure of a page.
+/// Figure of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PageFigure {
-    /// Stem of its files.
+    /// Stem of the file names.
     pub stem: String,
-    /// What it shows, one sentence with its numbers and without its full stop: the line above it.
+    /// Finding of the figure, one sentence with its numbers and without its full stop: the line above it.
     pub finding: String,
-    /// What is drawn and how it is read.
+    /// Content of the figure and how to read it.
     pub caption: String,
-    /// What is drawn.
+    /// Plot of the figure.
     pub plot: Plot,
 }
 
 impl PageFigure {
-    /// A figure.
+    /// Figure with its finding and caption.
     pub fn new(
         stem: impl Into<String>,
         finding: impl Into<String>,
@@ -30,19 +30,19 @@ impl PageFigure {
         Self { stem: stem.into(), finding: finding.into(), caption: caption.into(), plot: plot.into() }
     }
 
-    /// The figure with its number, as Markdown.
+    /// Figure with its number, as Markdown.
     fn to_markdown(&self, number: usize) -> String {
         let (finding, caption) = (text(&self.finding), text(&self.caption));
         format!("![Figure {number}]({}.png)\n\n*Figure {number}. {finding}. {caption}*", self.stem)
     }
 }
 
-/// Figures by the places that a template has for them.
+/// Figures by their places in a template.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlacedFigures<P>(pub Vec<(P, PageFigure)>);
 
 impl<P: PartialEq> PlacedFigures<P> {
-    /// Adds figures of a place.
+    /// Adds figures at a place.
     pub fn put(&mut self, place: P, figures: impl IntoIterator<Item = PageFigure>)
     where
         P: Copy,
@@ -55,7 +55,7 @@ impl<P: PartialEq> PlacedFigures<P> {
         self.0.iter().any(|(other, _)| *other == place)
     }
 
-    /// The figures of a place, as a template has them.
+    /// Marks of the figures of a place, for a template.
     pub fn at(&self, place: P) -> String {
         self.0
             .iter()
@@ -65,7 +65,7 @@ impl<P: PartialEq> PlacedFigures<P> {
     }
 }
 
-/// A page with its figures.
+/// Page with its figures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Page {
     /// Paragraphs, headlines, tables and places of figures, without the blank lines between them.
@@ -75,11 +75,11 @@ pub struct Page {
 }
 
 impl Page {
-    /// A template that was filled in, and the figures that have a place in it.
+    /// Page from a filled-in template and the figures that have a place in it.
     ///
     /// # Panics
     ///
-    /// When the template was not filled in, which it is where all it shows can be written into a string.
+    /// If the template was not filled in, which cannot happen if all its values can be written into a string.
     pub fn new(filled: askama::Result<String>, figures: PlacedFigures<impl Sized>) -> Self {
         let filled = prose(&filled.expect("writing to a string does not fail"));
         let mut folded = Vec::new();
@@ -97,12 +97,12 @@ impl Page {
         Self { figures: placed.into_iter().map(|(_, figure)| figure).collect(), blocks, folded }
     }
 
-    /// Titles of the parts that a browser shows when it is requested.
+    /// Titles of the parts that a browser shows on request.
     pub fn folded(&self) -> Vec<&str> {
         self.folded.iter().map(String::as_str).collect()
     }
 
-    /// The figures in reading order.
+    /// Figures in reading order.
     pub fn figures(&self) -> &[PageFigure] {
         &self.figures
     }
@@ -112,7 +112,7 @@ impl Page {
         self.figures.iter().enumerate().find(|(_, figure)| figure.stem == stem)
     }
 
-    /// The same in words and tables: without figures, and without headlines that have nothing else below them.
+    /// The page with only texts and tables: without figures, and without headlines that have no other content.
     pub fn without_figures(self) -> Self {
         let mut blocks: Vec<String> = Vec::new();
         for block in self.blocks.iter().rev() {
@@ -126,7 +126,8 @@ impl Page {
         Self { blocks, figures: Vec::new(), ..self }
     }
 
-    /// As Markdown (the GitHub flavour), every figure with its number and caption. HTML in it is shown and not obeyed.
+    /// Markdown text (the GitHub flavour), every figure with its number and caption. HTML in it is shown and not
+    /// interpreted.
     pub fn to_markdown(&self) -> String {
         let block = |block: &String| match self.figure(block) {
             Some((place, figure)) => prose(&figure.to_markdown(place + 1)),

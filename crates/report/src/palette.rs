@@ -1,50 +1,50 @@
-//! Who is drawn how: one colour, marker and dash for every identification method, the record, the truth and the bound,
-//! the same in every figure. The colours are those of Okabe & Ito (2008), "Color universal design", told apart with any
-//! common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat the
-//! distinction for prints in grey.
+//! Looks of origins: one colour, marker and dash for every identification method, the record, the truth and the bound,
+//! the same in every figure. The colours are those of Okabe & Ito (2008), "Color universal design", distinguishable
+//! with any common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat
+//! the distinction for prints in grey.
 
 use serde::{Deserialize, Serialize};
 
 pub use plotters::style::RGBColor;
 
-/// Whom a curve or a value comes from.
+/// Origin of a curve or a value.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CurveOrigin {
-    /// The measured (or simulated and noisy) record.
+    /// Measured (or simulated and noisy) record.
     Record,
-    /// The noise-free truth of a simulation.
+    /// Noise-free truth of a simulation.
     Truth,
-    /// A value printed in the literature.
+    /// Value printed in the literature.
     Published,
-    /// The Cramér–Rao bound.
+    /// Cramér–Rao bound.
     Bound,
-    /// A model before something was added to it.
+    /// Model before an addition.
     Before,
-    /// The same model after.
+    /// The same model after the addition.
     After,
-    /// One of several series that are no methods, in greys.
+    /// One of several series that are not methods, in greys.
     Series {
         /// Name in the legend.
         label: String,
-        /// Which of the series, from 0.
+        /// Number of the series, from 0.
         number: usize,
     },
-    /// An identification method with its usual settings, by its id.
+    /// Identification method with its usual settings, by its id.
     Method(String),
-    /// The same method with other settings.
+    /// Identification method with other settings.
     Variant {
         /// Name in the legend.
         label: String,
         /// Id of the method, whose colour it keeps.
         method: String,
-        /// Which of several variants of the method, from 0.
+        /// Number of the variant of the method, from 0.
         number: usize,
     },
 }
 
 impl CurveOrigin {
-    /// The name in a legend.
+    /// Name in a legend.
     pub fn label(&self) -> &str {
         match self {
             Self::Record => "record",
@@ -57,7 +57,7 @@ impl CurveOrigin {
         }
     }
 
-    /// How it is drawn.
+    /// Look of the origin.
     pub fn look(&self) -> Look {
         match self {
             Self::Record => Look::new(RECORD, Marker::Circle, SOLID),
@@ -76,37 +76,37 @@ impl CurveOrigin {
 /// Lengths of dash and gap, in line widths; empty is a solid line.
 pub type Dash = &'static [f64];
 
-/// A solid line.
+/// Solid line.
 pub const SOLID: Dash = &[];
-/// A dashed line.
+/// Dashed line.
 pub const DASHED: Dash = &[5.0, 2.5];
-/// A dotted line.
+/// Dotted line.
 pub const DOTTED: Dash = &[1.4, 1.8];
-/// A dash-dotted line.
+/// Dash-dotted line.
 pub const DASH_DOT: Dash = &[6.0, 2.0, 1.4, 2.0];
 const LONG_DASH: Dash = &[10.0, 2.5];
 const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
-/// A line of short dashes.
+/// Line of short dashes.
 pub const SHORT_DASH: Dash = &[3.0, 1.6];
 const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
-/// Text, frames and the truth.
+/// Colour of text, frames and the truth.
 pub const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
-/// The record.
+/// Colour of the record.
 pub const RECORD: RGBColor = RGBColor(0x77, 0x77, 0x77);
-/// What a figure shows and is not about.
+/// Colour of data that are not highlighted.
 pub const QUIET: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
-/// Grid lines.
+/// Colour of grid lines.
 pub const GRID: RGBColor = RGBColor(0xE2, 0xE2, 0xE2);
-/// Background.
+/// Colour of the background.
 pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
-/// The heading in a figure without methods.
+/// Colour of the heading in a figure without methods.
 pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
-/// The rudder.
+/// Colour of the rudder.
 pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
-/// A model before something was added to it.
+/// Colour of a model before an addition.
 pub const BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
-/// Dimension lines and their numbers.
+/// Colour of dimension lines and their numbers.
 pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
@@ -130,7 +130,7 @@ pub enum Marker {
     Star,
 }
 
-/// How one origin is drawn.
+/// Look of one origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour of line and marker.
@@ -160,7 +160,7 @@ const METHODS: [(&str, Look); 8] = [
     ("maximum-likelihood", Look::new(RGBColor(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
-/// Colours of estimators outside, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
+/// Colours of external estimators, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
 const OUTSIDE: [RGBColor; 6] = [
     RGBColor(0x99, 0x99, 0x33),
     BROWN,
@@ -170,20 +170,20 @@ const OUTSIDE: [RGBColor; 6] = [
     RGBColor(0x44, 0xAA, 0x99),
 ];
 
-/// The id that estimators outside have in common.
+/// Common id of external estimators.
 const EXTERNAL: &str = "external";
-/// Looks after which they begin again: 6 colours, 5 markers, 4 dashes.
+/// Number of different looks of external estimators: 6 colours, 5 markers, 4 dashes.
 const LOOKS: u64 = 60;
 
 const BROWN: RGBColor = RGBColor(0x66, 0x11, 0x00);
 
-/// The ids that have a look of their own, in the order figures list them.
+/// Ids that have their own look, in the order of figures.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
-/// A variant has a shade of the colour of its method, a hollow marker and a dash of its own; of estimators outside each
-/// has its own colour.
+/// Look of a variant: a shade of the colour of its method, a hollow marker and a separate dash; every external
+/// estimator has its own colour.
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
@@ -199,7 +199,7 @@ fn variant_look(method: &str, number: usize) -> Look {
     Look { marker, dash, hollow: true, colour }
 }
 
-/// Series differ in shade, shape and dash, so that they never look like a method.
+/// Look of a series: shade, shape and dash differ, so that it never looks like a method.
 fn series_look(number: usize) -> Look {
     const SHADES: [RGBColor; 3] = [INK, RGBColor(0x5A, 0x5A, 0x5A), RGBColor(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
@@ -210,9 +210,10 @@ fn series_look(number: usize) -> Look {
     }
 }
 
-/// A method outside the list keeps its look through all figures too: its name picks one of those of estimators outside.
+/// Look of a method; one outside the list has the same look in all figures: that of an external estimator, chosen by
+/// its name.
 fn method_look(id: &str) -> Look {
-    // A trace and the rule that chooses a method are no methods of the list, and stand beside them.
+    // A trace and the rule that chooses a method are not in the list of methods, but are shown with them.
     match id {
         "trace" => return Look::new(INK, Marker::Square, SOLID),
         "recommended" => return Look { hollow: true, ..Look::new(BROWN, Marker::Diamond, DASHED) },
@@ -221,7 +222,7 @@ fn method_look(id: &str) -> Look {
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
     }
-    // FNV-1a, because the standard hasher does not promise the same value in the next release.
+    // FNV-1a, because the standard hasher does not guarantee the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
     variant_look(EXTERNAL, (hash % LOOKS) as usize)
 }

@@ -1,20 +1,20 @@
-//! Characters that can be shown. All others (control characters, marks that turn the direction of writing, characters
-//! without a meaning) are written as escapes, so that no text from outside can act on a terminal or spoil a file.
+//! Printable characters. All others (control characters, marks that turn the direction of writing, characters without a
+//! meaning) are written as escapes, so that no text from outside can act on a terminal or corrupt a file.
 
 use std::borrow::Cow;
 
-/// `true` if a character is seen, sets an accent or is a blank. Line breaks and tabs are not.
+/// `true` if a character is visible, sets an accent or is a blank. Line breaks and tabs are not.
 pub fn is_printable(c: char) -> bool {
     match c {
         ' '..='~' => true,
         '\u{2028}' | '\u{2029}' => false,
         _ if c.is_whitespace() => !c.is_control(),
-        // What Rust escapes in debug output cannot be seen; after a letter it leaves accents as they are.
+        // Characters that Rust escapes in debug output are invisible; after a letter it leaves accents unchanged.
         _ => c.escape_debug().len() == 1 || ['a', c].iter().collect::<String>().escape_debug().count() == 2,
     }
 }
 
-/// The text with escapes such as `\u{1b}` for what cannot be shown.
+/// Text with escapes such as `\u{1b}` for characters that are not printable.
 pub fn escaped(text: &str) -> Cow<'_, str> {
     if text.chars().all(is_printable) {
         return Cow::Borrowed(text);

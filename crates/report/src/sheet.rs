@@ -1,6 +1,6 @@
-//! Where things go on the page: title, key, panels and notes from top to bottom, margins as wide as their labels.
-//! Panels of one column share the horizontal axis, panels of one row the vertical one. The page is split into drawing
-//! areas of plotters, whose charts draw mesh, axes, ticks and labels; the figures draw the data.
+//! Layout of a page: title, key, panels and notes from top to bottom, margins as wide as their labels. Panels of one
+//! column share the horizontal axis, panels of one row the vertical one. The page is split into drawing areas of
+//! plotters, whose charts draw mesh, axes, ticks and labels; the figures draw the data.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub(crate) const NAMES: f64 = 0.42;
 /// Density of the lines between ticks on a logarithmic axis.
 const LIGHT: f64 = 0.45;
 
-/// From the middle of a line of text to its base line, in font sizes.
+/// Distance from the middle of a line of text to its base line, in font sizes.
 const MIDDLE: f64 = 0.36;
 
 /// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
@@ -47,41 +47,42 @@ pub(crate) struct Grid {
     pub columns: Vec<AxisSide>,
     /// Rows with their heights in points.
     pub rows: Vec<(AxisSide, f64)>,
-    /// Line above each panel, row by row; empty when there is none.
+    /// Text above each panel, row by row; empty if there is none.
     pub heads: Vec<Option<KeyEntry>>,
-    /// Number of panels, when the last row is not full.
+    /// Number of panels, if the last row is not full.
     pub panels: Option<usize>,
-    /// Title of all vertical axes together, for rows too low to have one each.
+    /// Common title of all vertical axes, for rows too low to have one each.
     pub shared_title: Option<String>,
-    /// Left margin, points, when it has to agree with another grid.
+    /// Left margin, points, if it has to agree with another grid.
     pub left: Option<f64>,
 }
 
 impl Grid {
-    /// So many panels with the same axes, in rows of `across` and so many points high; the last row may not be full.
+    /// Grid of `count` panels with the same axes, in rows of `across`, each `height` points high; the last row may not
+    /// be full.
     pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: AxisSide, height: f64) -> Self {
         let rows = vec![(row, height); count.div_ceil(across)];
         Self { panels: Some(count), columns: vec![column; across], rows, ..Self::default() }
     }
 }
 
-/// A column of panels as it is drawn.
+/// Column of panels.
 struct GridColumn {
     side: AxisSide,
     /// Left edge and width of the panels, points.
     left: f64,
     width: f64,
-    /// `true` if its names are turned, because their words are too long to stand side by side.
+    /// `true` if its names are turned, because their words are too long to fit side by side.
     is_turned: bool,
     /// Room below the last panel for labels and title, points.
     below: f64,
 }
 
-/// A figure in the making, filled from top to bottom.
+/// Figure in the making, filled from top to bottom.
 pub(crate) struct Sheet {
     pub theme: Theme,
     pub canvas: Canvas,
-    /// How far down the page the sheet is filled, points.
+    /// Filled height of the sheet, points.
     pub y: f64,
     /// Left edge of the strip that is being filled, points.
     edge: f64,
@@ -101,7 +102,7 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// Lines of a text at `x`, so many font sizes apart.
+    /// Writes lines of a text at `x`, with a spacing of `leading` font sizes.
     fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> Plotted {
         for line in lines {
             self.y += leading * text.size;
@@ -110,7 +111,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// The key, centred above what follows.
+    /// Draws the key, centred above the content that follows.
     pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Plotted {
         let theme = self.theme.clone();
         let room = theme.width - 2.0 * theme.small_font;
@@ -120,7 +121,7 @@ impl Sheet {
         let rows = narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default();
         let widest = rows.iter().map(|row| key::row_width(row, &theme)).fold(0.0, f64::max);
         for row in &rows {
-            // Single entries stand below each other.
+            // Single entries are below each other.
             let width = if rows.len() == entries.len() { widest } else { key::row_width(row, &theme) };
             let mut x = ((theme.width - width) / 2.0).max(theme.small_font);
             self.y += LEADING * theme.small_font;
@@ -136,7 +137,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// Remarks under what was drawn so far, wrapped to the width of the page.
+    /// Writes remarks under the content so far, wrapped to the width of the page.
     pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> Plotted {
         let (margin, width) = (self.theme.small_font, self.theme.width);
         let text = remarks.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(" ");
@@ -155,7 +156,7 @@ impl Sheet {
         0.5 * theme.small_font + titles + labels.fold(0.0, f64::max) + 2.0 * self.tick_length()
     }
 
-    /// A row with its ticks, and with labels and title in lines.
+    /// Row with its ticks, and with labels and title wrapped.
     fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
         let theme = &self.theme;
         let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICKS);
@@ -167,7 +168,7 @@ impl Sheet {
         AxisSide::new(axis, balanced(&side.title, theme.label_font, false, height).join("\n"))
     }
 
-    /// The same of a column.
+    /// Column with its ticks, and with labels and title wrapped.
     fn column(&self, side: &AxisSide, left: f64, width: f64) -> GridColumn {
         let theme = &self.theme;
         let axis = theme.changes.limited(side.axis.clone(), &side.title).fitted(width, theme.tick_font);
@@ -184,7 +185,7 @@ impl Sheet {
         0.32 * self.theme.tick_font
     }
 
-    /// Distance between panels side by side.
+    /// Distance between panels side by side, points.
     pub(crate) fn gap(theme: &Theme) -> f64 {
         2.6 * theme.tick_font
     }
@@ -194,12 +195,12 @@ impl Sheet {
         1.6 * theme.tick_font
     }
 
-    /// Draws a grid into a strip of the page: its left edge and its width, points. The left margin of the grid is the
-    /// least one.
+    /// Draws a grid into a strip of the page, given by its left edge and its width, points. The left margin of the grid
+    /// is a minimum.
     pub(crate) fn grid_within(&mut self, grid: Grid, left: f64, width: f64) -> Plotted<Vec<Chart>> {
         let page = self.theme.width;
         let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
-        // The strip is laid out like a page that ends where it ends.
+        // The strip is laid out like a page that ends at its right edge.
         (self.theme.width, self.edge) = (left + width, left);
         let charts = self.grid(Grid { left: Some(left + margin), ..grid });
         (self.theme.width, self.edge) = (page, 0.0);
@@ -251,8 +252,8 @@ impl Sheet {
         Ok(charts)
     }
 
-    /// A chart of plotters with its mesh, axes, ticks, labels and titles, the last two where they are requested: at the
-    /// left, and below.
+    /// Chart of plotters with its mesh, axes and ticks, and with labels and titles if requested: at the left, and
+    /// below.
     fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> Plotted<Chart> {
         let theme = &self.theme;
         let tick = self.tick_length();
@@ -284,7 +285,7 @@ impl Sheet {
             .x_desc(if labelled[1] { &x.side.title } else { "" })
             .y_desc(if labelled[0] { &y.title } else { "" });
         if x.side.axis.is_names() {
-            // The cells of a map have lines of their own.
+            // The cells of a map have their own lines.
             mesh.disable_mesh();
         }
         mesh.draw()?;

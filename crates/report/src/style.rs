@@ -1,4 +1,4 @@
-//! A style of one's own over a theme: sizes, colours and limits of axes, as a program reads them from a file.
+//! User's style over a theme: sizes, colours and limits of axes, as a program reads them from a file.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,18 +11,18 @@ use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, 
 use crate::theme::Theme;
 use plotters::style::RGBColor;
 
-/// Sizes of type that can be requested, points.
+/// Range of font sizes, points.
 const FONT: [f64; 2] = [4.0, 30.0];
-/// Widths of lines and radii of markers, points.
+/// Range of widths of lines and radii of markers, points.
 const LINE: [f64; 2] = [0.1, 10.0];
 
-/// What may be said of the looks of figures; what is not said is as in the theme. All keys are kebab-case.
+/// Style of figures; keys that are not given are as in the theme. All keys are kebab-case.
 ///
-/// The family of the type is bundled, because labels are placed by its widths.
+/// The font family is bundled, because labels are placed by its widths.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Style {
-    /// Width of the figures, mm; makes them figures for print.
+    /// Width of the figures, mm; it makes them figures for print.
     pub width_mm: Option<f64>,
     /// Resolution, dots per inch.
     pub dpi: Option<f64>,
@@ -33,51 +33,51 @@ pub struct Style {
     /// Radius of markers, points; measured points keep their proportion to it.
     pub marker_radius_pt: Option<f64>,
     /// Colours as `#0072B2` by the id of a method, or `ink`, `paper`, `grid`, `record`, `heading`, `rudder`, `before`
-    /// or `dimension`. Two that share one (as `heading` and `integral-least-squares` do) change together.
+    /// or `dimension`. Two keys that share a colour (as `heading` and `integral-least-squares` do) change together.
     pub colours: BTreeMap<String, String>,
     /// Ends of axes by the titles of the axes, in their units.
     pub limits: BTreeMap<String, [f64; 2]>,
 }
 
-/// What is wrong with a style.
+/// Error of a style.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StyleError {
     /// A size is out of its range.
     #[error("{key} = {found}: expected a number from {} to {}", range[0], range[1])]
     Size {
-        /// The key.
+        /// Key of the size.
         key: &'static str,
-        /// The value found.
+        /// Value found.
         found: f64,
-        /// Least and largest value.
+        /// Minimum and maximum value.
         range: [f64; 2],
     },
-    /// Something that has no colour.
+    /// A name that has no colour.
     #[error("[colours] {name}: nothing has this name; expected one of {known}")]
     Name {
-        /// The name found.
+        /// Name found.
         name: String,
-        /// All names.
+        /// All valid names.
         known: String,
     },
-    /// No colour.
+    /// A value that is not a colour.
     #[error("[colours] {name} = \"{found}\": expected red, green and blue as in \"#0072B2\"")]
     Colour {
-        /// Whose colour.
+        /// Key of the colour.
         name: String,
-        /// The value found.
+        /// Value found.
         found: String,
     },
-    /// Two colours for what has one.
+    /// Two colours for two keys that share one.
     #[error(
         "[colours] {name} = \"{found}\": it shares its colour with {other}, which is set to another one; set one of them"
     )]
     Shared {
-        /// Whose colour.
+        /// Key of the colour.
         name: String,
-        /// The value found.
+        /// Value found.
         found: String,
-        /// Who has the same.
+        /// Key that shares the colour.
         other: String,
     },
     /// Limits in the wrong order.
@@ -85,12 +85,12 @@ pub enum StyleError {
     Limits {
         /// Title of the axis.
         title: String,
-        /// The value found.
+        /// Value found.
         found: [f64; 2],
     },
 }
 
-/// Everything that has a colour of its own.
+/// All keys that have a colour.
 fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
     let parts = [
         ("ink", INK),
@@ -106,9 +106,10 @@ fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
 }
 
 impl Style {
-    /// A theme with this style. `width-mm` and `dpi` are for who makes the theme, except the resolution of a screen.
+    /// Theme with this style. `width-mm` and `dpi` are applied by the maker of the theme, except the resolution of a
+    /// screen.
     ///
-    /// Fails if a value is out of its range or names nothing.
+    /// Fails if a value is out of its range, or if a key is unknown.
     pub fn on(&self, theme: Theme) -> Result<Theme, StyleError> {
         let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
             Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),

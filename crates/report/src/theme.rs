@@ -1,5 +1,5 @@
-//! Sizes of a figure: everything is in points (1/72 inch) on the finished page, so one theme decides whether a figure
-//! can be read. Colours are in [`crate::palette`]; where things go is decided in the module `sheet`.
+//! Sizes of a figure, all in points (1/72 inch) on the finished page, so that one theme determines the legibility of a
+//! figure. Colours are in [`crate::palette`]; the module `sheet` determines the layout.
 
 use std::sync::Arc;
 
@@ -7,13 +7,13 @@ use crate::changes::Changes;
 use crate::error::ReportError;
 
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
-/// Width of a journal column, mm: the narrowest place a figure is usually printed in.
+/// Width of a journal column, mm: the narrowest usual printed width of a figure.
 const COLUMN_MM: f64 = 85.0;
 /// Width of a full page of text, mm.
 const PAGE_MM: f64 = 180.0;
-/// Least and largest width of a printed figure, mm.
+/// Minimum and maximum width of a printed figure, mm.
 pub const WIDTH_MM: [f64; 2] = [60.0, 400.0];
-/// Least and largest resolution of a printed figure, dots per inch.
+/// Minimum and maximum resolution of a printed figure, dots per inch.
 pub const DPI: [f64; 2] = [72.0, 1200.0];
 
 /// Sizes of a figure, in points on the finished page.
@@ -21,28 +21,28 @@ pub const DPI: [f64; 2] = [72.0, 1200.0];
 pub struct Theme {
     pub(crate) width: f64,
     pub(crate) dpi: f64,
-    /// Numbers at the ticks.
+    /// Font size of the numbers at the ticks.
     pub(crate) tick_font: f64,
-    /// Axis titles.
+    /// Font size of axis titles.
     pub(crate) label_font: f64,
-    /// Legends, annotations and notes.
+    /// Font size of legends, annotations and notes.
     pub(crate) small_font: f64,
-    /// Title above the figure.
+    /// Font size of the title above the figure.
     pub(crate) title_font: f64,
-    /// Curves.
+    /// Width of curves.
     pub(crate) line: f64,
-    /// Frames, ticks, dimension lines.
+    /// Width of frames, ticks and dimension lines.
     pub(crate) thin: f64,
     /// Radius of a marker.
     pub(crate) marker: f64,
     /// Radius of a measured point.
     pub(crate) dot: f64,
-    /// What a style changes besides sizes.
+    /// Changes of a style in addition to sizes.
     pub(crate) changes: Arc<Changes>,
 }
 
 impl Theme {
-    /// For a screen or a report page: 675 points (900 CSS pixels) wide, 192 dpi, so 1800 pixels across.
+    /// Theme for a screen or a report page: 675 points (900 CSS pixels) wide, 192 dpi, so 1800 pixels across.
     pub fn screen() -> Self {
         Self {
             width: 675.0,
@@ -59,7 +59,7 @@ impl Theme {
         }
     }
 
-    /// For print at `width_mm` and `dpi`: type of 6.5 to 8 points whatever the width, as journals ask for.
+    /// Theme for print at `width_mm` and `dpi`: type of 6.5 to 8 points whatever the width, as journals require.
     ///
     /// Fails outside 60–400 mm and 72–1200 dpi.
     pub fn paper(width_mm: f64, dpi: f64) -> Result<Self, ReportError> {
@@ -90,13 +90,14 @@ impl Theme {
         }
     }
 
-    /// Titles that a style gives limits by and that are not among these.
+    /// Titles with limits in a style that are not among these.
     pub fn limits_without_axis(&self, titles: &[String]) -> Vec<&str> {
         let wanted = self.changes.limits.keys().map(String::as_str);
         wanted.filter(|wanted| !titles.iter().any(|title| title == wanted)).collect()
     }
 
-    /// Height of a panel, points: `share` of the width, more in a narrow figure whose type is large beside its width.
+    /// Height of a panel, points: `share` of the width, more in a narrow figure, whose type is large relative to its
+    /// width.
     pub(crate) fn tall(&self, share: f64) -> f64 {
         share * self.width * if self.is_narrow() { 1.45 } else { 1.0 }
     }

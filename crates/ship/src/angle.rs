@@ -18,9 +18,9 @@ pub fn to_deg(angle: f64) -> f64 {
     angle / DEGREE
 }
 
-/// Unwraps a heading (rad) in place: removes its jumps of 2π. Missing values (NaN) are skipped.
+/// Unwrapping of a heading (rad) in place: jumps of 2π are removed. Missing values (NaN) are skipped.
 ///
-/// The first finite value is kept; every later one lies within π of the finite value before it.
+/// The first finite value is kept; every later value lies within π of the finite value before it.
 pub fn unwrap_heading(heading: &mut [f64]) {
     let mut last: Option<f64> = None;
     for psi in heading.iter_mut().filter(|psi| psi.is_finite()) {

@@ -5,7 +5,7 @@
 
 use estimation::number::Real;
 
-/// Measured channels beside heading and rudder at one instant; `None` if the record has none.
+/// Measured channels other than heading and rudder at one instant; `None` for a channel that is not in the record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured {
     /// Speed through the water, m/s.
@@ -32,7 +32,7 @@ impl Measured {
     }
 }
 
-/// Kind of a channel of [`Measured`], which effects use as a regressor.
+/// Kind of a channel of [`Measured`], a possible regressor of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regressor {
     /// Speed through the water.
@@ -46,7 +46,7 @@ pub enum Regressor {
 }
 
 impl Regressor {
-    /// Message for records without it.
+    /// Error message for a record without this channel.
     pub fn missing_message(self) -> &'static str {
         match self {
             Self::Speed => "the records have no speed",
@@ -77,17 +77,17 @@ pub struct Motion {
     pub yaw_rate: f64,
     /// Yaw acceleration r', rad/s².
     pub yaw_acceleration: f64,
-    /// Speed through the water, m/s, where the model has one.
+    /// Speed through the water, m/s; `None` if the model has no speed.
     pub speed: Option<f64>,
-    /// Sway velocity to starboard, m/s, where the model has one.
+    /// Sway velocity to starboard, m/s; `None` if the model has no sway.
     pub sway: Option<f64>,
 }
 
 /// System with a rudder and a heading: x' = f(t, x, input).
 ///
-/// The first two states are always heading ψ (rad) and yaw rate r (rad/s); what follows belongs to the
-/// implementation. A value of this type is immutable during a run: all memory is in the state vector. Parameters in
-/// dual numbers give states in dual numbers.
+/// The first two states are always heading ψ (rad) and yaw rate r (rad/s); further states belong to the implementation.
+/// A value of this type is immutable during a run: the state vector holds all memory. Parameters in dual numbers give
+/// states in dual numbers.
 pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Number of states, at least 2.
     fn dimension(&self) -> usize;
@@ -100,9 +100,9 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
     fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]);
 
-    /// Updates memory that follows no differential equation (backlash), once at the end of every step.
+    /// Update of memory that follows no differential equation (backlash), once at the end of every step.
     ///
-    /// Between two calls the rudder is monotone: a step ends at every corner of the rudder signal.
+    /// The rudder is monotone between two calls: a step ends at every corner of the rudder signal.
     fn settle(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
 
     /// Motion in a state.

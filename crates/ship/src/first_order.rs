@@ -1,7 +1,7 @@
 //! The first-order (Nomoto) response T r' + r = K (δ + δ_r) and its closed form under a ramping rudder.
 //!
 //! The model is parametrised as r' = −a r + b (δ + δ_r) with a = 1/T and b = K/T. A neutrally stable hull has a = 0 and
-//! a course-unstable one a < 0; both are regular points of these parameters, while K and T pass through infinity.
+//! a course-unstable hull a < 0; both are regular points of these parameters, while K and T pass through infinity.
 //!
 //! Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
@@ -11,7 +11,7 @@
 pub struct FirstOrder {
     /// a = 1/T, 1/s; negative for a course-unstable ship.
     pub inverse_T: f64,
-    /// b = K/T, 1/s²; positive for a rudder that turns the ship to its own side.
+    /// b = K/T, 1/s²; positive if the ship turns to the side of the rudder.
     pub K_over_T: f64,
     /// Rudder bias δ_r, rad: at δ = −δ_r the ship keeps r = 0.
     pub rudder_bias: f64,
@@ -28,7 +28,7 @@ impl FirstOrder {
         self.K_over_T / self.inverse_T
     }
 
-    /// Time constant T = 1/a, s; infinite for a neutrally stable ship, negative for a course-unstable one.
+    /// Time constant T = 1/a, s; infinite for a neutrally stable ship, negative for a course-unstable ship.
     pub fn T(&self) -> f64 {
         1.0 / self.inverse_T
     }
@@ -66,8 +66,8 @@ pub struct Transition {
     pub phi3: f64,
 }
 
-/// Decay exp(−x), and the scaled functions fₙ(x) = n-th tail of exp(−x) over (∓x)ⁿ, n = 1..4, without cancellation near
-/// x = 0.
+/// Decay exp(−x), and the scaled functions fₙ(x), n = 1..4: the n-th tail of exp(−x) over (∓x)ⁿ, without cancellation
+/// near x = 0.
 fn tails(x: f64) -> (f64, [f64; 4]) {
     if x.abs() < 1.0 {
         // f₄(x) = Σ (−x)^k / (k+4)!, then down by fₙ = 1/n! − x fₙ₊₁.
@@ -102,7 +102,7 @@ impl Transition {
     #[inline]
     pub fn advance(&self, state: State, u0: f64, slope: f64) -> State {
         State {
-            // The input terms are summed first: they do not depend on the state, which shortens the chain of
+            // The input terms are summed first: they are independent of the state, which shortens the chain of
             // operations.
             heading: state.heading + (self.phi1 * state.yaw_rate + (self.phi2 * u0 + self.phi3 * slope)),
             yaw_rate: self.decay * state.yaw_rate + (self.phi1 * u0 + self.phi2 * slope),
@@ -110,12 +110,12 @@ impl Transition {
     }
 }
 
-/// [`Transition`] with its derivative by a, for exact sensitivities of the response to 1/T.
+/// [`Transition`] with its derivative with respect to a, for exact sensitivities of the response to 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentTransition {
     /// Transition.
     pub value: Transition,
-    /// Its derivative by a = 1/T (`h` holds no derivative and is zero).
+    /// Derivative with respect to a = 1/T (`h` holds no derivative and is zero).
     pub by_inverse_T: Transition,
 }
 
@@ -137,7 +137,7 @@ impl TangentTransition {
         }
     }
 
-    /// Sensitivity (∂ψ/∂a, ∂r/∂a) after the interval, from `state` and its sensitivity before it.
+    /// Sensitivity (∂ψ/∂a, ∂r/∂a) after the interval, from `state` and its sensitivity before the interval.
     #[inline]
     pub fn advance(&self, state: State, sensitivity: State, u0: f64, slope: f64) -> State {
         let (f, d) = (&self.value, &self.by_inverse_T);
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// Closed forms for instantaneous rudder, A = K δ (Nomoto 1957; re-derived).
+    /// Closed forms for an instantaneous rudder, A = K δ (Nomoto 1957; re-derived).
     #[test]
     fn step_response_is_the_textbook_exponential() {
         let (K, T, delta) = (0.1, 16.3, 0.2);

@@ -8,7 +8,7 @@ use estimation::number::Real;
 /// Classical Runge–Kutta method of order four with a fixed step.
 ///
 /// The right-hand sides of hulls have kinks (flow straightening differs by side), for which a fixed small step is more
-/// predictable than an adaptive one.
+/// predictable than an adaptive step.
 #[derive(Debug, Clone)]
 pub struct RungeKutta4<R = f64> {
     stage: [Vec<R>; 4],
@@ -24,7 +24,7 @@ impl<R: Real> RungeKutta4<R> {
 
     /// Advances `state` from `t` by `h` seconds; `input` returns the input at a time within the step.
     ///
-    /// Does not call [`Dynamics::settle`], so that a trial step changes no memory.
+    /// [`Dynamics::settle`] is not called, so that a trial step changes no memory.
     pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], mut input: F)
     where
         D: Dynamics<R> + ?Sized,
@@ -55,7 +55,7 @@ impl<R: Real> RungeKutta4<R> {
     }
 }
 
-/// State of the next stage: `h` seconds along the last rates.
+/// State of the next stage: `h` seconds along the latest rates.
 #[inline]
 fn probe<R: Real>(probe: &mut [R], state: &[R], rate: &[R], h: f64) {
     for ((probe, &x), &k) in probe.iter_mut().zip(state).zip(rate) {

@@ -1,5 +1,5 @@
 //! Ship models: response models of the Nomoto family, the effects that can be added to them, and hulls with three
-//! degrees of freedom, which serve as a truth that no response model matches.
+//! degrees of freedom, which serve as the true ship and match no response model exactly.
 //!
 //! The crate describes how a ship turns when its rudder moves. Manoeuvres, sensors, records and identification are in
 //! other crates.
@@ -17,8 +17,8 @@
 //! | parameter sets with their sources | [`ships`] |
 //! | numbers in messages | [`short_number`] |
 //!
-//! All quantities are in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
-//! grows clockwise seen from above, `v` is positive to starboard.
+//! All quantities are in SI units and radians. Positive rudder gives positive (starboard) yaw rate. Heading increases
+//! clockwise seen from above. `v` is positive to starboard.
 
 pub mod angle;
 pub mod dynamics;

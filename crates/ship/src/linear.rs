@@ -17,7 +17,7 @@ pub enum LinearError {
     /// Straight motion is neutrally stable, by the determinant of the damping matrix: K and T1 are infinite.
     #[error("the hull is neutrally stable (det N = {0}): K and T1 are infinite")]
     NeutrallyStable(f64),
-    /// The mass matrix of this determinant is not positive definite, or an entry is not finite.
+    /// Mass matrix that is not positive definite, by its determinant, or an entry that is not finite.
     #[error("the mass matrix needs positive inertia and a positive determinant, found det M = {0}")]
     Mass(f64),
     /// Sway and yaw oscillate: T1 and T2 are complex.
@@ -28,7 +28,7 @@ pub enum LinearError {
         /// T1 T2.
         product: f64,
     },
-    /// A steady rudder does not turn the ship: K is zero and T3 undefined.
+    /// No steering: a steady rudder does not turn the ship, so K is zero and T3 undefined.
     #[error("a steady rudder causes no yaw rate: K = 0 and T3 is undefined")]
     NoSteering,
 }
@@ -78,14 +78,14 @@ fn det(m: &[[f64; 2]; 2]) -> f64 {
 }
 
 impl PrimeSwayYaw {
-    /// Indices of these equations.
+    /// Indices K', T1', T2', T3' of these equations.
     ///
     /// T1 T2 = det M / det N, T1 + T2 = (n11 m22 + n22 m11 − n12 m21 − n21 m12) / det N,
     /// K = (n11 b2 − n21 b1) / det N, T3 = (m11 b2 − m21 b1) / (n11 b2 − n21 b1).
     ///
-    /// T1 is the larger of two time constants of one sign and the negative one of two signs (det N < 0: the ship is
-    /// course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a mass matrix that is not positive
-    /// definite, an oscillating hull and a hull that a steady rudder does not turn.
+    /// T1 is the larger time constant if both have one sign, and the negative time constant if the signs differ (det N
+    /// < 0: the ship is course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a mass matrix that
+    /// is not positive definite, an oscillating hull and a hull that a steady rudder does not turn.
     pub fn indices(&self) -> Result<PrimeIndices, LinearError> {
         let Self { M, N, b } = self;
         let (det_M, det_N) = (det(M), det(N));
@@ -101,7 +101,7 @@ impl PrimeSwayYaw {
         if quarter.is_nan() || quarter < 0.0 {
             return Err(LinearError::Oscillatory { sum, product });
         }
-        // The root of larger size first; its partner from the product, without cancellation.
+        // The root of larger size first; the second root from the product, without cancellation.
         let large = 0.5 * sum + quarter.sqrt().copysign(sum);
         let small = product / large;
         let (T1, T2) = if product < 0.0 { (large.min(small), large.max(small)) } else { (large, small) };
@@ -143,7 +143,7 @@ mod tests {
         b: [-0.002_578, 0.001_26],
     };
 
-    /// The free motion of M ν' + N ν = 0 must decay or grow as exp(−t/T1) and exp(−t/T2), whatever the sign.
+    /// Free motion of M ν' + N ν = 0: it must decay or grow as exp(−t/T1) and exp(−t/T2), for either sign.
     #[test]
     fn time_constants_are_roots_of_the_free_motion_for_stable_and_unstable_hulls() {
         for n12 in [0.005_22, 0.0070, 0.0078, 0.012] {

@@ -1,4 +1,4 @@
-//! Narrow-band random heading of first-order waves: a damped oscillator driven by white noise, discretised exactly.
+//! Narrow-band random heading from first-order waves: a damped oscillator driven by white noise, discretised exactly.
 //!
 //! Source: the shaping filter for wave-induced yaw of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion
 //! Control; here with its exact discrete transition.
@@ -36,7 +36,7 @@ impl NarrowBand {
         let (c, s) = ((wd * h).cos(), (wd * h).sin());
         let ratio = zeta * w0 / wd;
         let transition = [[e * (c + ratio * s), e * s / wd], [-e * w0 * w0 * s / wd, e * (c - ratio * s)]];
-        // Stationary covariance P = diag(σ², σ²ω₀²); what a step adds is P − Φ P Φᵀ.
+        // Stationary covariance P = diag(σ², σ²ω₀²); the covariance added in a step is P − Φ P Φᵀ.
         let [p0, p1] = self.stationary_sd().map(|sd| sd * sd);
         let [[f00, f01], [f10, f11]] = transition;
         let q00 = (p0 - f00 * f00 * p0 - f01 * f01 * p1).max(0.0);

@@ -11,25 +11,25 @@ pub struct Particulars {
     pub speed: f64,
 }
 
-/// Usual range of K′ = K L/V of ships and models in zig-zags. KVLCC2 has 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to
-/// 1.5 (records of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
+/// Usual range of K′ = K L/V of ships and models in zig-zags: KVLCC2 0.75 (35/5) to 3.6 (10/10), Esso Osaka 1.2 to 1.5
+/// (records of SIMMAN 2008; Wakita et al. 2022), the Mariner 0.8 to 2.4.
 pub const USUAL_K_PRIME: [f64; 2] = [0.4, 5.0];
 
 /// Usual range of T′ = T V/L: KVLCC2 1.3 to 8.3, Esso Osaka 0.4 to 1.4, the Mariner 1.1 to 2.8.
 pub const USUAL_T_PRIME: [f64; 2] = [0.3, 12.0];
 
-/// Usual range of K′/T′, which changes less with the rudder: KVLCC2 0.42 to 0.67, Esso Osaka 0.85 to 1.9, the Mariner
-/// 0.7 to 0.9.
+/// Usual range of K′/T′, which varies less with the rudder angle: KVLCC2 0.42 to 0.67, Esso Osaka 0.85 to 1.9, the
+/// Mariner 0.7 to 0.9.
 pub const USUAL_K_OVER_T_PRIME: [f64; 2] = [0.25, 2.0];
 
 /// Usual range of the rudder rate of ships, deg/s; SOLAS II-1/29 requires 65° in 28 s, 2.3 deg/s.
 const SHIP_RUDDER_RATE_DEG_S: [f64; 2] = [2.0, 7.0];
 
-/// Minimum length of a full-scale ship, m, and the lengths of the ships behind shorter models.
+/// Minimum length of a full-scale ship, m, and the range of lengths of the full-scale ships of shorter models.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
 const MODELLED_LENGTHS_M: [f64; 2] = [100.0, 400.0];
 
-/// Usual range of the rudder rate, deg/s, at a length, m: 2 to 7 for ships, and √(L_ship/L) times that for models
+/// Usual range of the rudder rate, deg/s, for a length, m: 2 to 7 for ships, multiplied by √(L_ship/L) for models
 /// (Froude scaling).
 pub fn usual_rudder_rate_deg_s(length: f64) -> [f64; 2] {
     let froude = |ship: f64| if length < MIN_SHIP_LENGTH_M { (ship / length).sqrt() } else { 1.0 };
@@ -48,18 +48,18 @@ impl Particulars {
     /// Factor (V/L)^a L^(−b) that makes a quantity of dimension s^a m^b nondimensional: K' = K L/V, T' = T V/L,
     /// r' = r L/V, u' = u/V.
     ///
-    /// Not finite where length or speed is zero.
+    /// Not finite if length or speed is zero.
     pub fn prime(self, [seconds, metres]: Dimension) -> f64 {
         self.time().powi(-seconds) * self.length.powi(-metres)
     }
 
-    /// Factor on a quantity from this ship to a geometrically similar one, at the same prime value.
+    /// Factor on a quantity from this ship to a geometrically similar ship, at equal prime value.
     pub fn factor_to(self, other: Self, dimension: Dimension) -> f64 {
         self.prime(dimension) / other.prime(dimension)
     }
 }
 
-/// Exponents from two on, as superscripts.
+/// Superscripts of the exponents from 2 to 9.
 const POWERS: [char; 8] = ['²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// Dimension of a unit such as "rad s²/m²".
@@ -142,7 +142,7 @@ mod tests {
         assert!((0.1 * yukun.prime(dimension("1/s")) - 1.222).abs() < 1e-3);
         assert!((16.3 * yukun.prime(dimension("s")) - 1.3335).abs() < 1e-3);
         let model = Particulars { length: 4.2, speed: 8.59 / 5.0 };
-        // Froude: a twenty-fifth of the length is five times as quick.
+        // Froude scaling: a ship of one twenty-fifth of the length is five times as fast in time.
         assert!((yukun.factor_to(model, dimension("s")) - 0.2).abs() < 1e-12);
         assert!((yukun.factor_to(model, dimension("m")) - 0.04).abs() < 1e-12);
     }

@@ -81,11 +81,11 @@ impl Ramp {
     }
 }
 
-/// Replays `recorded` from `state` at `times[0]` and calls `visit(index, motion)` at every time.
+/// Replay of `recorded` from `state` at `times[0]` that calls `visit(index, motion)` at every time.
 ///
 /// `times` (s) must increase. Steps end at every output time and at every corner of the rudder signal (shifted by the
-/// dead time of the ship), and are no longer than `largest_step` seconds. `state` is left at the last time. A state
-/// that overflows is passed on: the caller receives motion that is not finite.
+/// dead time of the ship), and are no longer than `largest_step` seconds. `state` holds the state at the last time
+/// afterwards. A state that overflows is passed to the caller as motion that is not finite.
 pub fn replay<D, V>(
     dynamics: &D,
     recorded: &RecordedSignals,
@@ -110,7 +110,7 @@ pub fn replay<D, V>(
 }
 
 /// [`replay`] for every number type, with the state instead of the motion: calls `visit(index, state, input)` at every
-/// time. Steps between two times are no longer than `largest_step` of these times (s).
+/// time. Steps between two times are no longer than `largest_step(from, to)`, s.
 pub fn replay_states<R, D, S, V>(
     dynamics: &D,
     recorded: &RecordedSignals,

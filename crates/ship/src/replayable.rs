@@ -7,7 +7,7 @@ use estimation::number::Real;
 use crate::dynamics::{Dynamics, Input, Regressor};
 use crate::number::Tangent;
 
-/// Time constants that steps must resolve: one at all times, others within time spans.
+/// Time constants that steps must resolve: one for all times, and further ones for time spans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeConstants {
     always: f64,
@@ -44,7 +44,7 @@ pub trait Replayable<R: Real = f64>: Dynamics<R> {
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory.
     fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
-    /// `true` if a measured channel acts on it.
+    /// `true` if a measured channel acts on the ship.
     fn needs(&self, channel: Regressor) -> bool;
 
     /// Time constants that steps must resolve.

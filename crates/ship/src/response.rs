@@ -2,10 +2,10 @@
 //!
 //! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
 //!
-//! where δ_e is the recorded rudder after dead time and every transformation, and s_a, s_b are the products of the
-//! scales of the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and T₂ r' =
-//! s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a
-//! (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
+//! with δ_e the recorded rudder after dead time and every transformation, and s_a, s_b the products of the scales of
+//! the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and T₂ r' = s − (1 +
+//! T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard
+//! form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
 //!
 //! Sources: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; Bech and Wagner Smitt (1969),
 //! Analogue simulation of ship manoeuvres.
@@ -58,7 +58,7 @@ pub struct ResponseModel {
     states: usize,
     /// Number of effects up to the last with states; later effects need no rudder for memory.
     with_memory: usize,
-    /// Index of the effect that makes the response second order; its first state is s.
+    /// Index of the effect that makes the response second-order; the first state of this effect is s.
     second_order: Option<usize>,
 }
 
@@ -122,8 +122,8 @@ impl ResponseModel {
     /// Response with these parameter values.
     ///
     /// # Panics
-    /// If the number of values is not [`parameter_count`](Self::parameter_count): a mistake of the caller, not of a
-    /// user.
+    /// If the number of values is not [`parameter_count`](Self::parameter_count): a programming error, not a user's
+    /// error.
     pub fn with<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
@@ -227,7 +227,7 @@ impl<R: EffectReal> Response<R> {
         Instant { rudder, scale, acceleration }
     }
 
-    /// f of the module's equation, and r', which differs for a second-order response.
+    /// Right-hand side f of the module's equation, and r', which differs from f for a second-order response.
     #[inline]
     fn accelerations(&self, state: &[R], input: &Input<R>, instant: &Instant<R>) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
@@ -264,7 +264,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
     }
 
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the memory of the
-    /// effects is that of a constant rudder.
+    /// effects is that of a constant rudder angle.
     fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
@@ -281,7 +281,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         }
     }
 
-    /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory of all effects; the state s of a
+    /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory of all effects. The state s of a
     /// second-order response is adjusted so that the yaw acceleration is unchanged.
     fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
@@ -364,7 +364,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::action(effect).dead_time(p))
     }
 
-    /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
+    /// Fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
     fn largest_step(&self) -> f64 {
         (self.shortest_time() / 50.0).clamp(1e-3, 0.1)
     }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Number for a message: all its digits, and a power of ten where zeros would hide them (1e-12, 1e300).
+/// Number for a message, with all digits; with a power of ten instead of many zeros (1e-12, 1e300).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShortNumber(pub f64);
 

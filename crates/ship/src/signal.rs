@@ -16,16 +16,16 @@ pub enum SignalError {
         /// Number of values.
         values: usize,
     },
-    /// A time or value that is not finite, or a time that does not increase.
+    /// Point with a time or value that is not finite, or a time that does not increase.
     #[error("a signal needs finite values at increasing times, point {index} is ({time}, {value})")]
     Point {
         /// Index of the offending point.
         index: usize,
         /// Time of the point before, s; −∞ for the first.
         before: f64,
-        /// Its time, s.
+        /// Time of the point, s.
         time: f64,
-        /// Its value.
+        /// Value of the point.
         value: f64,
     },
 }
@@ -50,7 +50,7 @@ impl Polyline {
         if time.is_empty() {
             return Err(SignalError::Empty);
         }
-        // Increasing numbers between finite ends are finite.
+        // Increasing numbers between two finite numbers are finite.
         let increasing = time.windows(2).all(|pair| pair[0] < pair[1]);
         let sound = increasing && time[0].is_finite() && time[time.len() - 1].is_finite();
         if !sound || !value.iter().all(|value| value.is_finite()) {

@@ -4,22 +4,22 @@ use trial::Manoeuvre;
 
 use crate::simulation::Simulation;
 
-/// Assumption of a trial because a setting was left out, which can decide the result of a study.
+/// Assumption of a trial for a setting that was left out; it can decide the result of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Assumption {
     /// Instantaneous rudder.
     InstantRudder,
-    /// Orders exactly at their heading.
+    /// Orders given exactly at their heading.
     PerfectHelmsman,
-    /// Recorded heading without error.
+    /// Recorded heading without errors.
     PerfectCompass,
 }
 
 impl Assumption {
-    /// All assumptions, the most harmful first.
+    /// All assumptions, in order of decreasing effect on results.
     pub const ALL: [Self; 3] = [Self::InstantRudder, Self::PerfectHelmsman, Self::PerfectCompass];
 
-    /// `true` if a simulation makes this assumption. A rate set to infinity is intended and does not count.
+    /// `true` if a simulation makes this assumption. A rate set to infinity is intentional and is no assumption.
     pub fn holds(self, simulation: &Simulation) -> bool {
         let Simulation { manoeuvre, helmsman, gear, sensors, .. } = simulation;
         match self {

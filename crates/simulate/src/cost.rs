@@ -1,5 +1,5 @@
-//! Upper estimate of the cost of a run, so that no specification, random or mistyped, computes for ever or exhausts the
-//! memory. [`Simulation::validate`] refuses a run whose estimate is too large; a run that exceeds its estimate stops
+//! Upper estimate of the cost of a run, so that no random or mistyped specification runs without end or exhausts the
+//! memory. [`Simulation::validate`] rejects a run whose estimate is too large; a run that exceeds its estimate stops
 //! with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
 use ship::narrow_band::NarrowBand;
@@ -15,15 +15,15 @@ use crate::wave_path;
 /// Upper estimate of the cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cost {
-    /// Duration of the run, s; every awaited heading counts with the longest wait.
+    /// Duration of the run, s; every awaited heading counts with the maximum wait.
     pub duration: f64,
     /// Number of steps of solver, weather and sea, rows, and display readings.
     pub steps: f64,
-    /// Key and value of the longest part.
+    /// Key and value of the part with the longest duration.
     longest: (&'static str, f64),
 }
 
-/// Part of a run: key, value and longest duration, s.
+/// Part of a run: key, value and maximum duration, s.
 #[derive(Debug, Clone, Copy)]
 struct RunPart {
     key: &'static str,
@@ -49,7 +49,7 @@ impl Simulation {
         Cost { duration, steps: duration * self.steps_per_second(), longest: (longest.key, longest.value) }
     }
 
-    /// Checks the number of steps; fails with the key and value of the longest part.
+    /// Check of the number of steps; fails with the key and value of the part with the longest duration.
     pub(crate) fn check_cost(&self) -> Check {
         let Cost { steps, longest: (key, value), .. } = self.cost();
         let most = MAX_STEPS as f64;
@@ -59,7 +59,7 @@ impl Simulation {
         Err(SpecificationError { key, value, expected: Expected::Steps { estimate: steps, most } })
     }
 
-    /// Parts of the manoeuvre, up to `count` of its steps.
+    /// Parts of the manoeuvre, up to `count` steps.
     fn steps(&self, count: usize, key_of_waits: Option<&'static str>) -> Vec<RunPart> {
         let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in)];
         let wait = self.longest_wait + self.helmsman.reaction_time;
@@ -71,7 +71,7 @@ impl Simulation {
                 Trigger::Deviation { .. } if is_slow => {
                     RunPart { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration: wait }
                 }
-                // The number of the execute that is awaited.
+                // Number of the awaited execute.
                 Trigger::Deviation { .. } => {
                     RunPart { key: key_of_waits.unwrap_or(key), value: (orders + 1) as f64, duration: wait }
                 }
@@ -104,7 +104,7 @@ impl Simulation {
         parts.extend([
             RunPart::time("recording.offset-s", self.recording.offset.unwrap_or(0.0)),
             RunPart::time("recording.duration-s", self.recording.duration.unwrap_or(f64::INFINITY)),
-            // A heading younger than its row is read after the last row.
+            // A heading more recent than its row is read after the last row.
             RunPart { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) },
         ]);
         parts
@@ -135,7 +135,7 @@ mod tests {
     use crate::{SimulateError, Vessel};
     use ship::FirstOrder;
 
-    /// The refusal names the key that causes the cost.
+    /// Error of a run that cannot end: it names the key that causes the cost.
     #[test]
     fn a_run_that_cannot_end_is_refused_with_what_makes_it_so() {
         let refused = |change: &dyn Fn(&mut Simulation)| {
@@ -173,7 +173,7 @@ mod tests {
         (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.0));
         let Cost { duration, steps, .. } = simulation.cost();
         assert_eq!(duration, 3600.0 + 1.0 + 100.0 + 3.0);
-        // The closed form strides over a minute; every row is read twice.
+        // The closed form has steps of a minute; every row is read twice.
         assert!((steps - duration * (1.0 / 60.0 + 2.0)).abs() < 1e-6, "{steps}");
     }
 }

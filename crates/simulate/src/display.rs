@@ -1,5 +1,5 @@
-//! Heading display of the helmsman during one run: the measured heading at its own instants, and a log of the readings,
-//! because a row of the record at the instant of a reading holds the same number.
+//! Heading display of the helmsman during one run: the measured heading at the instants of the display, and a log of
+//! the readings, because a row of the record at the same instant has the same value.
 
 use rand::rngs::ChaCha8Rng;
 
@@ -8,7 +8,7 @@ use crate::stream::{Purpose, StreamKey, normal};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
-/// Tolerance, rad, of the awaited heading: a multiple of the quantum can be a rounding error below it.
+/// Tolerance of the awaited heading, rad: a multiple of the quantum can be below it by a rounding error.
 const READING_TOLERANCE: f64 = 1e-9;
 
 /// Reading of the display.
@@ -29,7 +29,7 @@ impl DisplayReading {
     }
 }
 
-/// Display in one run.
+/// Heading display in one run.
 #[derive(Debug)]
 pub(crate) struct Display {
     period: f64,
@@ -51,9 +51,9 @@ impl Display {
         Self { period, next: 0, base, sensors, waves, wander, rng, log }
     }
 
-    /// Skips the readings before `t` (s), when nobody looked.
+    /// Skips the readings before `t` (s), which are not used.
     pub fn skip_to(&mut self, t: f64) {
-        // All but the last at once: a long lead-in has millions.
+        // All readings but the last at once: a long lead-in has millions of readings.
         self.next = self.next.max(((t / self.period) as u64).saturating_sub(1));
         while self.next_time() < t {
             self.next += 1;
@@ -65,7 +65,8 @@ impl Display {
         self.next as f64 * self.period
     }
 
-    /// Reads the display at its next time, with the compass at `gyro` (rad); `true` if `side` · deviation ≥ `angle`.
+    /// Reading of the display at the next time, with the compass at `gyro` (rad); `true` if `side` · deviation ≥
+    /// `angle`.
     pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;
@@ -77,7 +78,7 @@ impl Display {
         side * (heading - self.base) >= angle - READING_TOLERANCE
     }
 
-    /// Log of the readings, in the order of time.
+    /// Log of the readings, in order of time.
     pub fn into_log(self) -> Vec<DisplayReading> {
         self.log
     }

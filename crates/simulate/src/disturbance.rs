@@ -1,6 +1,6 @@
 //! Disturbances of wind and sea, as a specification. Moments are equivalent rudder angles (same yaw moment at approach
-//! speed), rad; waves add to the observed heading. The paths of one run are drawn in `weather` and `wave_path`, on
-//! grids that depend on this specification alone.
+//! speed), rad; waves add to the observed heading. The random paths of one run are generated in `weather` and
+//! `wave_path`, on grids that depend on this specification alone.
 //!
 //! Sources: Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control, for waves and Gauss–Markov
 //! moments.
@@ -13,7 +13,7 @@ use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
 
-/// Wind and sea; a key that is left out means calm.
+/// Wind and sea; a missing key means calm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Disturbances {
@@ -24,16 +24,16 @@ pub struct Disturbances {
     /// Linear trend of the moment from the beginning of the run, as rudder angle.
     #[serde(rename = "drift-deg-per-s", with = "Degrees::<f64>")]
     pub drift: f64,
-    /// A moment that is present for a part of the run only.
+    /// Moment that is present for a part of the run only.
     pub squall: Option<Squall>,
     /// Random walk of the moment: its standard deviation after one second, as rudder angle.
     #[serde(rename = "random-walk-deg-per-root-s", with = "Degrees::<f64>")]
     pub random_walk: f64,
-    /// Narrow-band yaw from waves, seen on top of the response.
+    /// Narrow-band yaw from waves, added to the response in the observed heading.
     pub waves: Option<WaveSpectrum>,
 }
 
-/// A steady wind whose yaw moment depends on heading: w sin 2(ψ_w − ψ) (1 + g).
+/// Steady wind whose yaw moment depends on heading: w sin 2(ψ_w − ψ) (1 + g).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wind {
@@ -50,7 +50,7 @@ pub struct Wind {
     pub gusting: Option<Gusting>,
 }
 
-/// Gusting g of the moment of the wind; its speed follows as the square root of 1 + g.
+/// Gusting g of the wind moment; the wind speed varies with the square root of 1 + g.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gusting {
@@ -61,7 +61,7 @@ pub struct Gusting {
     pub correlation_time: f64,
 }
 
-/// A stationary first-order Gauss–Markov process of an angle: g' = −g/τ + white noise.
+/// Stationary first-order Gauss–Markov process of an angle: g' = −g/τ + white noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaussMarkov {
@@ -73,20 +73,20 @@ pub struct GaussMarkov {
     pub correlation_time: f64,
 }
 
-/// A moment that is present for a part of the run only, with smooth (raised-cosine) edges.
+/// Moment that is present for a part of the run only, with smooth (raised-cosine) edges.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Squall {
     /// Moment between the edges, as rudder angle.
     #[serde(rename = "moment-deg", with = "Degrees::<f64>")]
     pub moment: f64,
-    /// Beginning, from the beginning of the run.
+    /// Time of the beginning, from the start of the run.
     #[serde(rename = "start-s")]
     pub start: f64,
-    /// Length, edges included.
+    /// Duration, edges included.
     #[serde(rename = "duration-s")]
     pub duration: f64,
-    /// Length of each smooth edge, at most half the length.
+    /// Duration of each smooth edge, at most half of the total duration.
     #[serde(rename = "edge-s")]
     pub edge: f64,
 }
@@ -95,13 +95,13 @@ pub struct Squall {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaveSpectrum {
-    /// Standard deviation of the heading they add.
+    /// Standard deviation of the heading that waves add.
     #[serde(rename = "sd-deg", with = "Degrees::<f64>")]
     pub sd: f64,
     /// Frequency of encounter.
     #[serde(rename = "frequency-rad-s")]
     pub frequency: f64,
-    /// Relative damping: the smaller, the narrower the band.
+    /// Relative damping; a smaller value gives a narrower band.
     pub damping: f64,
 }
 
@@ -119,7 +119,7 @@ impl Disturbances {
         self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0 || gusting
     }
 
-    /// Checks every value; fails with the first invalid one.
+    /// Check of every value; fails with the first invalid value.
     pub fn validate(&self) -> Check {
         if let Some(wind) = &self.wind {
             error::finite("disturbance.wind.moment-deg", wind.moment)?;
@@ -154,14 +154,14 @@ impl Disturbances {
     }
 }
 
-/// Maximum encounter frequency of waves, rad/s; even a model one metre long stays below it.
+/// Maximum encounter frequency of waves, rad/s; even a model of 1 m length encounters lower frequencies.
 const MAX_FREQUENCY_RAD_S: f64 = 100.0;
 
 /// Maximum relative damping at which [`NarrowBand`] oscillates; at 1 its damped frequency is zero.
 const MAX_DAMPING: f64 = 0.999;
 
 impl Squall {
-    /// Moment at time `t`, rad: 0 outside, raised cosine over the edges.
+    /// Moment at time `t`, rad: zero outside, raised cosine over the edges.
     pub fn moment(&self, t: f64) -> f64 {
         let inside = (t - self.start).min(self.start + self.duration - t);
         if inside <= 0.0 {
@@ -182,7 +182,7 @@ impl Wind {
     }
 
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
-    /// (m/s) on a ship with speed `U` (m/s) ahead; the drift angle is neglected.
+    /// (m/s) and a ship with speed `U` (m/s) ahead; the drift angle is neglected.
     pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
         trial::relative_wind(speed, self.from, U, heading)
     }
@@ -205,7 +205,7 @@ mod tests {
         let (speed, from) = wind.relative(10.0, 5.0, 0.5);
         assert_relative_eq!(speed, 15.0, max_relative = 1e-12);
         assert_relative_eq!(from, 0.0, epsilon = 1e-12);
-        // Heading such that the wind is on the starboard beam.
+        // Heading with the wind on the starboard beam.
         let (speed, from) = wind.relative(10.0, 5.0, 0.5 - std::f64::consts::FRAC_PI_2);
         assert_relative_eq!(speed, 125.0_f64.sqrt(), max_relative = 1e-12);
         assert_relative_eq!(from, 2.0_f64.atan(), max_relative = 1e-12);

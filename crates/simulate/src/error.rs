@@ -1,4 +1,4 @@
-//! Errors of simulation: an invalid specification, or a run without a record. Errors carry the numbers, with the key
+//! Errors of simulation: an invalid specification, or a run without a record. Errors contain the numbers, with the key
 //! and unit of the scenario file, and advice.
 
 use std::fmt;
@@ -10,35 +10,35 @@ use trial::TrialError;
 
 use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
-/// Requirement on a value of a specification.
+/// Requirement for a value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
-    /// A finite number.
+    /// Finite number.
     Finite,
-    /// A finite number above zero.
+    /// Finite number above zero.
     Positive,
-    /// A finite number, zero or above.
+    /// Finite number, zero or above.
     NotNegative,
-    /// A number above zero, infinity included.
+    /// Number above zero, infinity included.
     PositiveOrInfinite,
-    /// A number within two bounds, both included.
+    /// Number between two bounds, both included.
     Between(f64, f64),
-    /// A number up to a limit.
+    /// Number up to a limit.
     AtMost(f64),
-    /// A duration, because nothing else ends the run.
+    /// Required duration, because no other setting ends the run.
     Duration,
-    /// A run within the limit of steps.
+    /// Run within the limit of steps.
     Steps {
         /// Upper estimate of the steps.
         estimate: f64,
         /// Maximum number of steps.
         most: f64,
     },
-    /// The number of an execute, up to that of the last one.
+    /// Number of an execute, up to the number of the last execute.
     Execute(usize),
-    /// A key that depends on another: what was found, what was expected, and advice.
+    /// Key that depends on another key: value found, value expected, and advice.
     Other([&'static str; 3]),
-    /// A value that depends on another: what was found, what was expected, and advice.
+    /// Value that depends on another value: value found, value expected, and advice.
     Value([&'static str; 3]),
 }
 
@@ -65,9 +65,9 @@ impl fmt::Display for Expected {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{key} is {}, expected {expected}", shown(*.value))]
 pub struct SpecificationError {
-    /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name where no scenario sets it.
+    /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name if no scenario sets it.
     pub key: &'static str,
-    /// Value found, in the unit of its key; NaN where none was given.
+    /// Value found, in the unit of its key; NaN if none was given.
     pub value: f64,
     /// Requirement, in the unit of its key.
     pub expected: Expected,
@@ -76,16 +76,16 @@ pub struct SpecificationError {
 /// Tables of a scenario whose keys are all optional.
 const OPTIONAL: [&str; 4] = ["steering-gear.", "helmsman.", "approach.", "sensor."];
 
-/// Tables within them that are optional as a whole.
+/// Nested tables that are optional as a whole.
 const WHOLE: [&str; 2] = ["sensor.heading-wander.", "sensor.heading-spikes."];
 
 impl SpecificationError {
-    /// `true` if the presence of the key is the error, `false` if it is its value.
+    /// `true` if the presence of the key is the error, `false` if its value is.
     pub fn is_about_key(&self) -> bool {
         matches!(self.expected, Expected::Other(_)) || self.key == "vessel.dead_time"
     }
 
-    /// Message in the units of a scenario: what was found, what was expected, and advice.
+    /// Message in the units of a scenario: value found, value expected, and advice.
     pub fn message_parts(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
         let problem = match expected {
@@ -177,7 +177,7 @@ pub enum SimulateError {
         /// Time waited, s.
         waited: f64,
     },
-    /// Record that starts at an execute that was never made.
+    /// Record whose start is an execute that was never made.
     #[error("the record starts at execute {execute}, but the run ended after {made} executes")]
     NoSuchExecute {
         /// Execute awaited, from 1.
@@ -203,7 +203,7 @@ pub enum SimulateError {
 /// Result of a check of a value.
 pub(crate) type Check = Result<(), SpecificationError>;
 
-/// Number as it was written, without the rounding errors of the conversion to radians and back.
+/// Number as written in the scenario, without the rounding errors of the conversion to radians and back.
 pub(crate) fn shown(value: f64) -> ShortNumber {
     ShortNumber::rounded(value, 14)
 }
@@ -213,12 +213,12 @@ fn unit(key: &str) -> f64 {
     if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 
-/// Error that no single value causes.
+/// Error that no single value causes; always fails.
 pub(crate) fn refused(key: &'static str, expected: Expected) -> Check {
     Err(SpecificationError { key, value: f64::NAN, expected })
 }
 
-/// Checks a value (SI, rad); fails if `holds` is false.
+/// Check of a value (SI, rad); fails if `holds` is false.
 fn check(holds: bool, key: &'static str, value: f64, expected: Expected) -> Check {
     if holds {
         return Ok(());
@@ -240,7 +240,7 @@ pub(crate) fn positive(key: &'static str, value: f64) -> Check {
     check(value.is_finite() && value > 0.0, key, value, Expected::Positive)
 }
 
-/// Checks a count of at least one.
+/// Check of a count; fails outside the range from 1 to `most`.
 pub(crate) fn count(key: &'static str, value: usize, most: usize) -> Check {
     between(key, value as f64, 1.0, most as f64)
 }
@@ -261,13 +261,13 @@ pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Check {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
-/// Checks a duration, s: not negative, and no longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
+/// Check of a duration, s; fails if it is negative or longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
 pub(crate) fn time(key: &'static str, value: f64) -> Check {
     not_negative(key, value)?;
     at_most(key, value, MAX_TIME_S)
 }
 
-/// Checks a duration, s, above zero.
+/// Check of a duration, s; fails if it is not positive or longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
 pub(crate) fn positive_time(key: &'static str, value: f64) -> Check {
     positive(key, value)?;
     at_most(key, value, MAX_TIME_S)

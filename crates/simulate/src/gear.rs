@@ -1,5 +1,5 @@
-//! Steering gear: the rudder angle that follows an order. For a constant order the rudder path has a closed form, so it
-//! is a list of segments with exact ends and is never integrated. Orders are given in [`crate::helm`].
+//! Steering gear: the rudder angle that results from the orders. For a constant order the rudder path has a closed
+//! form, so the path is a list of segments with exact ends and is not integrated. Orders are given in [`crate::helm`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,15 +11,16 @@ use crate::error::{self, Check};
 
 /// Steering gear with optional rate limit, lag, dead time, dead band and stops.
 ///
-/// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within
-/// the stops; the pump stands still as soon as the error is inside the dead band.
+/// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, with δ_c the order one dead time ago, clamped to the
+/// stops; the pump stops as soon as the error is inside the dead band.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SteeringGear {
-    /// Rudder rate; that of the ship where its source gives one, and else the rudder moves instantly.
+    /// Rudder rate; the default is the rate of the ship, or an instantaneous rudder if the source of the ship gives
+    /// none.
     #[serde(rename = "rate-deg-s", with = "Degrees::<Option<f64>>")]
     pub rate: Option<f64>,
-    /// Time constant of the approach to the order.
+    /// Time constant of the exponential approach to the order.
     #[serde(rename = "lag-s")]
     pub lag: f64,
     /// Time from order to first movement.
@@ -28,7 +29,8 @@ pub struct SteeringGear {
     /// Error at which the pump stops, and below which it does not start.
     #[serde(rename = "dead-band-deg", with = "Degrees::<f64>")]
     pub dead_band: f64,
-    /// Maximum rudder angle to either side; that of the ship where its source gives one, and else 90°.
+    /// Maximum rudder angle to either side; the default is that of the ship, or 90° if the source of the ship gives
+    /// none.
     #[serde(rename = "maximum-deg", with = "Degrees::<Option<f64>>")]
     pub maximum: Option<f64>,
 }
@@ -55,13 +57,13 @@ pub enum RudderMotion {
 /// Piece of a rudder path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Beginning, s; −∞ for the segment before everything.
+    /// Beginning, s; −∞ for the first segment.
     pub start: f64,
-    /// End, s; +∞ for the last one.
+    /// End, s; +∞ for the last segment.
     pub end: f64,
     /// Rudder angle at the beginning, rad.
     pub angle: f64,
-    /// Motion from there.
+    /// Motion from the beginning.
     pub motion: RudderMotion,
 }
 
@@ -88,7 +90,7 @@ impl SteeringGear {
         Self { rate: Some(rate), ..Self::default() }
     }
 
-    /// Gear with missing settings taken from a ship, where its source gives them.
+    /// Gear with missing settings taken from a ship, if its source gives them.
     pub fn with_defaults_of(self, ship: &Ship) -> Self {
         Self {
             rate: self.rate.or(ship.rudder_rate),
@@ -107,7 +109,7 @@ impl SteeringGear {
         self.maximum.unwrap_or(f64::INFINITY)
     }
 
-    /// Checks every value; fails with the first invalid one.
+    /// Check of every value; fails with the first invalid value.
     pub fn validate(&self) -> Check {
         error::positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
         error::time("steering-gear.lag-s", self.lag)?;
@@ -116,7 +118,7 @@ impl SteeringGear {
         error::positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
     }
 
-    /// Appends the segments that answer an order arriving at `start` with the rudder at `from`; the last one has no
+    /// Appends the response to an order that arrives at `start` with the rudder at `from`: segments, the last without
     /// end.
     fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
         let (rate, maximum) = (self.largest_rate(), self.largest_rudder());
@@ -124,7 +126,7 @@ impl SteeringGear {
         let side = (target - from).signum();
         let mut t = start;
         let mut angle = from;
-        // Remaining error: first the rate limits it, then the lag, then the pump stops.
+        // Remaining error: the rate limits the motion first, then the lag, then the pump stops.
         let mut error = (target - from).abs();
         if error > self.dead_band {
             // An infinite rate without lag would give ∞·0.
@@ -163,14 +165,14 @@ pub struct RudderPath {
 }
 
 impl RudderPath {
-    /// Rudder that stands at `angle` (rad) until the first order.
+    /// Rudder that rests at `angle` (rad) until the first order.
     pub fn standing(angle: f64) -> Self {
         let mut segments = Vec::with_capacity(64);
         segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         Self { segments }
     }
 
-    /// Rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, shifted so that its first point
+    /// Rudder that rests at `angle` (rad) until `start` (s) and then follows `signal`, shifted so that its first point
     /// is at `start`.
     pub fn following(angle: f64, start: f64, signal: &Polyline) -> Self {
         let (times, values) = (signal.times(), signal.values());
@@ -187,9 +189,9 @@ impl RudderPath {
         path
     }
 
-    /// Adds an order (rad) at time `t` (s), which changes the path from one dead time later on.
+    /// Adds an order (rad) at time `t` (s), which changes the path after one dead time.
     ///
-    /// Orders must come in the order of time.
+    /// Orders must come in order of time.
     pub fn order(&mut self, t: f64, order: f64, gear: &SteeringGear) {
         let arrival = t + gear.dead_time;
         let from = self.at(arrival);
@@ -202,7 +204,7 @@ impl RudderPath {
         gear.respond(arrival, from, order, &mut self.segments);
     }
 
-    /// The segments in the order of time.
+    /// Segments in order of time.
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
@@ -219,7 +221,7 @@ impl RudderPath {
         times.map(angle).collect()
     }
 
-    /// Rudder angle at time `t`, rad; at a jump the angle after it.
+    /// Rudder angle at time `t`, rad; at a jump, the angle after the jump.
     pub fn at(&self, t: f64) -> f64 {
         let after = self.segments.partition_point(|segment| segment.start <= t);
         self.segments[after.saturating_sub(1)].at(t)
@@ -265,7 +267,7 @@ mod tests {
         assert_abs_diff_eq!(starts[1], 17.5, epsilon = 1e-12);
         assert_abs_diff_eq!(starts[2], 17.5 + 2.0 * 10.0_f64.ln(), epsilon = 1e-12);
         assert_abs_diff_eq!(path.at(100.0), 0.39, epsilon = 1e-15);
-        // The path has no jumps, and where ramp meets exponential no corner.
+        // The path has no jumps, and no corner between ramp and exponential.
         for pair in path.segments().windows(2) {
             assert_abs_diff_eq!(pair[0].at(pair[0].end), pair[1].angle, epsilon = 1e-15);
         }
@@ -274,7 +276,7 @@ mod tests {
         assert_relative_eq!(slopes[0], slopes[1], max_relative = 1e-5);
     }
 
-    /// δ' = clamp((δ_c − δ)/lag, ±rate), in small steps.
+    /// Solution of δ' = clamp((δ_c − δ)/lag, ±rate), in small steps.
     #[test]
     fn segments_are_the_solution_of_the_equation() {
         let gear = SteeringGear { rate: Some(0.08), lag: 1.0, ..SteeringGear::default() };
@@ -294,7 +296,7 @@ mod tests {
         path.order(12.0, -0.5, &gear);
         assert_abs_diff_eq!(path.at(13.0), 0.2, epsilon = 1e-15);
         assert_abs_diff_eq!(path.at(14.0), 0.1, epsilon = 1e-15);
-        // An order given while another is on its way does not overtake it.
+        // A later order does not overtake an earlier order within its dead time.
         path.order(12.5, 0.5, &gear);
         assert_abs_diff_eq!(path.at(13.5), 0.15, epsilon = 1e-15);
         assert_abs_diff_eq!(path.at(17.0), 0.5, epsilon = 1e-15);

@@ -1,5 +1,5 @@
 //! Helmsman: the specification, and the [`Helm`], which is the state of one manoeuvre in one run and gives the orders.
-//! The rudder is moved in [`crate::gear`].
+//! The motion of the rudder is in [`crate::gear`].
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,10 +11,10 @@ use crate::error::{self, Check};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Helmsman {
-    /// Time between readings of the heading display; left out, he knows the true heading at every instant.
+    /// Time between readings of the heading display; if left out, the helmsman knows the true heading at every instant.
     #[serde(rename = "reads-display-every-s")]
     pub reads_display_every: Option<f64>,
-    /// Time from seeing the heading waited for to giving the order.
+    /// Time from the reading of the awaited heading to the order.
     #[serde(rename = "reaction-time-s")]
     pub reaction_time: f64,
 }
@@ -24,7 +24,7 @@ pub(crate) const MIN_PERIOD_S: f64 = 1e-3;
 pub(crate) const MAX_PERIOD_S: f64 = 1e3;
 
 impl Helmsman {
-    /// Checks every value; fails with the first invalid one.
+    /// Check of every value; fails with the first invalid value.
     pub fn validate(&self) -> Check {
         if let Some(period) = self.reads_display_every {
             error::between("helmsman.reads-display-every-s", period, MIN_PERIOD_S, MAX_PERIOD_S)?;
@@ -51,18 +51,18 @@ pub struct HelmOrder {
 pub struct Helm<'a> {
     manoeuvre: &'a Manoeuvre,
     reaction_time: f64,
-    /// Number of orders given.
+    /// Number of orders given so far.
     orders: usize,
-    /// Time of the last order, s; before the first one, the time at which it is due.
+    /// Time of the last order, s; before the first order, the time at which it is due.
     last: f64,
-    /// Time of an order that is decided and not yet given, s.
+    /// Time of an order that is decided but not yet given, s.
     due: Option<f64>,
     end: f64,
     finished: bool,
 }
 
 impl<'a> Helm<'a> {
-    /// Helm at the beginning of a run whose first execute is at `first_execute` s.
+    /// Helm at the beginning of a run with the first execute at `first_execute` s.
     pub fn new(manoeuvre: &'a Manoeuvre, helmsman: &Helmsman, first_execute: f64) -> Self {
         let Helmsman { reaction_time, .. } = *helmsman;
         let end = first_execute + manoeuvre.length();
@@ -74,7 +74,7 @@ impl<'a> Helm<'a> {
         self.end
     }
 
-    /// Trigger of the next order; a time is that of the run.
+    /// Trigger of the next order; times are on the clock of the run.
     pub fn trigger(&self) -> Trigger {
         let step = self.manoeuvre.step(self.orders);
         match (self.due, step.trigger) {
@@ -86,7 +86,7 @@ impl<'a> Helm<'a> {
         }
     }
 
-    /// Acts on the trigger at time `t` (s) and returns the rudder order, rad; `None` if no order is given now.
+    /// Rudder order, rad, by the trigger at time `t` (s); `None` if no order is given at this time.
     pub fn act(&mut self, t: f64) -> Option<f64> {
         let is_heading_dependent = matches!(self.trigger(), Trigger::Deviation { .. });
         let Some(order) = self.manoeuvre.step(self.orders).order else {

@@ -1,7 +1,7 @@
-//! Simulated sea trials: from a vessel and a manoeuvre, a record and the true motion behind it.
+//! Simulated sea trials: a record and the corresponding true motion, from a vessel and a manoeuvre.
 //!
 //! A [`Simulation`] is an immutable specification. One call of [`Simulation::run`] with a [`StreamKey`] makes one
-//! trial, bit for bit the same every time. The crate is independent of identification.
+//! trial, identical to the last bit in every repetition. The crate is independent of identification.
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -33,8 +33,8 @@
 //! # Ok::<(), kempf_simulate::SimulateError>(())
 //! ```
 //!
-//! The types of a specification are those of a scenario file, which has degrees and units in its keys. In memory, time
-//! is in seconds from the beginning of the run, and all quantities are in SI units and radians.
+//! The types of a specification are the types of a scenario file, which has degrees, and units in the keys. In memory,
+//! time is in seconds from the beginning of the run, and all quantities are in SI units and radians.
 
 mod display;
 mod manoeuvre;

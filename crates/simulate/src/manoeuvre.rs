@@ -1,11 +1,11 @@
-//! Validity of the values of a manoeuvre, with the scenario keys for error messages.
+//! Validation of a manoeuvre, with the scenario keys for error messages.
 
 use trial::manoeuvre::Manoeuvre;
 
 use crate::error::{self, Check, Expected};
 use crate::limits::MAX_EXECUTES;
 
-/// Checks every value of a manoeuvre; fails with the first invalid one.
+/// Check of every value of a manoeuvre; fails with the first invalid value.
 pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
     let [rudder_key, duration_key] = key_of(manoeuvre);
     if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {

@@ -1,5 +1,5 @@
-//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`Scene`] has the readings
-//! of perfect instruments; [`write`] adds the random errors of one record.
+//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`Scene`] contains the
+//! readings of perfect instruments; [`write`] adds the random errors of one record.
 //!
 //! Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265, for bursts of lost rows.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
@@ -24,19 +24,19 @@ use crate::wave_path::SeaWaves;
 /// Tolerance, s, for equal instants.
 const INSTANT_TOLERANCE_S: f64 = 1e-9;
 
-/// True run as the instruments see it.
+/// True run at the instants of the instruments.
 pub(crate) struct View<'a> {
     /// Motion at the instants of the readings.
     pub samples: &'a [Sample],
-    /// Deviation of the sampling instants from their stamps, s; empty for none.
+    /// Deviation of the sampling instants from their stamps, s; empty without jitter.
     pub jitter: &'a [f64],
     /// Rudder path, executes and readings of the helmsman.
     pub run: &'a RunResult,
     /// Rudder path reconstructed from the orders; `None` if the rudder is recorded.
     pub assumed: Option<&'a RudderPath>,
-    /// Rudder order before the first execute, rad; `None` without orders.
+    /// Rudder order before the first execute, rad; `None` if there is no order.
     pub first_order: Option<f64>,
-    /// Wind; `None` for none.
+    /// Wind; `None` in a calm.
     pub wind: Option<Wind>,
     /// Length and approach speed of the ship; `None` if unknown.
     pub particulars: Option<Particulars>,
@@ -53,7 +53,7 @@ pub(crate) struct Scene {
     gyro: Vec<f64>,
     /// Yaw rate, rad/s.
     yaw_rate: Vec<f64>,
-    /// Recorded rudder, rad, and `true` if an instrument reads it.
+    /// Recorded rudder, rad, and `true` if an instrument measures it.
     rudder: Vec<f64>,
     rudder_is_read: bool,
     /// Channels without instrument errors.
@@ -62,7 +62,7 @@ pub(crate) struct Scene {
     readings: Vec<DisplayReading>,
 }
 
-/// Record as columns, with the rows that were kept.
+/// Record as columns, with the kept rows.
 pub(crate) struct WrittenRows {
     pub columns: Columns,
     /// `true` for every kept row; `None` if all are kept.
@@ -142,7 +142,7 @@ pub(crate) fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
     values.retain(|_| *rows.next().unwrap_or(&false));
 }
 
-/// Adds white noise of standard deviation `sd`; draws nothing for zero.
+/// Addition of white noise of standard deviation `sd`; for `sd` = 0 no random numbers are used.
 fn disturb(column: &mut [f64], sd: f64, mut rng: ChaCha8Rng) {
     if sd > 0.0 {
         column.iter_mut().for_each(|x| *x += sd * normal(&mut rng));
@@ -175,7 +175,7 @@ fn compass_and_rate(
         let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &points);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }
-    // Drawn in every row, used or not, so that the readings of the helmsman shift no later draw.
+    // Sampled in every row, used or not, so that readings of the helmsman do not change later random numbers.
     disturb(&mut heading, sensors.heading_noise, key.rng(Purpose::Heading));
     quantise_all(&mut heading, sensors.heading_quantum);
     if !scene.readings.is_empty() {
@@ -200,7 +200,7 @@ fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     if let Some(spikes) = sensors.heading_spikes {
         let mut rng = key.rng(Purpose::HeadingSpikes);
         for psi in heading.iter_mut() {
-            // Both are drawn in every row, so that another probability shifts no later draw.
+            // Both are sampled in every row, so that another probability does not change later random numbers.
             let (hit, to_port) = (uniform(&mut rng) < spikes.probability, uniform(&mut rng) < 0.5);
             if hit {
                 *psi = quantise(*psi + if to_port { -spikes.size } else { spikes.size }, sensors.heading_quantum);
@@ -275,7 +275,7 @@ mod tests {
         let lost = lost_rows(&drop_out, rows, &StreamKey::default()).expect("bursts are asked for");
         let begun = lost.windows(2).filter(|pair| !pair[0] && pair[1]).count();
         let share = lost.iter().filter(|lost| **lost).count() as f64 / rows as f64;
-        // Stationary share p/(p + 1/m); some 1800 bursts, so the mean length is known to about 2.4 %.
+        // Stationary share p/(p + 1/m); some 1800 bursts, so the standard error of the mean length is about 2.4 %.
         assert_relative_eq!(share, 0.01 / (0.01 + 0.125), max_relative = 0.08);
         assert_relative_eq!(share * rows as f64 / begun as f64, 8.0, max_relative = 0.08);
     }

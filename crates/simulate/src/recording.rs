@@ -13,30 +13,30 @@ use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::{Purpose, StreamKey, normal};
 
-/// The record of a run.
+/// Record of a run: start, duration, sampling and rudder source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Recording {
     /// Time between two rows.
     #[serde(rename = "sampling-s")]
     pub period: f64,
-    // A manoeuvre that is over earlier ends the record.
-    /// Time from the first to the last row; left out, the record lasts until the end of the manoeuvre.
+    // A manoeuvre that ends earlier ends the record.
+    /// Time from the first to the last row; if left out, the record lasts until the end of the manoeuvre.
     #[serde(rename = "duration-s")]
     pub duration: Option<f64>,
-    /// Number of the execute, from 1, at which the record starts; left out, it starts with the run.
+    /// Number of the execute, from 1, at which the record starts; if left out, the record starts with the run.
     pub after_execute: Option<usize>,
-    /// Time from that execute to the first row; 0 when left out.
+    /// Time from the execute in `after-execute` to the first row; 0 if left out.
     #[serde(rename = "offset-s")]
     pub offset: Option<f64>,
-    /// Source of the rudder column: the feedback, or angles rebuilt from the orders.
+    /// Source of the rudder column: the feedback, or angles reconstructed from the orders.
     #[serde(default)]
     pub rudder: RudderSource,
-    /// Rate at which angles are rebuilt from orders; inf for a rudder that jumps.
+    /// Rudder rate assumed in the reconstruction from orders; inf for an instantaneous rudder.
     #[serde(default, rename = "assumed-rudder-rate-deg-s", with = "Degrees::<Option<f64>>")]
     pub assumed_rudder_rate: Option<f64>,
-    // It changes nothing else: a declaration may be wrong.
-    /// Weather that the record declares; left out, none is declared.
+    // It has no effect on the simulation: a declaration may be wrong.
+    /// Weather that the record declares; if left out, none is declared.
     pub weather: Option<DeclaredWeather>,
 }
 
@@ -44,15 +44,15 @@ pub struct Recording {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderSource {
-    /// The rudder feedback.
+    /// Rudder feedback.
     #[default]
     Feedback,
-    /// Angles rebuilt from the orders.
+    /// Angles reconstructed from the orders.
     Orders,
 }
 
 impl Default for Recording {
-    /// The whole run, once a second.
+    /// Record of the whole run, one row a second.
     fn default() -> Self {
         Self::every(1.0)
     }
@@ -65,18 +65,18 @@ impl Recording {
         Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
     }
 
-    /// Maximum duration of a record, s.
+    /// Maximum over the durations of the records, s.
     pub(crate) fn max_duration(&self) -> f64 {
         (MAX_ROWS - 1) as f64 * self.period
     }
 
     /// Number of rows; `None` without a duration.
     pub fn rows(&self) -> Option<usize> {
-        // A duration of whole periods keeps its last row despite rounding.
+        // A duration of whole periods includes its last row despite rounding.
         self.duration.map(|duration| (duration / self.period + 1e-9).floor() as usize + 1)
     }
 
-    /// Checks every value; fails with the first invalid one, or one that requires another.
+    /// Check of every value; fails with the first value that is invalid or requires another key.
     pub fn validate(&self) -> Check {
         error::positive("recording.sampling-s", self.period)?;
         error::between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
@@ -123,7 +123,7 @@ impl Recording {
     }
 }
 
-/// Sampler: samples at increasing instants of one run.
+/// Sampler of one run: samples at increasing instants.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     start: f64,
@@ -148,7 +148,7 @@ struct Jitter {
 /// Maximum jitter as a share of the period; below a half, so that instants keep their order.
 const MAX_JITTER_SHARE: f64 = 0.45;
 
-/// Maximum number of rows reserved at once; a manoeuvre can end long before its record is full.
+/// Maximum number of rows for which memory is reserved at once; a manoeuvre can end long before its record is full.
 const MAX_RESERVED_ROWS: usize = 4096;
 
 impl Sampler {
@@ -157,7 +157,7 @@ impl Sampler {
         Self::new(start, recording, None)
     }
 
-    /// Sampler at the instants of the instruments; `None` if these are the stamps.
+    /// Sampler at the instants of the instruments; `None` if these instants are the stamps.
     pub fn instruments(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
         let deviates = sensors.jitter > 0.0 || sensors.heading_delay != 0.0;
         deviates.then(|| {
@@ -168,7 +168,7 @@ impl Sampler {
 
     fn new(start: f64, recording: &Recording, deviation: Option<Jitter>) -> Self {
         let rows = recording.rows();
-        // One more than the limit, so that a record without end is noticed.
+        // One more than the limit, so that an endless record is detected.
         let remaining = rows.unwrap_or(MAX_ROWS + 1);
         let samples = Vec::with_capacity(rows.unwrap_or(0).min(MAX_RESERVED_ROWS));
         let mut sampler =
@@ -182,9 +182,9 @@ impl Sampler {
         self.next
     }
 
-    /// Takes `sample` if its time is due.
+    /// Stores `sample` if its time is due.
     pub fn take(&mut self, sample: &Sample) {
-        // Several rows can fall on one instant, because a delay cannot reach back before the run.
+        // Several rows can fall on one instant, because a delayed reading cannot precede the run.
         while self.next <= sample.time {
             self.samples.push(*sample);
             self.remaining -= 1;

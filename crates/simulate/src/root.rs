@@ -1,16 +1,16 @@
 //! Bracketed root of a function, for events inside a step.
 
-/// Root of `f` between `a` and `b`, whose values `fa` and `fb` have different signs (or one is zero).
+/// Root of `f` between `a` and `b`, at which the values `fa` and `fb` have different signs (or one is zero).
 ///
 /// Hybrid of inverse quadratic interpolation and bisection; the bracket is never left. Stops when the bracket is
-/// shorter than `tolerance` or f is zero, and returns its end with the smaller |f|.
+/// shorter than `tolerance` or f is zero, and returns the end with the smaller |f|.
 ///
 /// Source: Chandrupatla (1997), Advances in Engineering Software 28:145-149.
 pub(crate) fn bracketed(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), tolerance: f64) -> f64 {
-    // `a` is the newest point, `b` the other end of the bracket, `c` the discarded point.
+    // `a` is the newest point, `b` the opposite end of the bracket, `c` the discarded point.
     let ((mut a, mut fa), (mut b, mut fb)) = (a, b);
     let mut share = 0.5_f64;
-    // Each pass at least halves the bracket within two; 200 is out of reach for any finite bracket of f64.
+    // Two passes at least halve the bracket; no finite bracket of f64 requires 200 passes.
     for _ in 0..200 {
         let (best, f_best) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
         let reach = (0.5 * tolerance + 2.0 * f64::EPSILON * best.abs()) / (b - a).abs();
@@ -29,7 +29,7 @@ pub(crate) fn bracketed(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f
         (a, fa) = (t, ft);
         let xi = (a - b) / (c - b);
         let phi = (fa - fb) / (fc - fb);
-        // Inverse quadratic interpolation only where it is monotone over the bracket.
+        // Inverse quadratic interpolation only if it is monotone over the bracket.
         share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
             fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         } else {

@@ -1,6 +1,6 @@
 //! One run: the loop of helm, steering gear and ship. It advances from event to event (an execute, a row, a display
-//! reading), and events are never rounded to a step. Recording is controlled from outside, so a run can advance to an
-//! execute first and be recorded from there.
+//! reading), and events are never rounded to a step. Recording is controlled by the caller, so a run can advance to an
+//! execute and be recorded from that execute on.
 
 use crate::display::{Display, DisplayReading};
 use crate::error::SimulateError;
@@ -21,7 +21,7 @@ const END_TOLERANCE: f64 = 1e-9;
 pub(crate) enum Progress {
     /// Requested time.
     Reached,
-    /// Execute, the last in the list.
+    /// Execute; it is the last in the list.
     Executed,
     /// End of the manoeuvre.
     Over,
@@ -38,7 +38,7 @@ pub(crate) struct Run<'a, P> {
     base: f64,
     executes: Vec<HelmOrder>,
     longest_wait: f64,
-    /// Number of steps so far.
+    /// Number of steps taken.
     steps: usize,
 }
 
@@ -70,9 +70,9 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.propagator.time()
     }
 
-    /// Advances to the `number`-th execute (from 1) and returns its time, s.
+    /// Time, s, of execute `number` (from 1), to which the run advances.
     ///
-    /// Fails if the run ends before.
+    /// Fails if the run ends before this execute.
     pub fn reach_execute(&mut self, number: usize) -> Result<f64, SimulateError> {
         while self.executes.len() < number {
             if self.advance(f64::INFINITY)? == Progress::Over {
@@ -82,7 +82,7 @@ impl<'a, P: Propagator> Run<'a, P> {
         Ok(self.executes[number - 1].time)
     }
 
-    /// Advances to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
+    /// Advances to `until` (s), to the next execute or to the end of the manoeuvre, whichever comes first.
     ///
     /// At an execute the order has been given. Fails if the motion diverges, a heading is never reached, or a limit of
     /// the run is exceeded.
@@ -146,7 +146,7 @@ impl<'a, P: Propagator> Run<'a, P> {
 
     /// Records the rows before the next possible event.
     pub fn coast(&mut self, rows: &mut Sampler) {
-        // A display has its own instants.
+        // A display has instants of reading between rows.
         if self.display.is_some() {
             return;
         }
@@ -183,7 +183,8 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
     }
 
-    /// Moves the ship to `to`, or to the crossing of an awaited heading if that is earlier; `true` if it is.
+    /// Moves the ship to `to`, or to the crossing of an awaited heading if that is earlier; `true` if the crossing is
+    /// earlier.
     fn travel(&mut self, to: f64, watch: Option<AwaitedHeading>) -> Result<bool, SimulateError> {
         let (ship, path) = (&mut self.propagator, &self.path);
         loop {
@@ -214,7 +215,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 probed = h;
                 ship.probe(path, h)
             });
-            // A commit goes to the last probe.
+            // A commit advances to the last probe.
             let stop = event.unwrap_or(h);
             if probed != stop {
                 ship.probe(path, stop);

@@ -1,4 +1,4 @@
-//! Instruments, as a specification; the default is perfect. The measurement of a run is in `measure`, the display of
+//! Instruments, as a specification; the default has no errors. The measurement of a run is in `measure`, the display of
 //! the helmsman in `display`.
 //!
 //! Order of errors in the heading channel: lag of the gyrocompass, waves, bias, coloured error, white noise,
@@ -16,7 +16,7 @@ use crate::disturbance::GaussMarkov;
 use crate::error::{self, Check, Expected};
 use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
-/// Instruments; a key that is left out means no error.
+/// Instruments; a missing key means no error.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Sensors {
@@ -33,12 +33,12 @@ pub struct Sensors {
     /// Constant heading error.
     #[serde(rename = "heading-bias-deg", with = "Degrees::<f64>")]
     pub heading_bias: f64,
-    /// Coloured compass error, on top of the white noise; a helmsman who reads the display sees it too.
+    /// Coloured compass error, in addition to the white noise; it is part of the display that the helmsman reads.
     pub heading_wander: Option<GaussMarkov>,
-    /// Rows whose recorded heading is off by a spike.
+    /// Spikes in the recorded heading.
     pub heading_spikes: Option<Spikes>,
-    // Counted before any row is lost.
-    /// The heading stands in the first row and in every n-th after it, the rudder in all; 1 when left out.
+    // Rows are counted before drop-outs.
+    /// Heading recorded in the first row and every n-th row after it only, rudder in all rows; 1 if left out.
     pub heading_every_rows: Option<usize>,
     /// Standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator.
     #[serde(rename = "yaw-rate-noise-deg-s", with = "Degrees::<Option<f64>>")]
@@ -54,55 +54,55 @@ pub struct Sensors {
     /// Step of the rudder feedback.
     #[serde(rename = "rudder-quantum-deg", with = "Degrees::<f64>")]
     pub rudder_quantum: f64,
-    // Cut at 0.45 periods, so that rows keep their order.
+    // Truncated at 0.45 periods, so that rows keep their order.
     /// Standard deviation of the sampling instants about their stamps.
     #[serde(rename = "jitter-s")]
     pub jitter: f64,
-    // The yaw rate, speed and wind in a row are as old; negative when it is the rudder that is late.
-    /// Age of the heading against the rudder in the same row.
+    // Yaw rate, speed and wind in a row have the same age; the age is negative if the rudder is late.
+    /// Age of the heading relative to the rudder in the same row.
     #[serde(rename = "heading-delay-s")]
     pub heading_delay: f64,
-    /// Rows that are lost.
+    /// Drop-out of rows.
     pub drop_out: DropOut,
 }
 
-/// Spikes in the recorded heading: faults between compass and record, which no helmsman sees.
+/// Spikes in the recorded heading: faults between compass and record, which the helmsman does not see.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spikes {
-    /// Probability per row, independently of the others.
+    /// Probability per row, independent of other rows.
     pub probability: f64,
     /// Size of a spike, to either side.
     #[serde(rename = "size-deg", with = "Degrees::<f64>")]
     pub size: f64,
 }
 
-/// Rows that are lost, one by one or in bursts: a two-state Markov chain.
+/// Drop-out of rows, singly or in bursts: a two-state Markov chain.
 ///
 /// Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct DropOut {
-    /// Probability that a row is lost, independently of the others.
+    /// Probability that a row is lost, independent of other rows.
     pub probability: f64,
-    /// Probability per row that a burst of lost rows begins with the next one; with `burst-mean-rows`.
+    /// Probability per row that a burst of lost rows begins with the next row; with `burst-mean-rows`.
     pub burst_probability: Option<f64>,
     /// Mean length of a burst; with `burst-probability`.
     pub burst_mean_rows: Option<f64>,
-    /// `true` if a lost row is lost whole, or only its heading.
+    /// `true` if a drop-out removes the whole row, `false` if it removes only the heading.
     pub whole_row: bool,
 }
 
-/// Nearest multiple of `quantum`; the value itself for a quantum of zero.
+/// Nearest multiple of `quantum`; the value itself if the quantum is zero.
 pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
 }
 
-/// Range of the lag of a gyrocompass, s; a shorter one would only shorten the step of the solver.
+/// Range of the lag of a gyrocompass, s; a shorter lag would only reduce the step of the solver.
 const MIN_LAG_S: f64 = 0.01;
 const MAX_LAG_S: f64 = 100.0;
 
-/// Maximum spike, deg, which is the largest difference of two headings.
+/// Maximum spike, deg, which is the maximum difference of two headings.
 const MAX_SPIKE_DEG: f64 = 180.0;
 
 impl Sensors {
@@ -111,7 +111,7 @@ impl Sensors {
         [self.yaw_rate_noise, self.yaw_rate_bias, self.yaw_rate_scale_error].iter().any(Option::is_some)
     }
 
-    /// Checks every value; fails with the first invalid one, or one that requires another.
+    /// Check of every value; fails with the first value that is invalid or requires another key.
     pub fn validate(&self) -> Check {
         error::not_negative("sensor.heading-noise-deg", self.heading_noise)?;
         error::not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
@@ -139,8 +139,8 @@ impl Sensors {
         self.drop_out.validate()
     }
 
-    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` if there is
-    /// neither. Waves, lag, bias, coloured errors and spikes are not declared, because a standard deviation does not
+    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` if both are
+    /// zero. Waves, lag, bias, coloured errors and spikes are not declared, because a standard deviation does not
     /// describe them.
     pub fn declared_noise(&self) -> Noise {
         let total = |noise: f64, quantum: f64| {

@@ -1,5 +1,5 @@
-//! Specification of a simulated trial, and its result: the record of the instruments, and the truth, which
-//! identification must not use.
+//! Specification of a simulated trial, and its result: the record of the instruments, and the truth, which must not
+//! enter an identification.
 
 use std::sync::Arc;
 
@@ -39,8 +39,8 @@ pub struct BeforeExecute {
     /// Yaw rate at the beginning of the run.
     #[serde(rename = "yaw-rate-deg-s", with = "Degrees::<f64>")]
     pub yaw_rate: f64,
-    // The neutral rudder where the ship needs one to go straight.
-    /// Rudder until the first execute.
+    // The neutral rudder angle, if the ship requires one for a straight course.
+    /// Rudder angle until the first execute.
     #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
     pub rudder: f64,
     /// Straight run before the first execute.
@@ -49,7 +49,7 @@ pub struct BeforeExecute {
 }
 
 impl BeforeExecute {
-    /// Checks every value; fails with the first invalid one.
+    /// Check of every value; fails with the first invalid value.
     pub fn validate(&self) -> Check {
         error::finite("approach.heading-deg", self.heading)?;
         error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
@@ -69,7 +69,7 @@ impl BeforeExecute {
 /// let mut simulation = Simulation::new(ship, zig_zag);
 /// simulation.recording.duration = Some(200.0);
 /// simulation.sensors.heading_noise = from_deg(0.2);
-/// // The same key gives the same trial, another replicate another one.
+/// // Equal keys give equal trials; another replicate gives another trial.
 /// let run = |replicate| simulation.run(&StreamKey { seed: 7, cell: 0, replicate });
 /// assert_eq!(run(0)?.trial.heading(), run(0)?.trial.heading());
 /// assert_ne!(run(0)?.trial.heading(), run(1)?.trial.heading());
@@ -77,7 +77,7 @@ impl BeforeExecute {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    /// Name of the scenario, carried into the origin of the record.
+    /// Name of the scenario, included in the origin of the record.
     pub scenario: String,
     /// Ship.
     pub vessel: Vessel,
@@ -97,10 +97,10 @@ pub struct Simulation {
     pub recording: Recording,
     /// Method of integration.
     pub solver: Solver,
-    /// Cell width of the weather, s, which is linear within a cell: short against every correlation time of the weather
-    /// and every time constant of the ship.
+    /// Cell width of the weather, s; the weather is linear within a cell. It must be short against every correlation
+    /// time of the weather and every time constant of the ship.
     pub weather_grid: f64,
-    /// Maximum wait for a heading after an execute, s; a ship that does not reach it is an error.
+    /// Maximum wait for a heading after an execute, s; a run that exceeds it fails.
     pub longest_wait: f64,
 }
 
@@ -120,9 +120,9 @@ pub struct Truth {
     pub rudder: Vec<f64>,
     /// Total disturbance as equivalent rudder angle, rad.
     pub disturbance: Vec<f64>,
-    /// Speed through the water, m/s, where the ship has one.
+    /// Speed through the water, m/s; `None` if the ship has none.
     pub speed: Option<Vec<f64>>,
-    /// Every order from the beginning of the run to the end of the record, also those before its first row.
+    /// Orders from the beginning of the run to the end of the record, including orders before the first row.
     pub executes: Vec<HelmOrder>,
 }
 
@@ -131,19 +131,19 @@ pub struct Truth {
 pub struct Simulated {
     /// Record of the instruments.
     pub trial: Trial,
-    /// True motion; shared by records that differ only in instrument errors.
+    /// True motion; shared between records that differ only in instrument errors.
     pub truth: Arc<Truth>,
 }
 
-/// True run, without the random errors of the record.
+/// True run without the random errors of the record.
 #[derive(Debug, Clone)]
 struct TrueRun {
     scene: Scene,
     truth: Arc<Truth>,
 }
 
-/// Simulation prepared for many keys. Without random influence on ship and helmsman the run is made once, and every key
-/// draws only the instrument errors; the records are those of [`Simulation::run`], bit for bit.
+/// Simulation prepared for many keys. If no random input acts on ship and helmsman, the run is computed once, and every
+/// key determines only the instrument errors. The records are identical to the records of [`Simulation::run`].
 #[derive(Debug, Clone)]
 pub struct PreparedSimulation {
     simulation: Simulation,
@@ -151,18 +151,18 @@ pub struct PreparedSimulation {
 }
 
 impl PreparedSimulation {
-    /// Checks a simulation and computes the part that all keys share.
+    /// Simulation prepared for many keys: checked, with the part computed that all keys share.
     ///
-    /// Fails as [`Simulation::run`] does.
+    /// Fails if [`Simulation::run`] fails.
     pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
         simulation.validate()?;
         let true_run = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
         Ok(Self { simulation, true_run })
     }
 
-    /// Makes the trial of `key`.
+    /// Trial of `key`.
     ///
-    /// Fails as [`Simulation::run`] does.
+    /// Fails if [`Simulation::run`] fails.
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         match &self.true_run {
             Some(true_run) => self.simulation.record(true_run, key),
@@ -171,7 +171,7 @@ impl PreparedSimulation {
     }
 }
 
-/// Default of [`Simulation::longest_wait`], s; no ship of the registry needs ten minutes for one leg of a zig-zag.
+/// Default of [`Simulation::longest_wait`], s; no ship of the registry takes ten minutes for one leg of a zig-zag.
 const MAX_WAIT_S: f64 = 3600.0;
 
 /// Range of the step of the solver, s.
@@ -179,7 +179,7 @@ const MIN_STEP_S: f64 = 1e-5;
 const MAX_STEP_S: f64 = 60.0;
 
 impl Simulation {
-    /// Trial in a calm, with perfect helmsman, gear and instruments, recorded whole once a second.
+    /// Trial in a calm, with perfect helmsman, gear and instruments, recorded completely at one row a second.
     pub fn new(vessel: Vessel, manoeuvre: Manoeuvre) -> Self {
         Self {
             scenario: String::from("simulation"),
@@ -197,7 +197,7 @@ impl Simulation {
         }
     }
 
-    /// Checks the whole specification; fails with the first invalid value, or one that does not fit the manoeuvre.
+    /// Check of the complete specification; fails with the first value that is invalid or does not fit the manoeuvre.
     pub fn validate(&self) -> Check {
         check_manoeuvre(&self.manoeuvre)?;
         self.helmsman.validate()?;
@@ -252,16 +252,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Makes the trial of `key`.
+    /// Trial of `key`.
     ///
-    /// Fails if the specification is invalid or costs too much, the motion diverges, a heading is never reached, the
-    /// record starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
+    /// Fails if the specification is invalid or too costly, the motion diverges, a heading is never reached, the record
+    /// starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         self.validate()?;
         self.record(&self.sail(key)?, key)
     }
 
-    /// `true` if nothing random acts on ship, helmsman or the instants of the rows.
+    /// `true` if no random input acts on ship, helmsman or the instants of the rows.
     fn is_repeatable(&self) -> bool {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
@@ -271,7 +271,8 @@ impl Simulation {
         !weather && !display && self.sensors.jitter == 0.0
     }
 
-    /// True run from the beginning to the end of the record.
+    /// True run from the beginning to the end of the record. Fails for the reasons of [`run`](Self::run), except an
+    /// invalid specification.
     fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
@@ -290,7 +291,7 @@ impl Simulation {
         }
     }
 
-    /// First-order ship whose whole run has a closed form; `None` if it must be integrated.
+    /// First-order ship whose whole run has a closed form; `None` if the run must be integrated.
     pub(crate) fn closed_form(&self) -> Option<FirstOrder> {
         let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
@@ -321,7 +322,7 @@ impl Simulation {
         let mut rows = Sampler::rows(start, &self.recording);
         let mut instruments = Sampler::instruments(start, &self.recording, &self.sensors, key);
         if instruments.as_ref().is_some_and(|sampler| sampler.next() < run.time()) {
-            // The first row has a heading from before its execute, whose time is known now: run again.
+            // The first row has a heading from before its execute, whose time is now known: the run is repeated.
             run = self.begin(key, propagator());
         }
         loop {
@@ -362,7 +363,7 @@ impl Simulation {
     /// True run with its samples, after the end of the run.
     fn look_back(&self, mut rows: Sampler, mut instruments: Option<Sampler>, run: &RunResult) -> TrueRun {
         if let Some(sampler) = &mut instruments {
-            // Cut to the shorter: with a delay, both end at different rows.
+            // Truncated to the shorter: with a delay, the two end at different rows.
             let count = rows.samples.len().min(sampler.samples.len());
             rows.samples.truncate(count);
             sampler.samples.truncate(count);

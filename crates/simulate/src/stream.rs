@@ -1,6 +1,6 @@
 //! Random number streams of a trial: one ChaCha8 stream per purpose, keyed by the position of the trial in a study. No
-//! generator is shared, so any trial can be repeated alone, on any thread, with the same bits, and a new source of
-//! noise does not change the draws of the others.
+//! generator is shared, so any trial can be repeated alone, on any thread, with identical bits, and a new source of
+//! noise does not change the random numbers of other sources.
 //!
 //! Source: Bernstein (2008), ChaCha, a variant of Salsa20.
 
@@ -8,7 +8,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 
-/// Purpose of random numbers. The discriminants are part of every published result: never change or reuse one.
+/// Purpose of random numbers. The discriminants are part of every published result: never change or reuse a
+/// discriminant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u16)]
 pub enum Purpose {
@@ -36,7 +37,7 @@ pub enum Purpose {
     Waves = 10,
     /// Waves that belong to the response model of the ship, one index per effect.
     EffectWaves = 11,
-    /// Values of the specification, dispersed from trial to trial by a study.
+    /// Values of the specification, varied at random from trial to trial by a study.
     Specification = 12,
     /// Seed of a randomised identification method for this trial.
     Method = 13,
@@ -87,8 +88,8 @@ impl StreamKey {
 
     /// Generator for one of several sources with the same purpose, at its beginning.
     pub fn indexed(&self, purpose: Purpose, index: u32) -> ChaCha8Rng {
-        // The 256-bit key of the cipher has seed, cell and replicate side by side, and the stream number the purpose
-        // and index. Nothing is hashed, so no two streams coincide.
+        // The 256-bit key of the cipher is the concatenation of seed, cell and replicate; the stream number contains
+        // purpose and index. No hash is used, so no two streams coincide.
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip([self.seed, self.cell, self.replicate]) {
             bytes.copy_from_slice(&number.to_le_bytes());
@@ -116,7 +117,7 @@ mod tests {
     use super::*;
 
     /// First two numbers of every stream of one key. They are part of every published result: if this test fails, every
-    /// result changes, and that has to be said in the change log.
+    /// result changes, and the change log must state it.
     #[test]
     fn value_stability() {
         let key = StreamKey { seed: 20, cell: 3, replicate: 7 };

@@ -1,4 +1,4 @@
-//! Vessel: a ship as the simulator uses it, with its equations and its closed form where there is one.
+//! Vessel: a ship for the simulator, with its equations and its closed form, if any.
 
 use std::sync::Arc;
 
@@ -9,15 +9,15 @@ use ship::{Dynamics, FirstOrder, Particulars, Response, Ship};
 /// Method of integration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Solver {
-    /// Closed form where it is exact (a first-order ship with an input that is piecewise linear in time), else
-    /// Runge–Kutta with the largest step of the ship.
+    /// Closed form if it is exact (a first-order ship with an input that is piecewise linear in time), else Runge–Kutta
+    /// with the maximum step of the ship.
     #[default]
     Automatic,
-    /// Runge–Kutta of order four, with steps no longer than this, s.
+    /// Runge–Kutta of order four, with steps up to this length, s.
     RungeKutta(f64),
 }
 
-/// Ship for simulation: equations, closed form where there is one, and random headings of its response.
+/// Ship for simulation: equations, closed form, if any, and random headings of its response.
 #[derive(Clone)]
 pub struct Vessel {
     dynamics: Arc<dyn Dynamics>,
@@ -50,7 +50,7 @@ impl Vessel {
         Self::from_response(Response::first_order_ship(ship))
     }
 
-    /// Vessel of any other system of equations.
+    /// Vessel of any system of equations.
     pub fn from_dynamics(dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }

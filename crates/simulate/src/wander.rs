@@ -1,4 +1,4 @@
-//! Coloured compass error of one run: a Gauss–Markov process drawn exactly at any instants, evenly spaced or not, and
+//! Coloured compass error of one run: a Gauss–Markov process sampled exactly at any instants, evenly spaced or not, and
 //! conditional on the readings of the display.
 //!
 //! Source: Gillespie (1996), Physical Review E 54:2084-2091, for the exact update of the process.
@@ -45,7 +45,7 @@ impl WanderPath {
         self.before(t, None)
     }
 
-    /// Errors at `times` (s), rad, of the path through given points.
+    /// Errors at `times` (s), rad, for a path through given points.
     pub fn through(&mut self, times: &[f64], points: &[WanderPoint]) -> Vec<f64> {
         let mut ahead = points.iter().copied().peekable();
         let mut at = |&t: &f64| {
@@ -57,21 +57,21 @@ impl WanderPath {
         times.iter().map(&mut at).collect()
     }
 
-    /// Error at time `t` (s), between the last instant and the given point `next`.
+    /// Error at time `t` (s), between the last instant t₀ and the given point `next` at t₁.
     ///
-    /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each 0 where there is no neighbour, w is normal about
-    /// (a(1 − b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so nothing
-    /// but its neighbours matters.
+    /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each zero if there is no neighbour, w is normal about (a(1 −
+    /// b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so it depends on its
+    /// neighbours only.
     fn before(&mut self, t: f64, next: Option<WanderPoint>) -> f64 {
         let GaussMarkov { sd, correlation_time } = self.process;
-        // Decay over a time, and 1 minus its square without cancellation for short times.
+        // Decay over a time, and 1 minus the squared decay without cancellation for short times.
         let over = |time: f64| ((-time / correlation_time).exp(), -(-2.0 * time / correlation_time).exp_m1());
         let since = self.last.map_or(f64::INFINITY, |last| t - last.time);
         let until = next.map_or(f64::INFINITY, |next| next.time - t);
         let ((a, variance_since), (b, variance_until), (_, variance_both)) =
             (over(since), over(until), over(since + until));
         let error_at = |point: Option<WanderPoint>| point.map_or(0.0, |point| point.error);
-        // Always drawn, so that an instant on a reading shifts no later draw.
+        // Always sampled, so that an instant at a reading does not change later random numbers.
         let draw = normal(&mut self.rng);
         let error = if variance_both > 0.0 {
             let mean = (a * variance_until * error_at(self.last) + b * variance_since * error_at(next)) / variance_both;
@@ -95,14 +95,14 @@ mod tests {
         WanderPath::new(PROCESS, reader, &StreamKey { seed: 11, cell: 0, replicate })
     }
 
-    /// Mean products of the errors at each two of the times, over σ², held against exp(−|h|/τ).
+    /// Mean products of the errors at all pairs of times, over σ², compared with exp(−|h|/τ).
     fn assert_covariance(times: &[f64], runs: u64, errors: impl Fn(u64) -> Vec<f64>) {
         let all: Vec<Vec<f64>> = (0..runs).map(errors).collect();
         for (i, &t) in times.iter().enumerate() {
             for (j, &u) in times.iter().enumerate().take(i + 1) {
                 let product = all.iter().map(|errors| errors[i] * errors[j]).sum::<f64>() / runs as f64;
                 let expected = (-(t - u).abs() / PROCESS.correlation_time).exp();
-                // The standard error of a product of unit normals of correlation ρ is √((1 + ρ²)/n); four of them.
+                // Standard error of a product of unit normals of correlation ρ is √((1 + ρ²)/n); four of them.
                 let tolerance = 4.0 * ((1.0 + expected * expected) / runs as f64).sqrt();
                 assert_relative_eq!(product / PROCESS.sd.powi(2), expected, epsilon = tolerance);
             }
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(same[2], same[3]);
     }
 
-    /// Rows between readings of the display have the statistics of a path that nobody read before.
+    /// Rows between readings of the display have the statistics of a path without earlier readings.
     #[test]
     fn a_path_through_what_is_known_is_one_path() {
         let (rows, readings) = ([0.0, 2.0, 4.0, 9.0], [1.0, 4.0, 4.5]);
@@ -143,7 +143,7 @@ mod tests {
         let product = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 4000.0;
         assert_relative_eq!(product / PROCESS.sd.powi(2), 0.0, epsilon = 4.0 / 4000.0_f64.sqrt());
         let constant = path_with(1e7);
-        // σ√(2h/τ) is 1.8 % of σ over the whole record.
+        // σ√(2h/τ) is 1.8 % of σ over the complete record.
         assert!(constant.iter().all(|error| (error - constant[0]).abs() < 0.1 * PROCESS.sd));
     }
 }

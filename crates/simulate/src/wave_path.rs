@@ -1,5 +1,6 @@
-//! Realisation of a narrow-band wave heading, at any non-decreasing times. It is drawn on its own grid and interpolated
-//! by the cubic Hermite polynomial of ξ and ξ', so two readers of one stream see the same sea, however they sample.
+//! Realisation of a narrow-band wave heading, at any non-decreasing times. It is sampled on a grid of its own and
+//! interpolated by the cubic Hermite polynomial of ξ and ξ', so two readers of one stream obtain identical waves at any
+//! sampling.
 
 use rand::rngs::ChaCha8Rng;
 use ship::narrow_band::{NarrowBand, NarrowBandStep};
@@ -50,7 +51,7 @@ impl WavePath {
     }
 }
 
-/// Sum of all waves of a run: those declared as a disturbance, and those of the response model.
+/// Sum of all waves of a run: waves declared as a disturbance, and waves of the response model.
 #[derive(Debug)]
 pub(crate) struct SeaWaves {
     paths: Vec<WavePath>,
@@ -68,7 +69,7 @@ impl SeaWaves {
         Self { paths: declared.chain(of_response).collect() }
     }
 
-    /// `true` without waves.
+    /// `true` if there are no waves.
     pub fn are_none(&self) -> bool {
         self.paths.is_empty()
     }
@@ -110,7 +111,7 @@ mod tests {
         let runs = 500;
         let (mut heading, mut rate) = (0.0, 0.0);
         for replicate in 0..runs {
-            // Between grid points, where the cubic has to stand in.
+            // Between grid points, where the cubic interpolates.
             let [x, v] = path(replicate).at(40.123);
             heading += x * x / f64::from(runs as u32);
             rate += v * v / f64::from(runs as u32);

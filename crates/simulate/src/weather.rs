@@ -1,6 +1,6 @@
-//! Weather of one run: the moments of [`Disturbances`] that depend on time, drawn cell by cell on a grid and linear
-//! within a cell. The grid is independent of solver, sampling and helmsman, and so is the weather. Wind as a function
-//! of heading is evaluated by the propagator.
+//! Weather of one run: the moments of [`Disturbances`] that depend on time, sampled cell by cell on a grid and linear
+//! within a cell. Grid and weather are independent of solver, sampling and helmsman. Wind as a function of heading is
+//! evaluated by the propagator.
 
 use rand::rngs::ChaCha8Rng;
 
@@ -16,7 +16,7 @@ pub(crate) const GRID: f64 = 0.1;
 pub(crate) struct WeatherCell {
     /// Beginning, s.
     pub start: f64,
-    /// End, s; infinite when nothing ever changes.
+    /// End, s; infinite if the weather is constant.
     pub end: f64,
     /// Width, s.
     pub width: f64,
@@ -166,7 +166,7 @@ mod tests {
         let runs = 400;
         let ends: Vec<f64> = (0..runs).map(|replicate| path(&disturbances, 401, replicate)[400][0]).collect();
         let variance = ends.iter().map(|x| x * x).sum::<f64>() / runs as f64;
-        // 40 s: sd 2e-3·√40; the sampling error of a variance from n draws is √(2/n), three of them allowed.
+        // 40 s: sd 2e-3·√40; the standard error of a variance from n samples is √(2/n); the tolerance is three of them.
         assert_relative_eq!(variance, 4e-6 * 40.0, max_relative = 3.0 * (2.0 / runs as f64).sqrt());
     }
 

@@ -1,4 +1,4 @@
-//! The command line: commands with their options, and the modules that run them. It knows no hydrodynamics.
+//! The command line: commands with their options, and the modules that run them. No hydrodynamics here.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ struct Cli {
     common: Common,
 }
 
-/// The options of a command with the options common to all commands.
+/// Options of a command together with the options common to all commands.
 #[derive(Debug, Args)]
 struct With<R: Args> {
     #[command(flatten)]
@@ -57,11 +57,11 @@ enum Command {
     Find(With<FindRequest>),
     /// Show every channel of a log before a fit: source, rate, gaps, steps, sign, scale, lag
     Inspect(With<inspect::InspectRequest>),
-    /// Write a first description of the columns of a table, NAME.trial.toml beside it; check it before use
+    /// Write a first description of the columns of a table, NAME.trial.toml next to it; check it before use
     Sidecar(With<sidecar::SidecarRequest>),
-    /// Write simulated trials in the format that `study fit` reads, with the true values beside them
+    /// Write simulated trials in the format that `study fit` reads, with the true values next to them
     Simulate(With<SimulateRequest>),
-    /// Score answers of another program to simulated trials, beside the methods of the scenario
+    /// Score answers of another program to simulated trials, together with the methods of the scenario
     Score(With<score::ScoreRequest>),
     /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
     Bench(With<bench::BenchRequest>),
@@ -95,8 +95,7 @@ impl<R: Args> With<R> {
     }
 }
 
-/// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong, 130
-/// Ctrl-C.
+/// Entry point of the program; returns its exit code: 0 done, 1 the work failed, 2 the input is wrong, 130 Ctrl-C.
 pub fn main() -> ExitCode {
     interrupt::install();
     let arguments: Vec<OsString> = std::env::args_os().collect();
@@ -109,7 +108,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// `true` if the arguments ask for JSON; errors in the arguments themselves are then JSON, too.
+/// `true` if the arguments request JSON; errors in the arguments themselves are then JSON, too.
 fn asks_for_json(arguments: &[OsString]) -> bool {
     arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json")
         || arguments.iter().any(|word| word == "--format=json")
@@ -144,7 +143,7 @@ pub fn misused(usage: &clap::Error) -> Failure {
     Failure::input(message.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
 }
 
-/// A first argument that is a single word, and neither a command nor the path of anything.
+/// First argument that is a single word and neither a command nor an existing path.
 fn mistaken_command(first: Option<&OsString>) -> Option<String> {
     let name = first?.clone().into_string().ok()?;
     let is_word = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');

@@ -11,14 +11,14 @@ use std::ffi::OsStr;
 /// Value of `--method` for all methods.
 pub const ALL: &str = "all";
 
-/// A parser with values for completion. The parser alone decides which values are valid.
+/// Parser with values for completion. The parser alone decides which values are valid.
 #[derive(Clone)]
 pub struct Completed<P> {
     parser: P,
     values: fn() -> Vec<String>,
 }
 
-/// `parser` with some valid `values`.
+/// Parser `parser` with some valid `values` for completion.
 pub fn completed<P: TypedValueParser>(parser: P, values: fn() -> Vec<String>) -> Completed<P> {
     Completed { parser, values }
 }
@@ -35,33 +35,33 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
     }
 }
 
-/// Methods of the project.
+/// Names of the methods of the project.
 pub fn methods() -> Vec<String> {
     let built = registry::defaults().into_iter().filter_map(|settings| settings.build().ok());
     built.map(|method| method.id().to_owned()).collect()
 }
 
-/// Methods of the project, and [`ALL`].
+/// Names of the methods of the project, and [`ALL`].
 pub fn methods_or_all() -> Vec<String> {
     methods().into_iter().chain([String::from(ALL)]).collect()
 }
 
-/// Methods of a scenario.
+/// Names of the methods of a scenario.
 pub fn entrants() -> Vec<String> {
     methods().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
 }
 
-/// Tasks of the benchmark.
+/// Names of the tasks of the benchmark.
 pub fn tasks() -> Vec<String> {
     BenchTask::ALL.map(|task| task.id().to_owned()).into()
 }
 
-/// Effects that a first-order response may lack.
+/// Ids of the effects that a first-order response may lack.
 pub fn effects() -> Vec<String> {
     EffectId::all().into_iter().map(|id| id.as_str().to_owned()).collect()
 }
 
-/// Rules that weight structures.
+/// Names of the rules that weight structures.
 pub fn rules() -> Vec<String> {
     ::trace::Rule::ALL.map(|rule| rule.as_str().to_owned()).into()
 }

@@ -1,4 +1,4 @@
-//! Failures on standard error: as text, or as JSON where a program requested it.
+//! Failures on standard error: as text, or as JSON if requested.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ use crate::screen;
 /// `true` if failures are written as JSON.
 static FOR_PROGRAMS: AtomicBool = AtomicBool::new(false);
 
-/// Writes failures from now on as JSON, for programs.
+/// Switches all later failures to JSON, for programs.
 pub fn use_json() {
     FOR_PROGRAMS.store(true, Ordering::Relaxed);
 }

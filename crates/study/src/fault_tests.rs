@@ -1,5 +1,5 @@
-//! Every file operation of a study, a report and a rerun fails once: afterwards the same commands end with the same
-//! bytes, or say what is missing.
+//! Fault injection: every file operation of a study, a report and a rerun fails once. Afterwards the same commands end
+//! with the same bytes, or report the missing files.
 
 use std::fs;
 use std::ops::Range;
@@ -39,7 +39,7 @@ fn quiet(out: Option<&Path>) -> Common {
     Common { out: out.map(Path::to_owned), threads: None, seed: None, quiet: true, format: Format::Text }
 }
 
-/// Figures that take no time.
+/// Style of small figures, which take little time.
 const STYLE: StudyFigureOptions = StudyFigureOptions {
     style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
     figures: FigureChoice::Named,
@@ -54,7 +54,7 @@ fn run(scenario: &Scenario, folder: &Path) -> Result<(), Failure> {
     collect(scenario, &ResultFolder::make(folder)?, false, &NoObserver).map(drop)
 }
 
-/// All files of a folder and those in it, with their bytes; but times differ from run to run.
+/// All files below a folder with their bytes, except run times, which differ from run to run.
 fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
@@ -80,11 +80,11 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Threads that try faults.
+/// Number of threads that inject faults.
 const THREADS: u64 = 4;
 
-/// Lets every operation of `work` fail once, alone and with all that follow, each time in a folder that begins as
-/// `before`. Done once more it has to end with the bytes of the work without a fault.
+/// Lets every operation of `work` fail once, alone and with all later ones, each time in a folder that begins as
+/// `before`. A repetition has to end with the same bytes as the work without a fault.
 fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> + Sync) -> u64 {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let place = |name: &str| -> PathBuf {
@@ -115,7 +115,7 @@ fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> 
         assert!(content(&folder) == expected, "{name} {number}, which ended with {outcome:?}");
         fs::remove_dir_all(folder).expect("it was there");
     };
-    // Not on the threads that run trials: these would wait for themselves.
+    // Not on the threads that run trials, which would deadlock.
     std::thread::scope(|scope| {
         for first in 0..THREADS {
             let fail = &fail;
@@ -135,7 +135,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_study() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let (study, with_finding) = (scenario(""), scenario("finding = \"No.\"\n"));
     assert!(fail_each(None, |folder| run(&study, folder)) > 50);
-    // A rerun that has new words to say.
+    // A rerun with changed texts.
     let whole = desk.path().join("whole");
     run(&study, &whole).unwrap_or_else(|failure| panic!("{failure}"));
     assert!(fail_each(Some(&whole), |folder| run(&with_finding, folder)) > 20);
@@ -149,7 +149,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_report() {
     assert!(fail_each(Some(&whole), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
-/// Every operation of putting blocks together that were computed elsewhere fails once.
+/// Every operation of merging blocks computed elsewhere fails once.
 #[test]
 fn no_fault_of_the_disk_loses_anything_of_shards() {
     let desk = tempfile::tempdir().expect("a temporary folder");
@@ -162,7 +162,7 @@ fn no_fault_of_the_disk_loses_anything_of_shards() {
     assert!(fail_each(Some(&shards), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
-/// A block that is whole stays, whatever fails if its study goes on.
+/// A complete block survives any failure while its study continues.
 #[test]
 fn no_fault_of_the_disk_loses_a_block() {
     let desk = tempfile::tempdir().expect("a temporary folder");

@@ -18,12 +18,12 @@ impl Formulas {
     }
 }
 
-/// Reads an effect, `NAME = FORMULA`.
+/// Effect read from `NAME = FORMULA`.
 pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
     ship::effects::formula(line).map_err(|error| error.to_string())
 }
 
-/// Reads the effects of a file. Fails with the line of the first wrong formula.
+/// Effects read from a file. Fails with the line of the first invalid formula.
 pub fn formulas(path: &str) -> Result<Formulas, String> {
     const FILE: Kind = Kind { name: "a file of effects", max_bytes: 1 << 20 };
     let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;

@@ -1,5 +1,5 @@
-//! Ctrl-C and termination by a scheduler: while trials are run, the first one asks to stop between two trials, so that
-//! all rows so far are kept; a second one, or one at any other time, ends the program at once.
+//! Ctrl-C and termination by a scheduler. While trials run, the first signal stops between two trials, so that all rows
+//! so far are kept; a second one, or one at any other time, ends the program at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,13 +10,13 @@ use crate::{failures, screen};
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Ends the program while work goes on that cannot be stopped, with the message of a failure.
+/// Ends the program during work that cannot be stopped, with the message of a failure.
 pub fn give_up(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::fail(failure)))
 }
 
-/// Installs the handler of Ctrl-C for the program `study`; Python handles its own. Without a handler an interruption
-/// ends the program by its signal.
+/// Installs the handler of Ctrl-C for the program `study`; Python handles Ctrl-C itself. Without a handler the signal
+/// ends the program.
 pub fn install() {
     let handler = || {
         let first = !ASKED.swap(true, Ordering::SeqCst);
@@ -27,12 +27,12 @@ pub fn install() {
     let _ = ctrlc::set_handler(handler);
 }
 
-/// Treats the next interruption as a request to stop; with `false` it ends the program at once again.
+/// Sets whether the next interruption is a request to stop; with `false` it ends the program at once.
 pub fn listen(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
-/// `true` if Ctrl-C has asked to stop.
+/// `true` if Ctrl-C has requested a stop.
 pub fn is_asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

@@ -1,12 +1,12 @@
-//! The command line `study`: what a user may ask for, which of the crates below answers, and how the answer looks. It
-//! knows no hydrodynamics.
+//! The command line `study`: options, the crates that compute each command, and the form of the output. No
+//! hydrodynamics here.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | commands and exit codes | [`cli`], [`commands`] |
 //! | options | [`options`], `completed` |
-//! | what a command works out | [`work`] |
-//! | what it leaves for other programs | [`documents`] |
+//! | computations of the commands | [`work`] |
+//! | files and JSON for other programs | [`documents`] |
 //! | tables, figures and pages | [`views`] |
 //! | the terminal | [`screen`], `terminal`, `progress`, `interrupt`, `threads` |
 

@@ -1,4 +1,4 @@
-//! Options and arguments of the commands. Longer than most: each option is declared once. Nothing here acts.
+//! Options and arguments of the commands. Long, because each option is declared once. No option is acted on here.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -19,13 +19,13 @@ use ship::effects::Formula;
 use trial::Manoeuvre;
 use trial::clock::Stamp;
 
-/// Options of running a scenario.
+/// Options for the run of a scenario.
 #[derive(Debug, Clone, Args)]
 pub struct RunRequest {
-    /// Run part I of N only; all parts may have one folder, or be copied into one, and `study report` makes its page
+    /// Run part I of N only; all parts may share one folder, or be copied into one, and `study report` makes its page
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
-    /// Discard rows of an earlier run in the folder instead of going on with them
+    /// Discard rows of an earlier run in the folder instead of continuing them
     #[arg(long)]
     pub restart: bool,
     /// How figures are drawn, and which
@@ -36,7 +36,7 @@ pub struct RunRequest {
 /// Maximum number of threads; no machine has more cores, and the system refuses many more.
 pub const MAX_THREADS: i64 = 1024;
 
-/// Options every command understands.
+/// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
     /// Folder for results [default: `results/SCENARIO`, `./TRIAL-fit`, `./TRIAL-trace`, `./MODEL-predict`]
@@ -45,10 +45,10 @@ pub struct Common {
     /// Number of threads [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
     pub threads: Option<u16>,
-    /// Seed of the simulation or of draws, in place of the scenario's
+    /// Seed of the simulation or of samples, in place of the scenario's
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// No progress bar, table, note or warning; only errors and the output that --format asks for
+    /// No progress bar, table, note or warning; only errors and the output that --format requests
     #[arg(long)]
     pub quiet: bool,
     /// Format of standard output
@@ -57,7 +57,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// `true` if standard output stays empty; a format that was requested is written even with `--quiet`.
+    /// `true` if standard output stays empty; a requested format is written even with `--quiet`.
     pub fn is_silent(&self) -> bool {
         self.quiet && self.format == Format::Text
     }
@@ -83,7 +83,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// A table in this format.
+    /// Text of a table in this format.
     pub fn render(self, table: &Table) -> String {
         match self {
             Self::Text => table.to_text(),
@@ -95,7 +95,7 @@ impl Format {
     }
 }
 
-/// Options on reading records: columns, part of the record, particulars of the ship.
+/// Options for reading records: columns, part of the record, particulars of the ship.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ReadingOptions {
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
@@ -104,7 +104,7 @@ pub struct ReadingOptions {
     /// Another file of the same record, for example with its rudder; joined by time
     #[arg(long, value_name = "FILE")]
     pub with_columns: Vec<PathBuf>,
-    /// Use the manoeuvre with this number in `study find` [default: the zig-zag, where there is one]
+    /// Use the manoeuvre with this number in `study find` [default: the zig-zag, if there is one]
     #[arg(long, value_name = "N", conflicts_with_all = ["from", "until"])]
     pub trial: Option<usize>,
     /// Use the record from this time on: seconds on its clock (0 is its beginning), or a time of day such as 14:03:05
@@ -116,24 +116,24 @@ pub struct ReadingOptions {
     /// Known particulars of the ship
     #[command(flatten)]
     pub ship: ShipOptions,
-    /// What is known of the trial
+    /// Known particulars of the trial
     #[command(flatten)]
     pub of_trial: TrialOptions,
 }
 
-/// Draws of an estimate as a file.
+/// Options for samples of an estimate as a file.
 #[derive(Debug, Clone, Args)]
 pub struct DrawsOptions {
-    /// Also write draws of K, T and all other parameters from their covariance, a row each, as draws.parquet; those of
-    /// --seed, 0 without it
+    /// Also write samples of K, T and all other parameters from their covariance, one row each, as draws.parquet; their
+    /// seed is --seed, or 0 without it
     #[arg(long)]
     pub draws_file: bool,
-    /// Draws of every estimate in that file
+    /// Samples of every estimate in that file
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
     pub draws: u32,
 }
 
-/// A time in a record.
+/// Time in a record.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TimePoint {
     /// Seconds on the clock of the record.
@@ -159,7 +159,7 @@ impl FromStr for TimePoint {
 /// Arguments of `study find`.
 #[derive(Debug, Clone, Args)]
 pub struct FindRequest {
-    /// Logs to search for manoeuvres; a folder stands for all its records
+    /// Logs to search for manoeuvres; a folder means all its records
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
     /// Description of the columns of the logs (a sidecar), or a folder with a NAME.trial.toml for each
@@ -173,7 +173,7 @@ pub struct FindRequest {
 /// Arguments of `study fit`.
 #[derive(Debug, Clone, Args)]
 pub struct FitRequest {
-    /// Records of one ship, identified together; a folder stands for all its records
+    /// Records of one ship, identified together; a folder means all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
     /// Fit every record alone: one row each, or with --format json one line of JSON each, on standard output only; a
@@ -195,10 +195,10 @@ pub struct FitRequest {
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// Draws of the answers
+    /// Samples of the estimates
     #[command(flatten)]
     pub draws: DrawsOptions,
-    /// How figures are drawn, and whether
+    /// How figures are drawn, and whether they are drawn
     #[command(flatten)]
     pub style: PageFigureOptions,
 }
@@ -220,9 +220,9 @@ pub struct SimulateRequest {
 /// Selection of trials in a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replicates {
-    /// All of them.
+    /// All trials of the cell.
     All,
-    /// One of them.
+    /// The trial with this number.
     One(u64),
 }
 
@@ -240,7 +240,7 @@ impl FromStr for Replicates {
 /// Arguments of `study trace`.
 #[derive(Debug, Clone, Args)]
 pub struct TraceRequest {
-    /// Records of one ship, analysed together; a folder stands for all its records
+    /// Records of one ship, analysed together; a folder means all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
     /// Held-out records that validate the result: only their initial state is fitted
@@ -283,10 +283,10 @@ pub struct TraceRequest {
     #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), hide_possible_values = true,
         value_parser = completed(rule, completed::rules))]
     pub rule: Rule,
-    /// Draws of the model
+    /// Samples of the model
     #[command(flatten)]
     pub draws: DrawsOptions,
-    /// How figures are drawn, and whether
+    /// How figures are drawn, and whether they are drawn
     #[command(flatten)]
     pub style: PageFigureOptions,
 }
@@ -294,7 +294,7 @@ pub struct TraceRequest {
 impl TraceRequest {
     /// Effects that are required, excluded or added as formulas.
     ///
-    /// Fails for a name that is neither on the list nor that of a formula.
+    /// Fails if a name is neither on the list nor that of a formula.
     pub fn selection(&self) -> Result<Selection, Failure> {
         let of_file = self.effects.iter().flat_map(|formulas| formulas.all());
         let formulas: Vec<Arc<Formula>> = self.effect.iter().chain(of_file).cloned().collect();
@@ -319,7 +319,7 @@ fn rule(name: &str) -> Result<Rule, String> {
     Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &names))
 }
 
-/// The effect of this name; `option` is the option that names it.
+/// Effect of this name; `option` is the option in which it was given.
 fn effect(option: &str, name: &str, selection: &Selection) -> Result<EffectId, Failure> {
     selection.find(name).ok_or_else(|| {
         let ids: Vec<&str> = selection.ids().into_iter().map(EffectId::as_str).collect();
@@ -340,7 +340,7 @@ pub enum Withheld {
     Sway,
 }
 
-/// Range of the number of draws.
+/// Range of the number of samples.
 const DRAWS: std::ops::RangeInclusive<i64> = 50..=100_000;
 
 /// Arguments of `study predict`.
@@ -353,11 +353,11 @@ pub struct PredictRequest {
     /// a negative rudder begins to port [default: those of the IMO criteria, unless a record is replayed]
     #[arg(long = "manoeuvre", value_name = "KIND", allow_hyphen_values = true)]
     pub manoeuvres: Vec<Manoeuvre>,
-    /// Record to compare with the prediction for its rudder; nothing is fitted to it
+    /// Record to compare with the prediction for its rudder; no parameter is fitted to it
     #[arg(long = "replay", value_name = "RECORD")]
     pub replays: Vec<PathBuf>,
     /// Circle of 720° or more whose current is removed from the tracks of all replayed turns [default: each turn's own
-    /// current, where it turns that far]
+    /// current, if it turns that far]
     #[arg(long, value_name = "RECORD", requires = "replays")]
     pub current_from: Option<PathBuf>,
     /// fit.json or trace.json of earlier trials of the same ship, a sister ship or a scale model, which are not in
@@ -373,20 +373,20 @@ pub struct PredictRequest {
     #[arg(long, value_name = "LOAD.toml")]
     pub load: Option<PathBuf>,
     /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured
-    /// values where a --replay record is that trial
+    /// values if a --replay record is that trial
     #[arg(long)]
     pub form: bool,
-    /// Method whose answer in fit.json is used [default: that of the verdict, or the next with a covariance]
+    /// Method whose estimate in fit.json is used [default: that of the verdict, or the next with a covariance]
     #[arg(long, value_name = "ID", hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::methods))]
     pub method: Option<String>,
     /// Predict for calm weather, without the random yaw moment and the steady wind of the records
     #[arg(long)]
     pub calm: bool,
-    /// Number of ships to draw
+    /// Number of ships to sample
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
     pub draws: u32,
-    /// Also write draws.parquet: one row per drawn ship, with its parameters and figures
+    /// Also write draws.parquet: one row per sampled ship, with its parameters and characteristics
     #[arg(long)]
     pub draws_file: bool,
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each; its ship
@@ -396,20 +396,20 @@ pub struct PredictRequest {
     /// Scale of the prediction: another length scales the ship by Froude
     #[command(flatten)]
     pub scale: ScaleOptions,
-    /// How figures are drawn, and whether
+    /// How figures are drawn, and whether they are drawn
     #[command(flatten)]
     pub style: PageFigureOptions,
 }
 
 impl PredictRequest {
-    /// How records are read.
+    /// Options for reading records.
     pub fn reading(&self) -> ReadingOptions {
         let ship = ShipOptions { scale: self.scale.clone(), ..ShipOptions::default() };
         ReadingOptions { columns: self.columns.clone(), ship, ..ReadingOptions::default() }
     }
 }
 
-/// Files that have a schema.
+/// Files that have a JSON schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Described {
     /// Scenario of a study
@@ -434,25 +434,25 @@ pub enum Described {
     Showcase,
     /// Style of figures
     Style,
-    /// trials.toml, beside simulated records
+    /// trials.toml, next to simulated records
     Trials,
-    /// NAME.truth.json, beside a simulated record
+    /// NAME.truth.json, next to a simulated record
     Truth,
-    /// Answer of a study, `report` and `score` with --format json
+    /// JSON output of a study, `report` and `score`
     Study,
-    /// Answer of a shard of a study
+    /// JSON output of a shard of a study
     Shard,
-    /// Answer of `find`
+    /// JSON output of `find`
     Find,
-    /// Answer of `inspect`
+    /// JSON output of `inspect`
     Inspect,
-    /// Answer of `check`
+    /// JSON output of `check`
     Check,
-    /// Answer of `list`
+    /// JSON output of `list`
     List,
-    /// Answer of `simulate`
+    /// JSON output of `simulate`
     Simulate,
-    /// Answer of `sidecar`
+    /// JSON output of `sidecar`
     SidecarAnswer,
     /// A line of `fit --each`
     FitEach,

@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar with the remaining time on a terminal, elsewhere one line with the expected time
+//! Progress on standard error: on a terminal a bar with the remaining time, otherwise one line with the expected time
 //! of long work.
 
 use std::io::IsTerminal;
@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::screen;
 
-/// Progress bar over `length` steps; it disappears when the work is done.
+/// Progress bar over `length` steps; removed at the end of the work.
 pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
@@ -24,7 +24,7 @@ pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Spinner on standard error for work of unknown length; hidden like a bar.
+/// Spinner on standard error for work of unknown length; hidden under the same conditions as a bar.
 pub fn busy(label: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
@@ -35,13 +35,13 @@ pub fn busy(label: &'static str, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Minimum expected time, s, that is printed where no bar is visible.
+/// Minimum expected time, s, that is printed if no bar is visible.
 const MIN_FORECAST_S: f64 = 10.0;
 
-/// Minimum elapsed time for a forecast: the first of many steps are slower.
+/// Minimum elapsed time for a forecast: the first steps are slower than later ones.
 const MIN_ELAPSED: Duration = Duration::from_secs(1);
 
-/// A known number of steps that take about the same time.
+/// Known number of steps of about equal duration.
 pub struct ProgressSteps {
     bar: ProgressBar,
     label: &'static str,
@@ -53,7 +53,7 @@ pub struct ProgressSteps {
 }
 
 impl ProgressSteps {
-    /// `most` steps of which `done` are complete; `side_by_side` run at a time.
+    /// Progress over `most` steps, of which `done` are complete; `side_by_side` run at a time.
     pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {
             bar: bar(label, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
@@ -66,7 +66,7 @@ impl ProgressSteps {
         }
     }
 
-    /// Counts a finished step, and prints the forecast once after the first second.
+    /// Counts a finished step; prints the forecast once after the first second.
     pub fn advance(&self) {
         self.bar.inc(1);
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
@@ -83,7 +83,7 @@ impl ProgressSteps {
     }
 }
 
-/// Expected time of `most` steps after `done` took `elapsed`; `None` for short work.
+/// Expected total time of `most` steps, given that `done` steps took `elapsed`; `None` for short work.
 fn forecast(label: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
     let seconds = elapsed.as_secs_f64() * (most as f64 / done as f64).max(1.0);
     (seconds >= MIN_FORECAST_S).then(|| format!("{most} {label}: about {seconds:.0} s"))

@@ -17,13 +17,12 @@ use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::identified_ship::RecordFacts;
 use campaign::scenario::name;
 
-/// File endings of records in a folder.
+/// File name extensions of records in a folder.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
 
-/// Files of the given paths; a folder stands for all its records, in the order of their names, and `-` for standard
-/// input.
+/// Files of the given paths. A folder means all its records, in the order of their names, and `-` means standard input.
 ///
-/// Fails for a folder without any, and where standard input is to be read twice.
+/// Fails if a folder has no record, or if standard input is to be read twice.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if paths.iter().filter(|path| *path == Path::new(STDIN)).count() > 1 {
         return Err(Failure::input("- is given twice, but standard input holds one record; give files for the others"));
@@ -34,7 +33,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             files.push(path.clone());
             continue;
         }
-        // A folder of simulated records also holds a list of them and answers; only records have a truth beside them.
+        // A folder of simulated records also holds a list and answers; only records have a file of true values.
         let is_simulated = path.join(TRIALS).is_file();
         let is_record = |file: &PathBuf| {
             let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -58,8 +57,8 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Opens a log and adds the reader's `warnings`. `columns` is a description of its columns, or a folder with one for
-/// it; the channels of `parts` are joined with it.
+/// Log of a file; adds the `warnings` of the reader. `columns` is a description of its columns, or a folder with such a
+/// description; the channels of `parts` are joined with the log.
 pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
@@ -82,7 +81,7 @@ pub fn source(path: &Path) -> WarningSource {
     WarningSource::Record(path.display().to_string())
 }
 
-/// Failure of a file that is not a record, with file and line as parts.
+/// Failure for a file that is not a record, with file and line as parts.
 fn refused(error: ReadError) -> Failure {
     let code = error.code();
     let failure = match error {
@@ -97,9 +96,9 @@ fn refused(error: ReadError) -> Failure {
     failure.with_code(code)
 }
 
-/// Reads the records to identify: of each the selected part, or its zig-zag.
+/// Records to identify: the selected part of each, or its zig-zag.
 ///
-/// Fails if one cannot be read, and when a log holds several zig-zags and none is selected.
+/// Fails if a record cannot be read, or if a log holds several zig-zags and none is selected.
 pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
     let files = expand(paths)?;
     let one_only = [
@@ -113,7 +112,7 @@ pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warn
     files.iter().map(|path| read(path, options, warnings)).collect()
 }
 
-/// Reads records for replay only: of each its zig-zag.
+/// Records for replay only: the zig-zag of each.
 pub fn read_for_replay(
     paths: &[PathBuf],
     options: &ReadingOptions,
@@ -133,9 +132,9 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
     )
 }
 
-/// The record in a log: the selected part, or its zig-zag. `path` is its name in messages.
+/// Record in a log: the selected part, or its zig-zag. `path` is its name in messages.
 ///
-/// Fails if that part is not a record, and when the log holds several zig-zags and none is selected.
+/// Fails if that part is not a record, or if the log holds several zig-zags and none is selected.
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
@@ -149,8 +148,8 @@ pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Wa
     with_declared(trial, path, options)
 }
 
-/// The record with hull and trial particulars of the options, which override those of a sidecar; particulars of a ship
-/// of another length are dropped.
+/// Record with the particulars of hull and trial given as options, which override those of a sidecar. Particulars of a
+/// ship of another length are dropped.
 fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
     let length = trial.particulars().map(|ship| ship.length);
@@ -161,6 +160,13 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
     conditions.trial = options.of_trial.or(&conditions.trial);
     let options = &options.ship.form;
     options.apply(&mut conditions.hull);
+    if let Some([fore, aft]) = conditions.trial.draughts() {
+        let draught = *conditions.hull.draught.get_or_insert(0.5 * (fore + aft));
+        if !(fore.min(aft)..=fore.max(aft)).contains(&draught) {
+            let text = format!("draught-m = {draught} is not between the draughts fore, {fore} m, and aft, {aft} m");
+            return Err(Failure::about(path, format!("{text}; give --draught-m as well, or leave these out")));
+        }
+    }
     let trial = trial.with_conditions(conditions);
     if let Some(key) = options.first() {
         let advice = "give --length-m as well, or declare it under [ship] in a sidecar";
@@ -170,7 +176,7 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
     Ok(trial)
 }
 
-/// Ship, day and draughts of a record, for other programs and the first page.
+/// Ship, date and draughts of a record, for other programs and the first page.
 pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
     let (of_trial, hull) = (&trial.conditions().trial, trial.conditions().hull);
     TrialParticularsEntry {
@@ -182,7 +188,7 @@ pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
     }
 }
 
-/// A time on the clock of a record, s.
+/// Time on the clock of a record, s.
 fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f64>, Failure> {
     match asked {
         None => Ok(None),
@@ -199,7 +205,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
     }
 }
 
-/// Length and approach speed from the options; the speed from the record where it is not given.
+/// Length and approach speed from the options; the speed from the record if it is not given.
 fn ship(
     log: &Log,
     path: &Path,
@@ -221,12 +227,12 @@ fn ship(
     Ok(Some(Particulars { length, speed }))
 }
 
-/// Warning where records with a speed or positions give no track, with the reason.
+/// Warning if records with a speed or positions give no track, with the reason.
 pub fn no_track(shown: &RecordFacts) -> Option<Warning> {
     shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
-/// Message on a negative dead time, s: the rudder was logged late; and the remedy.
+/// Message on a negative dead time, s: the rudder was logged late. It includes the remedy.
 pub fn rudder_logged_late(late: f64) -> String {
     let late = ShortNumber::rounded(late, 2);
     format!(
@@ -235,8 +241,8 @@ pub fn rudder_logged_late(late: f64) -> String {
     )
 }
 
-/// Warnings on repeated records: given twice for identification a record makes the errors too small, and a fitted
-/// record validates nothing.
+/// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
+/// record gives no validation.
 pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
     let twice =
@@ -248,7 +254,7 @@ pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     all.map(|(trial, text)| Warning::new(WarningCode::Repetition, source_of(trial), text)).collect()
 }
 
-/// Unique names: the given ones, with a number where several are the same.
+/// Unique names: the given ones, with a number if several are equal.
 pub fn names(given: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in given {
@@ -260,7 +266,7 @@ pub fn names(given: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     names
 }
 
-/// Default folder of the results: named after the record, or after the first of several and their number.
+/// Default folder of the results, named after the record, or after the first of several records and their number.
 pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
     let first = trials[0].name();
     PathBuf::from(match trials.len() {
@@ -274,7 +280,7 @@ pub fn source_of(trial: &Trial) -> WarningSource {
     WarningSource::Record(file_of(trial).0.to_owned())
 }
 
-/// File and hash of a measured record.
+/// Path and hash of a measured record.
 pub fn file_of(trial: &Trial) -> (&str, &str) {
     match trial.origin() {
         Origin::Measured { file, sha256 } => (file, sha256),

@@ -1,4 +1,4 @@
-//! Records of similar ships of different size or speed, brought to the scale of the first.
+//! Records of similar ships of different size or speed, brought to the scale of the first record.
 
 use report::number::significant;
 use ship::Particulars;
@@ -6,19 +6,19 @@ use trial::{Scales, Trial};
 
 use campaign::failure::Failure;
 
-/// Records as they are analysed together.
+/// Records at one scale, to be analysed together.
 pub struct RescaledRecords {
-    /// Records that are fitted, all at the scale of the first.
+    /// Fitted records, all at the scale of the first.
     pub trials: Vec<Trial>,
-    /// Records that are held out, at the same scale.
+    /// Held-out records, at the same scale.
     pub held_out: Vec<Trial>,
-    /// The scales they had; `None` if all had one.
+    /// Original scales of the records; `None` if all had one scale.
     pub scales: Option<Scales>,
 }
 
-/// Brings fitted and held-out records to the scale of the first where they differ.
+/// Brings fitted and held-out records to the scale of the first if their scales differ.
 ///
-/// Fails if they differ and a record does not declare length and speed.
+/// Fails if the scales differ and a record does not declare length and speed.
 pub fn together(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
     let scales = Scales::among(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
@@ -50,7 +50,7 @@ impl RescaledRecords {
     }
 }
 
-/// Length and speed of dimensional results: those of the first record that declares them.
+/// Length and speed for dimensional results: those of the first record that declares them.
 pub fn particulars(trials: &[Trial]) -> Option<Particulars> {
     trials.iter().find_map(Trial::particulars)
 }

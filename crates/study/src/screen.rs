@@ -1,6 +1,6 @@
 //! Output to the terminal: results on standard output, warnings and errors on standard error. A closed pipe (`study
-//! list ships | head -1`) ends the output, not the work. Control characters, which a path, a file or a stored label may
-//! hold, are escaped.
+//! list ships | head -1`) ends the output, not the work. Control characters in a path, a file or a stored label are
+//! escaped.
 
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ use campaign::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
-/// Fails if they cannot be written, except to a pipe that nobody reads any more.
+/// Fails if the lines cannot be written, except to a closed pipe.
 pub fn say(lines: &str) -> Result<(), Failure> {
     put(&shown(lines))
 }
@@ -37,7 +37,7 @@ pub fn warn(line: &str) {
     let _ = writeln!(stream.lock(), "{line}");
 }
 
-/// `true` if a stream goes to a terminal with colours, not switched off by `NO_COLOR` or `TERM=dumb`.
+/// `true` if a stream is a terminal with colours, not switched off by `NO_COLOR` or `TERM=dumb`.
 pub fn has_terminal_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
@@ -59,20 +59,20 @@ fn coloured(lines: &str) -> String {
     lines.split('\n').map(coloured_line).collect::<Vec<_>>().join("\n")
 }
 
-/// Result of a command in every output format.
+/// Output of a command in every format.
 pub struct CommandOutput<'a> {
     /// Text before and after the table.
     pub frame: [&'a str; 2],
     /// The table.
     pub table: &'a Table,
-    /// Notes below, such as the path of the file.
+    /// Notes below the table, such as the path of the file.
     pub notes: &'a str,
-    /// The JSON document: the text of the file that was written.
+    /// JSON document: the text of the file that was written.
     pub document: &'a str,
 }
 
-/// Prints a result and its warnings, unless the output is silent. In formats for programs, table or document stand
-/// alone on standard output, and notes go to standard error.
+/// Prints a result and its warnings, unless the output is silent. In formats for programs, standard output has only the
+/// table or the document, and notes go to standard error.
 ///
 /// Fails as [`say`] does.
 pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
@@ -104,7 +104,7 @@ pub fn warn_of(common: &Common, warnings: &[impl Display]) {
     wanted.for_each(|warning| warn(&format!("warning: {warning}")));
 }
 
-/// Writes a document to standard output unchanged: JSON escapes control characters itself.
+/// Writes a document to standard output unchanged: JSON itself escapes control characters.
 ///
 /// Fails as [`say`] does.
 pub fn say_document(document: &str) -> Result<(), Failure> {
@@ -116,7 +116,7 @@ pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }
 
-/// The exit code of the program after a failure.
+/// Exit code of the program after a failure.
 pub fn exit_code(blame: Blame) -> u8 {
     match blame {
         Blame::Work => 1,

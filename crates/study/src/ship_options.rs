@@ -1,4 +1,4 @@
-//! Particulars of a ship as options, of every command that asks for them.
+//! Particulars of a ship as options, shared by all commands that need them.
 
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -12,18 +12,19 @@ use crate::style_options::within;
 #[derive(Debug, Clone, Default, Args)]
 pub struct ScaleOptions {
     /// Length of the ship between perpendiculars, m
-    #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
+    #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]), allow_negative_numbers = true)]
     pub length_m: Option<f64>,
     /// Approach speed, m/s [default: that of the record]
-    #[arg(long, value_name = "V", value_parser = within([0.01, 100.0]), requires = "length_m", conflicts_with = "speed_kn")]
+    #[arg(long, value_name = "V", value_parser = within([0.01, 100.0]), requires = "length_m",
+        conflicts_with = "speed_kn", allow_negative_numbers = true)]
     pub speed_m_s: Option<f64>,
     /// Approach speed, kn
-    #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), requires = "length_m")]
+    #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), allow_negative_numbers = true, requires = "length_m")]
     pub speed_kn: Option<f64>,
 }
 
 impl ScaleOptions {
-    /// The approach speed that is given, m/s.
+    /// Given approach speed, m/s.
     pub fn speed(&self) -> Option<f64> {
         self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
     }
@@ -53,22 +54,22 @@ pub struct TrialOptions {
     /// Name of the ship, for the first page of the report
     #[arg(long, value_name = "NAME")]
     pub ship_name: Option<String>,
-    /// Day of the trial [default: that of the sidecar or of the stamps of the record]
+    /// Day of the trial [default: that of the sidecar or of the time stamps of the record]
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
     pub date: Option<String>,
     /// Draught at the fore perpendicular, m, for the first page
-    #[arg(long, value_name = "D", value_parser = within(DRAUGHT))]
+    #[arg(long, value_name = "D", value_parser = within(DRAUGHT), allow_negative_numbers = true)]
     pub draught_fore_m: Option<f64>,
     /// Draught at the aft perpendicular, m, for the first page
-    #[arg(long, value_name = "D", value_parser = within(DRAUGHT))]
+    #[arg(long, value_name = "D", value_parser = within(DRAUGHT), allow_negative_numbers = true)]
     pub draught_aft_m: Option<f64>,
 }
 
-/// Draughts of ships and models, m.
+/// Range of draughts of ships and models, m.
 const DRAUGHT: [f64; 2] = [0.01, 50.0];
 
 fn day(text: &str) -> Result<String, String> {
-    clock::day(text).ok_or_else(|| String::from("expected a date such as 2026-11-20"))
+    clock::day(text).ok_or_else(|| String::from("expected a day of the calendar, such as 2026-11-20"))
 }
 
 impl TrialOptions {

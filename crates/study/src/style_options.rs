@@ -1,4 +1,4 @@
-//! Style of figures: options of the command line, and a file.
+//! Style of figures: options of the command line, and a style file.
 
 use std::path::{Path, PathBuf};
 
@@ -25,15 +25,15 @@ pub struct FigureOptions {
 /// Style and selection of the figures of a page.
 #[derive(Debug, Clone, Args)]
 pub struct PageFigureOptions {
-    /// How they are drawn
+    /// How the figures are drawn
     #[command(flatten)]
     pub style: FigureOptions,
-    /// `true` if figures are made; the document, the curves and the text of the page are always written
+    /// Which figures are made; the document, the curves and the text of the page are always written
     #[arg(long, value_enum, value_name = "WHICH", default_value_t = PageFigures::All)]
     pub figures: PageFigures,
 }
 
-/// Which figures of a page are made.
+/// Selection of the figures of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum PageFigures {
     /// All there are
@@ -43,7 +43,7 @@ pub enum PageFigures {
 }
 
 impl PageFigureOptions {
-    /// The theme of the figures, `None` if none are made. Fails as [`FigureOptions::theme`] does.
+    /// Theme of the figures; `None` if no figures are made. Fails as [`FigureOptions::theme`] does.
     pub fn theme(&self) -> Result<Option<Theme>, Failure> {
         let theme = self.style.theme()?;
         Ok((self.figures == PageFigures::All).then_some(theme))
@@ -53,7 +53,7 @@ impl PageFigureOptions {
 /// Style and selection of the figures of a study.
 #[derive(Debug, Clone, Args)]
 pub struct StudyFigureOptions {
-    /// How they are drawn
+    /// How the figures are drawn
     #[command(flatten)]
     pub style: FigureOptions,
     /// Which figures are made
@@ -61,10 +61,10 @@ pub struct StudyFigureOptions {
     pub figures: FigureChoice,
 }
 
-/// Which figures of a study are made.
+/// Selection of the figures of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum FigureChoice {
-    /// Those the scenario names in `output.figures`; all where it names none
+    /// Those the scenario names in `output.figures`; all if it names none
     #[default]
     Named,
     /// All there are
@@ -75,7 +75,7 @@ pub enum FigureChoice {
     None,
 }
 
-/// Reads a number from `least` to `most`.
+/// Parser of a number from `least` to `most`.
 pub(crate) fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     move |text| {
         let number = text.parse().ok().filter(|number| (least..=most).contains(number));
@@ -84,9 +84,9 @@ pub(crate) fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, St
 }
 
 impl FigureOptions {
-    /// The theme of the figures; the command line overrides the file.
+    /// Theme of the figures; the command line overrides the file.
     ///
-    /// Fails for a width or resolution out of range, and when the file cannot be read.
+    /// Fails if a width or resolution is out of range, or if the file cannot be read.
     pub fn theme(&self) -> Result<Theme, Failure> {
         let file = self.style.as_deref();
         let style = file.map(style_of).transpose()?.unwrap_or_default();
@@ -107,7 +107,7 @@ impl FigureOptions {
 
 const STYLE: Kind = Kind { name: "a style", max_bytes: 1 << 20 };
 
-/// A style from its file.
+/// Style read from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {
     let text = read_text(path, STYLE).map_err(|error| Failure::about(path, error))?;
     toml::from_str(&text).map_err(|error| Failure::about(path, error.to_string().trim_end().to_owned()))

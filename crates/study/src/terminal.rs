@@ -16,7 +16,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// A terminal without a bar yet; `label` names the steps.
+    /// Observer without a bar yet; `label` names the steps.
     pub fn new(label: &'static str, quiet: bool) -> Self {
         Self { quiet, label, steps: OnceLock::new() }
     }

@@ -4,10 +4,10 @@ use campaign::failure::Failure;
 
 use crate::options::{Common, MAX_THREADS};
 
-/// Environment variable for the number of threads where the command line gives none.
+/// Environment variable for the number of threads, used if the command line gives none.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
-/// Processors that this program may use.
+/// Number of processors available to this program.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
@@ -18,8 +18,8 @@ pub fn count(common: &Common) -> usize {
     common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
 }
 
-/// Number of threads on a machine of so many `cores` with this value of the `variable` [`THREADS`]: a number above 0,
-/// up to [`MAX_THREADS`]; else `cores`.
+/// Number of threads on a machine with the given `cores` and this value of the `variable` [`THREADS`]: a number above
+/// 0, up to [`MAX_THREADS`]; else `cores`.
 fn threads_of(variable: Option<&str>, cores: usize) -> usize {
     // A number too large to parse is above the maximum, too.
     let asked = variable.filter(|digits| !digits.is_empty()).map(|digits| digits.parse().unwrap_or(usize::MAX));

@@ -41,22 +41,22 @@ use crate::weights::NoiseLaw;
 /// Result of a trace: the document and the fits behind it.
 #[derive(Debug, Clone)]
 pub struct Analysis {
-    /// The document (`trace.json`).
+    /// Document (`trace.json`).
     pub document: Document,
-    /// First-order response (constant K and T) of least heading error.
+    /// First-order response (constant K and T) with the least heading error.
     pub base: Estimate,
     /// Comparisons on the fitted records.
     pub identification: Vec<RecordComparison>,
     /// Comparisons on the held-out records.
     pub validation: Vec<RecordComparison>,
-    /// Leave-one-out comparisons, where several records are fitted and none is held out; `None` if the remaining
-    /// records have no base or no finite replay.
+    /// Leave-one-out comparisons, if several records are fitted and none is held out; `None` if the remaining records
+    /// give no base or no finite replay.
     pub left_out: Vec<Option<RecordComparison>>,
-    /// The structures with their probabilities.
+    /// Structures with their probabilities.
     pub structures: Structures,
-    /// Full model (all candidates) and the noise law of its residual.
+    /// Full model (all candidates) with the noise law of its residual.
     pub full: FullModel,
-    /// Noise of that law, averaged over the records.
+    /// Heading noise under that law, averaged over the records.
     pub noise: HeadingNoise,
     /// Hull models of three degrees of freedom, averaged with the structures.
     pub hulls: Vec<HullEstimate>,
@@ -76,9 +76,9 @@ fn of_heading(trials: &[Trial]) -> Vec<Trial> {
     trials.iter().map(reduced).collect()
 }
 
-/// Records without the outliers of their compass, and the times (s) of the removed readings.
+/// Records without compass outliers, and the times (s) of the removed readings.
 ///
-/// Outliers are those of [`maximum_likelihood::spikes`].
+/// Outliers are found by [`maximum_likelihood::spikes`].
 pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     let spikes = |trial: &Trial| {
         maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
@@ -104,12 +104,12 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
     Err(TraceError::Asked { effect, reason })
 }
 
-/// Traces the effects missing from the first-order model of one ship. `validation` records are only replayed: no fit
-/// depends on them.
+/// Identifies the effects missing from the first-order model of one ship. `validation` records are only replayed: no
+/// fit depends on them.
 ///
 /// Compass outliers are removed from all records and listed; a rudder with measurement noise is replaced by its
-/// piecewise linear estimate. Fails if a setting is out of range, when a requested effect is no candidate, and when
-/// the base cannot be fitted or replayed.
+/// piecewise linear estimate. Fails if a setting is out of range, if a requested effect is no candidate, or if the base
+/// cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -136,7 +136,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     trace_with_watcher(trials, validation, settings, &NoWatcher)
 }
 
-/// [`trace`] with an observer of its leave-one-out folds, who can stop them.
+/// [`trace`] with an observer of the leave-one-out folds, which can stop them.
 pub fn trace_with_watcher(
     trials: &[Trial],
     validation: &[Trial],
@@ -193,6 +193,7 @@ fn analyse(
         outliers: &outliers,
         rudder_errors: &rudder_errors,
         keeps_base,
+        has_hulls: !hulls.is_empty() && !keeps_base,
         problem: &problem,
     };
     Ok(Analysis {
@@ -230,7 +231,7 @@ fn weighed(
     if !trials.iter().all(Trial::is_calm) || !best.0.law.is_random_moment() {
         return best;
     }
-    // In a calm there is no random yaw moment: prefer heading noise where its structures replay the records better.
+    // In a calm there is no random yaw moment: heading noise is preferred if its structures replay the records better.
     let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
     let calm = choose(&of_heading);
     if calm.1.mean_square_of_ship() < best.1.mean_square_of_ship() { calm } else { best }
@@ -249,7 +250,7 @@ fn candidates_of(
     Ok(candidates)
 }
 
-/// Comparisons of base and average on the fitted records, and `true` where the replay of the base is kept.
+/// Comparisons of base and average on the fitted records, and `true` if the replay of the base is kept.
 fn compare_fitted(
     trials: &[Trial],
     base: &Base,
@@ -280,8 +281,8 @@ fn compare_fitted(
     Ok((all, keeps_base))
 }
 
-/// Puts the replay of the base in place of the average where the average has the larger heading error, as under a
-/// random moment that no replay can reproduce. Returns whether it did.
+/// Replaces the replay of the average by the replay of the base if the average has the larger heading error, as under a
+/// random moment that no replay can reproduce. `true` if it was replaced.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     let [before, after] = squares(all);
     let keeps_base = after > before;
@@ -294,7 +295,7 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     keeps_base
 }
 
-/// Member of the structure average, for predictions: without the terms of single records.
+/// Member of the structure average for predictions, without the terms of single records.
 #[derive(Debug, Clone)]
 pub struct PlausibleStructure {
     /// Probability among the members.

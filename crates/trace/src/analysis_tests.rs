@@ -1,4 +1,4 @@
-//! The pipeline on records of known truth, in cases that `tests/tracing.rs` does not cover.
+//! Pipeline on records of known truth, in cases that `tests/tracing.rs` does not cover.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,7 +12,7 @@ use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
 use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, trace_with_watcher};
 
-/// A record of a ship whose damping grows with the cube of its yaw rate.
+/// Record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
     let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
     record(&ship(vec![(damping, vec![80.0])]), plan)
@@ -35,7 +35,7 @@ fn a_random_moment_is_no_effect_of_the_ship() {
     }
 }
 
-/// A step shows the contribution of its effect: after the damping only noise remains.
+/// A step shows the contribution of one effect: after the damping only noise remains.
 #[test]
 fn a_staircase_leads_from_the_base_to_the_noise() {
     let plan = TrialPlan { noise_deg: 0.1, ..TrialPlan::default() };
@@ -65,7 +65,7 @@ fn several_records_are_left_out_in_turn() {
     }
 }
 
-/// Root mean square of a residual from one beginning to the next less the heading and yaw rate that fit it best there:
+/// Root mean square of a residual between successive restarts, less the heading and yaw rate that fit it best there:
 /// two replays of a first-order ship under one rudder differ by a + b exp(−t/T).
 fn less_two_solutions(residual: &[f64], rows: usize, time_constant: f64) -> f64 {
     let square = |window: &[f64]| {
@@ -79,7 +79,7 @@ fn less_two_solutions(residual: &[f64], rows: usize, time_constant: f64) -> f64 
         sum(&|x, e| (e - a * x[0] - b * x[1]).powi(2))
     };
     let mut windows: Vec<&[f64]> = residual.chunks(rows).collect();
-    // A last piece of less than half a window belongs to the one before.
+    // A last piece of less than half a window belongs to the window before.
     if windows.len() > 1 && 2 * (windows[windows.len() - 1].len() - 1) < rows {
         windows.truncate(windows.len() - 2);
         windows.push(&residual[windows.len() * rows..]);
@@ -154,7 +154,7 @@ fn probabilities_move_with_the_prior_odds() {
     assert!(asked.probability_by_prior_odds.iter().all(|p| (p - asked.probability).abs() < 1e-12), "{asked:?}");
 }
 
-/// The search ends before the folds begin: stopping them leaves the result unchanged.
+/// The main result precedes the folds: stopping them leaves it unchanged.
 #[test]
 fn nobody_has_to_wait_for_the_folds() {
     #[derive(Default)]
@@ -192,7 +192,7 @@ fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
     assert!(lacking.to_string().contains("sway"), "{lacking}");
 }
 
-/// A formula is a candidate like those of the list: named where it acts, with its text, and not where it does not.
+/// A formula is a candidate like a listed effect: it is named, with its text, if it acts, and otherwise not.
 #[test]
 fn a_formula_is_named_where_it_acts() {
     let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
@@ -220,7 +220,7 @@ fn both_rules_name_what_is_clear() {
     }
 }
 
-/// The band of a record covers most of it and is no wider than the noise requires.
+/// The band covers most of the record and is no wider than the noise requires.
 #[test]
 fn bands_hold_the_record() {
     let trial = damped(TrialPlan::default());
@@ -251,8 +251,8 @@ fn a_document_is_read_as_it_was_written() {
     assert!(earlier.prior.odds_factors.is_empty() && earlier.effects[0].probability_by_prior_odds.is_empty());
 }
 
-/// Errors of the recorded rudder are noise of the instruments: nothing is named for them, nothing located, and nothing
-/// turns the ship.
+/// Errors of the recorded rudder are instrument noise: they give no named effect, no located shape and no random
+/// moment.
 #[test]
 fn nothing_is_named_for_noise_of_the_rudder() {
     let clean = record(&ship(Vec::new()), TrialPlan::default());
@@ -262,7 +262,7 @@ fn nothing_is_named_for_noise_of_the_rudder() {
     assert!(document.noise[0].rudder_sd_deg.is_some_and(|sd| (sd - 0.3).abs() < 0.05), "{:?}", document.noise);
 }
 
-/// A tug on one side is not named wind: the shape replaces the name.
+/// A tug on one side is not named wind: the shape replaces the named effect.
 #[test]
 fn a_name_falls_where_a_shape_does_better() {
     let tug: Arc<dyn Effect> = Formula::read("tug = c * max(psi, 0)").expect("a formula");
@@ -277,8 +277,8 @@ fn a_name_falls_where_a_shape_does_better() {
     assert!(located.nats > 10.0 && located.rudder_deg > 0.1, "{located:?}");
 }
 
-/// A moment that walks is a disturbance: it carries the heading error, and no shape or effect is said to be there. In a
-/// calm there is no weather, so that the same is unexplained.
+/// A random-walk moment is a disturbance: it explains the heading error, and no shape or effect is reported. In a
+/// declared calm the same residual is unexplained.
 #[test]
 fn a_random_moment_is_a_disturbance_and_in_a_calm_unexplained() {
     let walking = wandering(30.0, 2);

@@ -1,4 +1,4 @@
-//! Model average: the weighted mean of the replays of several structures, or their weighted median where one diverges.
+//! Model average: the weighted mean of the replays of several structures, or their weighted median if one diverges.
 //!
 //! Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a tutorial.
 
@@ -11,10 +11,10 @@ use crate::record::PreparedRecord;
 use crate::replay_errors::{ReplayDepth, WindowError, full, restarted, root_mean_square};
 use crate::weights::NoiseLaw;
 
-/// Error of a replay over the median error of all, above which the replay counts as diverged.
+/// Maximum ratio of the error of a replay to the median error; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Weighted ships.
+/// Ships with their weights.
 #[derive(Debug)]
 pub struct Average {
     /// Weights, which sum to one, and ships.
@@ -25,13 +25,13 @@ pub struct Average {
 pub struct AveragedModel<'a> {
     /// Structures with their weights.
     pub members: &'a [(f64, &'a StructureFit)],
-    /// Hulls; each has the weight of all structures together.
+    /// Hulls; each has the total weight of the structures.
     pub hulls: &'a [HullEstimate],
     /// Noise law.
     pub law: &'a NoiseLaw,
-    /// Index of the replayed record among the fitted ones; `None` for any other record.
+    /// Index of the replayed record among the fitted records; `None` for a record that was not fitted.
     pub fitted_record: Option<usize>,
-    /// Time of the ship L/U, s.
+    /// Ship time L/U, s.
     pub time: f64,
 }
 
@@ -54,7 +54,7 @@ impl AverageReplay {
 }
 
 impl AveragedModel<'_> {
-    /// Weight of one hull, which is that of all structures together.
+    /// Weight of one hull: the total weight of the structures.
     pub fn share(&self) -> f64 {
         1.0 / (1 + self.hulls.len()) as f64
     }
@@ -109,14 +109,14 @@ impl Average {
     }
 }
 
-/// `true` if the largest error exceeds [`MAX_ERROR_RATIO`] times their median.
+/// `true` if the maximum error exceeds [`MAX_ERROR_RATIO`] times the median error.
 fn is_divergent(errors: &[f64]) -> bool {
     let mut sorted = errors.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted[sorted.len() - 1] > MAX_ERROR_RATIO * sorted[sorted.len() / 2]
 }
 
-/// Weighted mean of columns, or their weighted median where a member diverges; `None` without members.
+/// Weighted mean of columns, or their weighted median if a member diverges; `None` without members.
 fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
     if weights.is_empty() {
         return None;
@@ -151,8 +151,8 @@ fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Weights 0.5, 0.3 and 0.2: the mean is theirs, and the median reaches half of their sum, in any order of the
-    /// members.
+    /// Weights 0.5, 0.3 and 0.2: the weighted mean, and the weighted median at half the sum of weights, in any order of
+    /// the members.
     #[test]
     fn where_a_member_diverges_a_row_is_the_weighted_median() {
         let columns: [&[f64]; 3] = [&[1.0, 4.0], &[2.0, 2.0], &[90.0, 3.0]];

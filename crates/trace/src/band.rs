@@ -1,9 +1,9 @@
 //! 95 % bands of a replay by Monte-Carlo: noise of the record, errors of the parameters, spread of the structures.
 //!
 //! The residual of a replay whose initial state was fitted to the record is e = M (w + J d) with the noise w of the
-//! record, the sensitivities J of the heading, the errors d of the parameters, and M, which takes away what an initial
-//! state can do. On a record that was fitted d is what w has done to the parameters, d = −H⁻¹ Jᵀ W w; on another one it
-//! is drawn from their posterior covariance. The variance between the replays of the structures is added. Effects that
+//! record, the sensitivities J of the heading, the errors d of the parameters, and M, the projection off the fitted
+//! initial state. On a fitted record d is the effect of w on the parameters, d = −H⁻¹ Jᵀ W w; on another record d is
+//! sampled from their posterior covariance. The variance between the replays of the structures is added. Effects that
 //! are not among the candidates are not covered.
 
 use estimation::column::dot;
@@ -22,7 +22,7 @@ use crate::record::PreparedRecord;
 /// 97.5 % quantile of the standard normal law.
 const QUANTILE: f64 = 1.959_963_984_540_054;
 
-/// Number of drawn residuals for each structure.
+/// Number of sampled residuals for each structure.
 const DRAWS: usize = 100;
 
 /// Half-width of the band at every row of a replay, rad; `None` if the covariance of the parameters is singular.
@@ -57,15 +57,15 @@ pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: 
     band.iter().all(|half| half.is_finite()).then_some(band)
 }
 
-/// Variance of the white noise of a full row and of one reading, rad²: that of the record where it was fitted,
-/// otherwise the mean over the records.
+/// Variance of the white noise of a full row and of one reading, rad²: of the record if it was fitted, otherwise the
+/// mean over the records.
 fn variances(after: &AveragedModel, problem: &FittedRecords) -> (f64, f64) {
     let all = &after.law.variance;
     let row = after.fitted_record.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (row, row * problem.records[0].full_readings as f64)
 }
 
-/// Moving average, because the variances of drawn noise are themselves noisy.
+/// Moving average, because the variances of sampled noise are themselves noisy.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let reach = (values.len() / 60).max(1);
     let mean = |row: usize| {
@@ -83,7 +83,7 @@ struct ResidualSampler {
     white: Vec<f64>,
     /// Sensitivities of the heading to the fitted parameters.
     columns: Vec<Vec<f64>>,
-    /// Sensitivities to the initial state, and the inverse of their products.
+    /// Sensitivities to the initial state, and the inverse of their Gram matrix.
     state: [Vec<f64>; 2],
     inverse: Matrix2<f64>,
     errors: ParameterErrors,
@@ -92,7 +92,7 @@ struct ResidualSampler {
 enum ParameterErrors {
     /// Rows H⁻¹ Jᵀ W of a fitted record: parameter errors from its noise, by parameter.
     OfRecord(DMatrix<f64>),
-    /// A root of the covariance of the parameters, for a record that was not fitted.
+    /// Root of the covariance of the parameters, for a record that was not fitted.
     Independent(DMatrix<f64>),
 }
 
@@ -124,7 +124,7 @@ impl ResidualSampler {
         let record = &problem.records[0];
         let errors = match after.fitted_record {
             Some(_) => {
-                // The noise of the record entered the fit: its errors are −H⁻¹ Jᵀ W w.
+                // The noise of the record entered the fit: the errors of the parameters are −H⁻¹ Jᵀ W w.
                 let weights = problem.weights(&law);
                 let mut whitened = columns.clone();
                 weights.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
@@ -147,7 +147,7 @@ impl ResidualSampler {
         })
     }
 
-    /// Draws the residual M (w + J d), rad.
+    /// Sample of the residual M (w + J d), rad.
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
         let coloured: Vec<f64> = self.system.sample(&mut normal).into_iter().map(|x| x * self.deviation).collect();

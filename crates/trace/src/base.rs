@@ -1,4 +1,4 @@
-//! The base: the first-order response of least heading error, and its replays.
+//! Base: the first-order response with the least heading error, and its replays.
 
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, output_error};
@@ -16,7 +16,7 @@ pub struct Base {
 }
 
 impl Base {
-    /// Fits the base; fails if `output-error` has no answer or a replay is not finite.
+    /// Fits the first-order base; fails if `output-error` gives no estimate or a replay diverges.
     pub fn fit(trials: &[Trial]) -> Result<Self, TraceError> {
         let method = output_error::Settings::default().build().expect("default settings are valid");
         let estimate = method.identify(trials)?;

@@ -10,29 +10,29 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
-/// Minimum relative change of the propeller revolutions for which they count as recorded.
+/// Minimum relative change of the propeller revolutions that counts as recorded.
 const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
 /// Prior probability of an effect.
 pub const PROBABILITY: f64 = 0.1;
 
-/// Prior probability of an effect of the measured speed or sway, which every hull has.
+/// Prior probability of an effect of the measured speed or sway, which occurs for every hull.
 pub const PROBABILITY_OF_MOTION: f64 = 0.5;
 
-/// Prior probability of a moment that depends on time, in one record: it resembles chance.
+/// Prior probability of a moment that depends on time, in one record: such a moment resembles noise.
 pub const PROBABILITY_OF_TIME: f64 = 0.001;
 
-/// Time L/U of a ship, s: from her particulars, otherwise approximated by (K/T)^(−1/2).
+/// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2).
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
     let time = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.time()).filter(|t| t.is_normal()));
     time.unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
-/// Scales of the manoeuvres in some records; `span` is that of `record`.
+/// Scales of the manoeuvres in some records; `span` is the duration of `record`.
 pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
     let mean_speed = mean_square(records, |record| record.speed.as_ref());
-    // The speed is needed where speed or sway is recorded.
+    // The speed is needed if speed or sway is recorded.
     let speed = |square: f64| approach.unwrap_or(mean_speed.unwrap_or(square).sqrt());
     let propeller = || {
         let mean = mean_square(records, |record| record.propeller.as_ref())?.sqrt();
@@ -55,7 +55,7 @@ pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, recor
 }
 
 /// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
-/// declares a calm, or all records do where it would act in all of them.
+/// declares a calm, or all records if it would act in all of them.
 pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_environmental() && !selection.requires(effect.id()) && is_calm()
@@ -110,7 +110,7 @@ pub fn is_delay(effect: &dyn Effect) -> bool {
         || (id, effect.form()) == (Backlash.id(), Backlash.form())
 }
 
-/// Mean square of a channel over all records; `None` if a record lacks it, or when it is zero throughout.
+/// Mean square of a channel over all records; `None` if a record lacks it, or if it is zero throughout.
 pub fn mean_square<'a>(
     records: &'a [PreparedRecord],
     signal: impl Fn(&'a PreparedRecord) -> Option<&'a Polyline>,

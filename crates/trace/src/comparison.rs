@@ -1,6 +1,6 @@
 //! Replay errors of the base ("before") and of the structure average ("after"), on fitted and on held-out records.
 //!
-//! Only initial states are fitted here; on held-out records a bias or a slow moment of the record as well, reported
+//! Only initial states are fitted here; on held-out records also a bias or a slow moment of the record, reported
 //! separately.
 
 use document::trace::{ErrorsEntry, HorizonEntry};
@@ -27,8 +27,8 @@ pub struct ReplayResult {
     pub replay: Replay,
     /// Errors of the replay.
     pub errors: ReplayErrors,
-    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` if it was not computed and
-    /// where the covariance of the parameters is singular.
+    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` if it was not computed, or if
+    /// the covariance of the parameters is singular.
     pub band: Option<Vec<f64>>,
 }
 
@@ -39,8 +39,8 @@ pub struct BandCoverage {
     pub inside: usize,
     /// Number of measured headings.
     pub total: usize,
-    /// 99 % interval of the share inside (Wilson 1927), for the effective number of headings n (1 − ρ)/(1 + ρ) with
-    /// the lag-1 autocorrelation ρ of being inside: neighbours are inside or outside together.
+    /// 99 % interval of the share inside (Wilson 1927), for the effective number of headings n (1 − ρ)/(1 + ρ) with the
+    /// lag-1 autocorrelation ρ of the inside flags, because neighbouring headings are correlated.
     pub interval: [f64; 2],
 }
 
@@ -115,7 +115,7 @@ pub struct RecordComparison {
 }
 
 impl RecordComparison {
-    /// Heading errors by prediction horizon: windows of which the record holds more than one, then the whole record.
+    /// Heading errors by prediction horizon: windows that fit into the record more than once, then the whole record.
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
@@ -131,7 +131,7 @@ impl RecordComparison {
     }
 }
 
-/// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, as the base has them, as measured.
+/// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, of the base, as measured.
 pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
@@ -185,7 +185,7 @@ impl AveragedModel<'_> {
         trials.par_iter().map(|trial| self.compared(trial, base, thorough)).collect()
     }
 
-    /// Replay of the average on a record from initial states near the `starts`; fails if none is finite.
+    /// Replay of the average on a record from initial states near the `starts`; fails if no replay is finite.
     pub fn on(
         &self,
         trial: &Trial,
@@ -231,7 +231,7 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
 mod tests {
     use super::*;
 
-    /// The same number of headings outside is significant where they are scattered, and not where they are one swing.
+    /// An equal number of headings outside is significant if they are scattered, and not if they belong to one swing.
     #[test]
     fn neighbours_outside_a_band_count_little() {
         let outside = |is_out: fn(usize) -> bool| {

@@ -1,5 +1,5 @@
-//! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates beside
-//! the named effects.
+//! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates in
+//! addition to the named effects.
 
 use ship::effects::{Action, Description, Effect, OperatingPoint, Parameter, Proposal, RecordScales, Targets};
 use ship::particulars::Dimension;
@@ -19,11 +19,11 @@ use crate::record::PreparedRecord;
 pub struct Monomial {
     /// Exponents and magnitudes.
     pub powers: &'static Powers,
-    /// Scales of r (rad/s), δ (rad), ψ (rad) and U (m/s).
+    /// Root mean squares of r (rad/s), δ (rad), ψ (rad) and U (m/s).
     pub size: [f64; 4],
 }
 
-/// One monomial of the library.
+/// Monomial of the library.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Powers {
     /// Exponents of r, δ, ψ and U.
@@ -74,11 +74,11 @@ impl Powers {
     }
 }
 
-/// Monomials up to the third degree that are no named effect.
+/// Monomials up to the third degree that are not named effects.
 const PLAIN: &str = "ψ ψ² ψ³ δ² rδ rψ δψ r²δ rδ² r²ψ rψ² δ²ψ δψ² rδψ U rU δU ψU";
 
-/// Monomials up to the third degree with magnitudes that are no named effect: candidates for tests of a rule with many
-/// competitors, never proposed to a user.
+/// Monomials up to the third degree with magnitudes that are not named effects: candidates for tests of a rule with
+/// many competitors, never proposed to a user.
 const WITH_MAGNITUDES: &str = "|ψ| |r| ψ|ψ| δ|δ| δ|ψ| ψ|δ| |δ||ψ| r|ψ| ψ|r| |r||ψ| r|δ| δ|r| |r||δ| |ψ|³ |δ|³ |r|³ δψ|ψ| ψ²|δ| \
     ψ|δ||ψ| δ²|ψ| δψ|δ| δ|δ||ψ| rψ|ψ| ψ²|r| ψ|r||ψ| rδ|δ| δ²|r| δ|r||δ| r²|ψ| rψ|r| r|r||ψ| r²|δ| rδ|r| \
     r|r||δ| rδ|ψ| rψ|δ| r|δ||ψ| δψ|r| δ|r||ψ| ψ|r||δ| |r||δ||ψ|";
@@ -100,7 +100,7 @@ pub fn plain() -> &'static [Powers] {
 /// Log prior odds of an empirical term.
 const LOG_ODDS: f64 = -4.0;
 
-/// Candidate terms of the monomials, where the records have the channels that they need.
+/// Candidate terms of the monomials, if the records have the required channels.
 pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
     let about = manoeuvres(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {

@@ -27,9 +27,9 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Accurate enough for a quadratic approximation of the posterior.
+    /// Tolerance that suffices for a quadratic approximation of the posterior.
     pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
-    /// To convergence.
+    /// Tolerance of a converged fit.
     pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
 
     fn rules(self) -> SearchSettings {
@@ -55,7 +55,7 @@ pub struct FittedRecords {
     pub records: Vec<PreparedRecord>,
     /// Noise transitions of the records, for any intensity.
     pub noise: Vec<RecordNoise>,
-    /// Time L/U of the ship, s.
+    /// Ship time L/U, s.
     pub time: f64,
 }
 
@@ -120,7 +120,7 @@ impl FittedRecords {
         let unknowns = fitted.len() + 2 * self.records.len();
         let sensitivities = |(number, record): (usize, &PreparedRecord)| {
             let state = fitted.len() + 2 * number;
-            // Unknown and place in θ, behind which stand the initial heading and yaw rate.
+            // Unknown and index in θ; the initial heading and yaw rate follow θ.
             let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts(&entries[**place], number));
             let mut variables: Vec<(usize, usize)> = acting.map(|(unknown, &place)| (unknown, place)).collect();
             variables.push((state + 1, theta.len() + 1));
@@ -129,7 +129,7 @@ impl FittedRecords {
             }
             let mut block = tangents(structure, record, number, theta, initial[number], &variables);
             if !structure.is_heading_dependent() {
-                // The heading then shifts by its initial value.
+                // The initial heading then only shifts the heading.
                 block.columns.push((state, vec![1.0; block.residual.len()]));
             }
             block
@@ -246,12 +246,12 @@ pub fn posterior(linear: &Linear, structure: &Structure, theta: &[f64], weights:
     normal
 }
 
-/// Distance of a value from its prior mean, in prior standard deviations; 0 for a uniform prior.
+/// Distance of a value from the prior mean, in prior standard deviations; 0 for a uniform prior.
 pub fn deviation(prior: Prior, value: f64) -> f64 {
     if prior.sd > 0.0 && prior.sd.is_finite() { (value - prior.mean) / prior.sd } else { 0.0 }
 }
 
-/// Precision of a prior; that of a uniform prior is 12/(range)².
+/// Precision of a prior; 12/(range)² for a uniform prior.
 pub fn curvature(prior: Prior) -> f64 {
     if prior.sd.is_finite() { prior.sd.powi(-2) } else { 12.0 / (prior.highest - prior.lowest).powi(2) }
 }
@@ -285,7 +285,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
         let push = if held { normal.gradient[k] * sd } else { 0.0 };
         let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
         let room = if push > 0.0 { to_high - push } else { to_low + push };
-        // ∫ exp(−½ (x − push)²) within the bounds over that without bounds.
+        // Ratio of ∫ exp(−½ (x − push)²) within the bounds to the integral without bounds.
         match room < -5.0 {
             true => -(-room * std::f64::consts::TAU.sqrt()).ln(),
             false => law.cdf(room).ln() + 0.5 * push * push,
@@ -298,7 +298,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
 /// Maximum a posteriori estimate of a structure.
 #[derive(Debug, Clone)]
 pub struct StructureFit {
-    /// The structure.
+    /// Structure.
     pub structure: Structure,
     /// Parameters, in the order of [`Structure::entries`].
     pub theta: Vec<f64>,
@@ -332,8 +332,7 @@ impl StructureFit {
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
     }
 
-    /// Physical values of all entries of θ with standard deviations, which are infinite where the precision is
-    /// singular.
+    /// Physical values of all entries of θ with standard deviations, which are infinite if the precision is singular.
     pub fn physical(&self) -> Vec<(f64, f64)> {
         let covariance = self.covariance().map(|all| self.structure.physical_covariance(&all));
         let sd = |place: usize| covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());

@@ -1,4 +1,4 @@
-//! The full model: base and all candidates fitted jointly, and the noise law of its residual.
+//! Full model: base and all candidates fitted jointly, and the noise law of the residual.
 
 use std::sync::Arc;
 
@@ -29,8 +29,8 @@ pub struct FullModel {
 }
 
 /// Fits the full model under each plausible noise law of some `kinds`: (1) law of the stationary candidates only, (2)
-/// with candidates that begin at an instant, (3) heading error only, where one of these is a random moment, (4) law of
-/// the base without any candidate. Laws that agree are fitted once.
+/// with candidates that begin at an instant, (3) heading error only, if one of these laws is a random moment, (4) law
+/// of the base without any candidate. Laws that agree are fitted once.
 pub fn fit(
     problem: &FittedRecords,
     base: &Base,
@@ -49,7 +49,7 @@ pub fn fit(
     };
     let stationary = estimate_law(&fit, &first, kinds);
 
-    // Moments with an instant start where they reduce the misfit most beside all other terms.
+    // Moments with an instant start where they reduce the misfit most in addition to all other terms.
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
     let weights = problem.weights(&stationary.law);
     let moments: Vec<&Term> = transient.iter().map(|term| term.as_ref()).collect();
@@ -85,7 +85,7 @@ pub fn fit(
     fulls
 }
 
-/// The base without candidates and the noise law of its residual, as if all misfit were weather.
+/// Base without candidates and the noise law of the residual, as if all misfit were weather.
 fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[CorrelatedNoise]) -> FullModel {
     let structure = Structure::base(problem.records.len(), problem.time);
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());

@@ -1,4 +1,4 @@
-//! Hull models of three degrees of freedom, averaged with the structures where the residual is more than noise.
+//! Hull models of three degrees of freedom, averaged with the structures if the residual is more than noise.
 
 use identify::hull::{self, HullEstimate};
 use rayon::prelude::*;
@@ -8,8 +8,8 @@ use crate::comparison::RecordComparison;
 use crate::remainder::{Remainder, squares};
 use crate::settings::Settings;
 
-/// Hulls that fit the records about as well as the structures, with earlier trials as priors. None without length and
-/// speed of the ship; without earlier trials, none if the structures leave only noise.
+/// Hulls that fit the records about as well as the structures, with earlier trials as priors. No hulls without length
+/// and speed of the ship; without earlier trials, none if the structures leave only noise.
 pub fn fit(
     trials: &[Trial],
     settings: &Settings,
@@ -23,7 +23,7 @@ pub fn fit(
     hull::members(hull::fit_all(trials, &settings.earlier), (squares(comparisons)[1] / rows as f64).sqrt())
 }
 
-/// The hulls refitted to other records under the same priors.
+/// Hulls refitted to other records under the same priors.
 pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
     hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.expected).ok()).collect()
 }

@@ -1,12 +1,12 @@
 //! Estimation of the noise law from the residual of a fit.
 //!
-//! Every kind of colour is tried at its level of largest marginal likelihood. All unknowns of the fit are integrated
-//! out to first order, which corrects for the noise that they absorb:
+//! Every kind of colour is tried at the level of maximum marginal likelihood. All unknowns of the fit are integrated
+//! out to first order, which corrects for the noise absorbed by them:
 //!
 //! −2 log p = Σ n log σ² + Σ log S + J + log det(XᵀX/σ² + P).
 //!
-//! A colour pays log n for each of its parameters (Schwarz 1978). All structures share the law, so the misfit of a
-//! structure without an effect is never taken for weather. The criterion of a law is −2 log p plus this penalty.
+//! The penalty of a colour is log n per parameter (Schwarz 1978). All structures share the law, so the misfit of a
+//! structure without an effect is never attributed to weather. The criterion of a law is −2 log p plus this penalty.
 
 use estimation::levenberg_marquardt::Normal;
 use estimation::minimum::minimum;
@@ -22,18 +22,20 @@ use crate::weights::{NoiseLaw, Weights};
 /// Lower bound of the standard deviation of a heading, rad: a thousandth of a degree.
 pub const MIN_HEADING_SD: f64 = 1.75e-5;
 
-/// Share of the rows, those of largest second difference of the rudder, that give the error of the rudder between rows.
+/// Share of the rows, with the largest second differences of the rudder, from which the error of the rudder between
+/// rows is estimated.
 const BEND_SHARE: f64 = 0.05;
 
-/// Bounds of the level of a colour (heading variance over that of a row), and points of the search grid.
+/// Bounds of the level of a colour (heading variance over the variance of a row), and number of points of the search
+/// grid.
 const LEVELS: [f64; 2] = [1e-2, 1e9];
 const GRID: usize = 6;
 
-/// Number of levels at which every kind of colour is screened, and number of kinds whose level is then estimated.
+/// Number of levels at which every kind of colour is screened, and number of kinds whose level is then refined.
 const COARSE_GRID: i32 = 4;
 const FINALISTS: usize = 3;
 
-/// Iterations of the noise variances for a colour.
+/// Number of iterations of the noise variances for a colour.
 const ROUNDS: usize = 2;
 
 /// Lower bounds of the noise variance of the records, rad², from the sampling of the rudder.
@@ -77,7 +79,7 @@ impl<'a> LinearisedFit<'a> {
         Self { problem, linear, prior, floors: floors(problem, fit.theta[1]) }
     }
 
-    /// Law of least criterion among some kinds, beside the waves of the law `start` and from its variances.
+    /// Law with the least criterion among some kinds, with the waves and the start variances of the law `start`.
     pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
         let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
@@ -113,7 +115,7 @@ impl<'a> LinearisedFit<'a> {
         let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
         let weights = self.problem.weights(&unit);
         let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
-        // Normal equations of every record under unit variance: those for other variances are multiples.
+        // Normal equations of every record under unit variance: for other variances they are multiples.
         let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|k| self.record_normal(k, &weights)).collect();
         let mut criterion = f64::INFINITY;
         for _ in 0..ROUNDS {
@@ -131,7 +133,7 @@ impl<'a> LinearisedFit<'a> {
         alone.normal(&weights)
     }
 
-    /// Updated variances and the criterion at the old ones; `None` if the precision is singular.
+    /// Updated variances and the criterion at the old variances; `None` if the precision is singular.
     fn update(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
         let mut normal = Normal::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
@@ -157,7 +159,7 @@ impl<'a> LinearisedFit<'a> {
         criterion.is_finite().then_some((variances, criterion))
     }
 
-    /// Some kinds of colour at their best levels: all are screened on a grid, the best few are minimised.
+    /// Some kinds of colour at their best levels: all are screened on a grid, the best few are refined.
     fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<EstimatedNoiseLaw> {
         let at = |kind: CorrelatedNoise, log: f64| {
             let colour = NoiseColour { correlated: Some((kind, log.exp())), ..white.colour };
@@ -180,7 +182,7 @@ impl<'a> LinearisedFit<'a> {
 pub struct EstimatedNoiseLaw {
     /// Noise law.
     pub law: NoiseLaw,
-    /// Criterion −2 log p; that of the chosen law includes the penalty of its colour.
+    /// Criterion −2 log p; for the chosen law it includes the penalty of the colour.
     pub criterion: f64,
     /// Decrease of the criterion by waves, penalty included; 0 without waves.
     pub waves_gain: f64,
@@ -214,10 +216,10 @@ pub fn estimate(
     EstimatedNoiseLaw { law: best.law.with_model_error_bound(problem), ..best }
 }
 
-/// Minimum smooth error of a model over the standard deviation of the heading: no response describes a hull better.
+/// Minimum smooth model error, relative to the standard deviation of the heading: no response describes a hull better.
 const MIN_MODEL_ERROR: f64 = 0.02;
 
-/// Effective number of independent readings per time L/U, where the noise includes a model error.
+/// Effective number of independent readings per time L/U, if the noise includes a model error.
 const READINGS_PER_TIME: f64 = 3.0;
 
 impl NoiseLaw {

@@ -1,6 +1,6 @@
 //! Leave-one-out cross-validation over the fitted records (Stone 1974): base and structures are refitted to the other
-//! records and weighed by them, then the omitted record is replayed. The list of structures and the noise law are those
-//! of all records.
+//! records and weighed by them, then the omitted record is replayed. The list of structures and the noise law come from
+//! all records.
 
 use identify::hull::HullEstimate;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use crate::structures::{Structures, WeighedStructure};
 use crate::watcher::Watcher;
 use crate::weights::NoiseLaw;
 
-/// Number of structures that are refitted.
+/// Maximum number of structures that are refitted.
 const MAX_STRUCTURES: usize = 4;
 
 /// Comparisons on every record by the fold without it, `None` for a fold without a finite replay; empty if stopped.

@@ -1,7 +1,7 @@
 //! Effects missing from a first-order model, identified from the residual of recorded zig-zags.
 //!
 //! Every subset of the candidate effects is weighed by its marginal likelihood (Laplace approximation) under the noise
-//! law that the full model leaves. [`trace`] runs the whole analysis; [`analysis`] lists its stages.
+//! law of the residual of the full model. [`trace`] runs the whole analysis; [`analysis`] lists its stages.
 
 pub mod analysis;
 pub mod average;

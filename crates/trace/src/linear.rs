@@ -30,7 +30,7 @@ impl HeadingSensitivities {
         white
     }
 
-    /// Adds the products of its columns with another column to `sums`, by unknown.
+    /// Adds the products of the columns with another column to `sums`, by unknown.
     pub fn products(&self, column: &[f64], sums: &mut DVector<f64>) {
         self.columns.iter().for_each(|(unknown, values)| sums[*unknown] += dot(values, column));
     }

@@ -1,5 +1,5 @@
-//! Selection between named effects and shapes: an effect is named only where no shape explains the records better in
-//! its place; the residual of the named effects is then searched for shapes.
+//! Selection between named effects and shapes: an effect is named only if no shape explains the records better in its
+//! place; the residual of the named effects is then searched for shapes.
 
 use std::sync::Arc;
 
@@ -12,10 +12,11 @@ use crate::settings::Settings;
 use crate::shape::{self, EQUIVALENT_GAIN, MIN_GAIN, MomentSize, ShapeAnalysis};
 use crate::structures::{Structures, chi_square_p_value};
 
-/// Significance level (χ²): an effect with a larger p value is not named.
+/// Maximum p value (χ²) of a named effect.
 const MAX_P_VALUE: f64 = 0.05;
 
-/// Density of a white moment over that of the rudder noise, below which the moment is the rudder noise.
+/// Minimum ratio of the density of a white moment to the density of the rudder noise; below it the moment is the rudder
+/// noise.
 const MIN_DENSITY_RATIO: f64 = 4.0;
 
 /// Named effects, and the shape analysis of their residual.
@@ -30,7 +31,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// Random moment beside named effects and shapes; `None` if the rudder noise explains it.
+    /// Random moment in addition to named effects and shapes; `None` if the rudder noise explains it.
     pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
@@ -44,7 +45,7 @@ impl Location {
     }
 }
 
-/// Structures from which subsets of named effects are taken.
+/// Structures for the subsets of named effects.
 struct NamedStructures<'a> {
     problem: &'a FittedRecords,
     full: &'a FullModel,
@@ -69,7 +70,7 @@ pub fn locate(
     if open.is_empty() {
         return Location { named: asked, displaced: open, shapes: all };
     }
-    // Several effects together can imitate one shape, so the shapes without any of them are compared first.
+    // Several effects together can imitate one shape, so the shapes without these effects are compared first.
     let none = named_structures.shapes(&asked);
     if is_better(&none, &all) {
         return named_structures.with_names(Location { named: asked, displaced: open, shapes: none });
@@ -78,7 +79,7 @@ pub fn locate(
     while let Some(next) = named_structures.without_name(&current, &none, is_asked) {
         current = next;
     }
-    // Named effects with shapes also have to beat a random moment without either.
+    // Named effects with shapes must also explain more than a random moment without either.
     let [random, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.power]);
     if current.is_located() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN {
         return Location { named: asked, displaced: open, shapes: none };
@@ -100,7 +101,7 @@ fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
 }
 
 impl NamedStructures<'_> {
-    /// Adds dropped effects again as long as they improve the criterion beside the shapes.
+    /// Adds dropped effects again as long as they improve the criterion in addition to the shapes.
     fn with_names(&self, mut current: Location) -> Location {
         loop {
             let with = (0..current.displaced.len()).map(|place| {

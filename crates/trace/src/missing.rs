@@ -1,4 +1,4 @@
-//! Missing moments of the fitted records, with the models that may explain them.
+//! Missing moments of the fitted records, with the explaining models.
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use crate::missing_moment::{Explanation, MissingMoment};
 use crate::model::{Structure, TermName};
 
 impl Analysis {
-    /// Yaw moment that the base lacks on every fitted record; `None` for a record of too few headings.
+    /// Missing yaw moment of the base on every fitted record; `None` for a record with too few headings.
     ///
-    /// The explanations are the structure average, where it has terms, then every candidate alone on the base, the most
+    /// The explanations are the structure average, if it has terms, then every candidate alone on the base, the most
     /// probable first.
     pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
         let structure = Structure::base(self.problem.records.len(), self.problem.time);

@@ -15,24 +15,25 @@ use ship::{EffectReal, Real, Replayable, Response, ResponseModel};
 
 use crate::record::PreparedRecord;
 
-/// Maximum number of solver steps between two rows: a bound on the work at a trial point with an absurd time constant.
+/// Maximum number of solver steps between two rows: a bound on the computation at a trial point with an extreme time
+/// constant.
 const MAX_STEPS_PER_ROW: f64 = 8.0;
 
-/// Prior standard deviations of the rudder bias, and of its deviation in one record, rad.
+/// Prior standard deviations of the rudder bias, and of the deviation in one record, rad.
 const BIAS_SD: f64 = 0.06;
 const RECORD_BIAS_SD: f64 = 0.01;
 
-/// Prior standard deviations of 1/T and K/T in units of U/L and U²/L²: any hull is well within.
+/// Prior standard deviations of 1/T and K/T in units of U/L and U²/L²; the values of ships are well within.
 const BASE_SD: [f64; 2] = [3.0, 6.0];
 
 /// Candidate term: an effect in one form with priors for these records.
 #[derive(Debug, Clone)]
 pub struct Term {
-    /// The effect.
+    /// Effect.
     pub effect: Arc<dyn Effect>,
     /// Index of the one record in which it acts; `None` for all.
     pub only: Option<usize>,
-    /// Priors of its parameters.
+    /// Priors of the parameters.
     pub priors: Vec<Prior>,
     /// Log prior odds.
     pub log_odds: f64,
@@ -85,14 +86,14 @@ impl ModelParameter {
 pub struct Structure {
     /// Number of records.
     pub records: usize,
-    /// Time L/U of the ship, s.
+    /// Ship time L/U, s.
     pub time: f64,
-    /// The terms, in the order in which the rudder passes through them.
+    /// Terms, in the order in which the rudder passes through them.
     pub terms: Vec<Arc<Term>>,
 }
 
 impl Structure {
-    /// The base alone, for a number of records and L/U = `time` (s).
+    /// Base alone, for a number of records and L/U = `time` (s).
     pub fn base(records: usize, time: f64) -> Self {
         Self { records, time, terms: Vec::new() }
     }
@@ -103,7 +104,7 @@ impl Structure {
         Self { terms, ..*self }
     }
 
-    /// Number of deviations of the rudder bias: one per record where there are several.
+    /// Number of deviations of the rudder bias: one per record if there are several.
     fn deviations(&self) -> usize {
         if self.records > 1 { self.records } else { 0 }
     }
@@ -165,7 +166,7 @@ impl Structure {
         unknowns
     }
 
-    /// Covariance of all entries of θ from that of the fitted ones; zero for fixed entries.
+    /// Covariance of all entries of θ from the covariance of the fitted entries; zero for fixed entries.
     pub fn spread(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
         let places = self.fitted();
         let mut all = DMatrix::zeros(self.count(), self.count());
@@ -177,7 +178,7 @@ impl Structure {
         all
     }
 
-    /// `true` if the response depends on the heading itself, and so on its initial value.
+    /// `true` if the response depends on the heading, and so on its initial value.
     pub fn is_heading_dependent(&self) -> bool {
         self.terms.iter().any(|term| term.effect.is_heading_dependent())
     }
@@ -202,7 +203,7 @@ impl Structure {
         values
     }
 
-    /// Covariance of the physical values from that of θ.
+    /// Covariance of the physical values from the covariance of θ.
     pub fn physical_covariance(&self, covariance: &DMatrix<f64>) -> DMatrix<f64> {
         let mut map = DMatrix::identity(covariance.nrows(), covariance.ncols());
         self.relative().for_each(|(place, other)| map[(place, other)] = 1.0);
@@ -232,7 +233,7 @@ impl Structure {
         (Self { records: 1, time: self.time, terms }, values)
     }
 
-    /// `true` if a term applies to a fitted record, or to any other one (`None`).
+    /// `true` if a term applies to a fitted record, or to any other record (`None`).
     fn applies(term: &Term, record: Option<usize>) -> bool {
         match record {
             Some(record) => term.only.is_none_or(|only| only == record),
@@ -252,7 +253,7 @@ impl Structure {
     }
 }
 
-/// Solver step (s) between two times, for rows `spacing` seconds apart and `steps` per shortest time constant.
+/// Solver step (s) between two times, for rows `spacing` seconds apart and `steps` per minimum time constant.
 pub fn step<R: Real, S: Replayable<R> + ?Sized>(
     ship: &S,
     spacing: f64,
@@ -262,7 +263,7 @@ pub fn step<R: Real, S: Replayable<R> + ?Sized>(
     move |from, to| (pace.shortest(from, to) / steps).max(spacing / MAX_STEPS_PER_ROW)
 }
 
-/// Solver steps per shortest time constant in a fit: the heading is then exact to 10⁻⁴ of the response.
+/// Solver steps per minimum time constant in a fit: the heading is then exact to 10⁻⁴ of the response.
 const STEPS: f64 = 2.0;
 
 /// Replays a response along a record from its first row and calls `visit` with every observed row and its heading.
@@ -292,8 +293,8 @@ mod tests {
 
     use super::*;
 
-    /// The replay of another record has the base and the effects of the ship, but no moment of time, whether of one of
-    /// several records or of the only one, and no deviation of the rudder bias.
+    /// The replay of another record has the base and the effects of the ship, but no moment of time, whether one or
+    /// several records were fitted, and no deviation of the rudder bias.
     #[test]
     fn terms_of_one_record_are_not_replayed_on_another() {
         let damping = listed("nonlinear_damping", "r³");

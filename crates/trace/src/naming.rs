@@ -1,4 +1,4 @@
-//! Named effects: those above the probability threshold, and groups whose joint probability is.
+//! Named effects: effects above the probability threshold, and groups whose joint probability is above it.
 
 use crate::model::TermName;
 use crate::selection::Selection;
@@ -10,7 +10,7 @@ const MIN_PROBABILITY: f64 = 0.05;
 /// Maximum number of effects in a group.
 const MAX_GROUP_SIZE: usize = 3;
 
-/// Allowed 1 − probability of a group over that of a single effect: a group has more chances to be right.
+/// Ratio of the allowed 1 − probability of a group to that of a single effect: a group is more often right by chance.
 const GROUP_DOUBT_RATIO: f64 = 0.6;
 
 /// Named effect, or group of effects of which one is present.
@@ -22,7 +22,7 @@ pub struct EffectNaming {
     pub aliases: Vec<TermName>,
     /// Other probable forms of the effect.
     pub forms: Vec<TermName>,
-    /// Probability that the effect, or one of the group, is present.
+    /// Probability that the effect, or at least one of the group, is present.
     pub probability: f64,
 }
 
@@ -61,7 +61,7 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
     all
 }
 
-/// An effect in its most probable form, without aliases.
+/// Effect in its most probable form, without aliases.
 fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64) -> EffectNaming {
     let is_form = |name: &&TermName| name.0 == id && name.2 == only;
     let mut forms: Vec<(TermName, f64)> =
@@ -71,7 +71,7 @@ fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64
     EffectNaming { term: forms[0].0, aliases: Vec::new(), forms: alternatives, probability }
 }
 
-/// Minimum group of effects whose joint probability suffices, the most probable effect first; `None` without one.
+/// Smallest group of effects whose joint probability suffices, the most probable effect first; `None` if there is none.
 fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
     let union = |group: &[EffectKey]| structures.probability_of_any(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];

@@ -19,7 +19,7 @@ use ship::narrow_band::NarrowBand;
 
 use crate::record::PreparedRecord;
 
-/// Correlated noise beside the white heading noise: a random yaw moment, or an error of the heading.
+/// Correlated noise in addition to the white heading noise: a random yaw moment, or an error of the heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CorrelatedNoise {
     /// White yaw moment: r' = −a r + w.
@@ -37,8 +37,8 @@ pub enum CorrelatedNoise {
     SmoothMoment(usize),
 }
 
-/// Relative change of the Kalman gain below which it is taken as stationary. The choice of structures near a tie can
-/// depend on the last digits; the published traces used this value.
+/// Maximum relative change of a stationary Kalman gain. The choice of structures near a tie can depend on the last
+/// digits; the published traces used this value.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// Correlation times of gusts, as shares of the longest record.
@@ -67,12 +67,12 @@ impl CorrelatedNoise {
         [Self::White, Self::Walk].into_iter().chain(gusts).chain(compass).chain((0..SMOOTH.len()).map(Self::Smooth))
     }
 
-    /// `true` if it is an error of the heading and not a moment.
+    /// `true` for an error of the heading, `false` for a moment.
     pub fn is_of_heading(self) -> bool {
         matches!(self, Self::Compass(_) | Self::Smooth(_))
     }
 
-    /// Number of parameters: the level, and the correlation time where there is one.
+    /// Number of parameters: the level, and the correlation time if there is one.
     pub fn freedom(self) -> usize {
         if matches!(self, Self::White | Self::Walk) { 1 } else { 2 }
     }
@@ -88,7 +88,7 @@ impl CorrelatedNoise {
         }
     }
 
-    /// Spectral density of w for level 1; that of gusts equals a white moment at low frequency.
+    /// Spectral density of w for level 1; gusts equal a white moment at low frequency.
     pub fn intensity(self, longest: f64) -> f64 {
         let white = 3.0 / longest.powi(3);
         match self {
@@ -135,8 +135,8 @@ impl CorrelatedNoise {
 /// Coloured part of the noise, in units of the variance of the white heading noise.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseColour {
-    /// Correlated noise and its level, a heading variance: that of a random moment at the end of the longest record for
-    /// a ship without damping.
+    /// Correlated noise and its level, a heading variance: for a random moment at the end of the longest record for a
+    /// ship without damping.
     pub correlated: Option<(CorrelatedNoise, f64)>,
     /// Waves; `sd` in units of the white noise.
     pub waves: Option<NarrowBand>,
@@ -166,15 +166,15 @@ impl NoiseColour {
     }
 }
 
-/// Transitions of the correlated noise over the steps of a record, for level 1.
+/// Transitions of the correlated noise over the time steps of a record, for level 1.
 #[derive(Debug, Clone)]
 struct NoiseTransition {
     states: usize,
     /// Initial variances of the states.
     initial: [f64; 4],
-    /// Every distinct step.
+    /// Distinct time steps.
     steps: Vec<Step<MAX_STATES>>,
-    /// The step before every observed row.
+    /// Index of the step before every observed row.
     of_row: Vec<usize>,
 }
 
@@ -206,7 +206,7 @@ impl NoiseTransition {
 #[derive(Debug, Clone)]
 pub struct RecordNoise {
     durations: Vec<f64>,
-    /// Variance of the white noise of every observed row, in units of that of a full one.
+    /// Variance of the white noise of every observed row, in units of the variance of a full row.
     variances: Vec<f64>,
     longest: f64,
     damping: f64,
@@ -222,7 +222,7 @@ impl RecordNoise {
         let durations = (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
         let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
         let variances = record.observed.iter().map(variance).collect();
-        // A course-unstable ship is steered back, so a random moment acts as on a neutral one.
+        // A course-unstable ship is steered back, so a random moment acts as on a neutrally stable ship.
         let damping = inverse_time.max(0.0);
         Self { durations, variances, longest, damping, transitions: Self::kinds().map(|_| OnceLock::new()).collect() }
     }

@@ -28,11 +28,11 @@ pub struct Prospect {
     pub name: String,
     /// Pairs (named effect, alias) that the records and this trial together would separate.
     pub separated: Vec<[String; 2]>,
-    /// Pairs that they would not.
+    /// Pairs that they would not separate.
     pub still_alike: Vec<[String; 2]>,
     /// Unobservable effects that this trial would reveal.
     pub revealed: Vec<String>,
-    /// Unobservable effects that it would not.
+    /// Unobservable effects that it would not reveal.
     pub still_hidden: Vec<String>,
     /// Σ log(1 + visibility) over all candidates; ranks trials that separate and reveal equally many.
     pub information: f64,
@@ -41,7 +41,7 @@ pub struct Prospect {
 impl Analysis {
     /// Values of planned trials, given the fitted records, the best first.
     ///
-    /// A planned trial is a simulated record of the fitted ship; only its rudder and times are used.
+    /// A planned trial is a simulated record of the fitted ship; only rudder and times are used.
     pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
         let mut prospects: Vec<Prospect> =
             planned.par_iter().filter_map(|(name, trial)| self.prospect(name, trial)).collect();
@@ -97,7 +97,7 @@ impl Analysis {
     }
 }
 
-/// Inverse of a precision after a tiny ridge, which keeps an undetermined unknown finite.
+/// Inverse of a precision with a small ridge, which keeps the variance of an undetermined unknown finite.
 fn regular(mut precision: DMatrix<f64>) -> Option<DMatrix<f64>> {
     for k in 0..precision.nrows() {
         precision[(k, k)] += 1e-12 * precision[(k, k)] + f64::MIN_POSITIVE;

@@ -1,9 +1,9 @@
 //! Prepared record of a trial: from its first to its last heading, channels as signals, dense rows averaged.
 //!
 //! Averaging the same rows of all channels keeps the relation between rudder and heading, because a linear filter
-//! commutes with a linear response. Rows are averaged only where headings are far denser than the response, and only
-//! for the search; reported errors use all rows. A single heading among several rows of the rudder is not averaged, and
-//! the rudder there keeps its resolution. Every row stores the number of its readings and stands at their mean time.
+//! commutes with a linear response. Rows are averaged only if headings are far denser than the response, and only for
+//! the search; reported errors use all rows. A single heading among several rows of the rudder is not averaged, and the
+//! rudder there keeps its resolution. Every row stores the number of its readings and has their mean time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -20,10 +20,10 @@ const MIN_ROWS_PER_TIME: f64 = 10.0;
 /// Maximum number of rows after averaging.
 const MAX_ROWS: usize = 4000;
 
-/// Maximum number of rudder rows per heading row, where the rudder was recorded more often.
+/// Maximum number of rudder rows per heading row, if the rudder was recorded more often.
 const MAX_RUDDER_ROWS_PER_HEADING: usize = 5;
 
-/// Interval in usual sampling periods above which a group of averaged rows ends.
+/// Maximum interval within a group of averaged rows, in usual sampling periods.
 const MAX_GAP_PERIODS: f64 = 3.0;
 
 /// Minimum share of finite rows of a usable channel.
@@ -34,13 +34,13 @@ const MIN_FINITE_SHARE: f64 = 0.5;
 pub struct PreparedRecord {
     /// Times of the rows, s.
     pub time: Vec<f64>,
-    /// Heading of the rows, rad, the mean of their readings; NaN where it was not recorded.
+    /// Heading of the rows, rad, the mean of their readings; NaN if it was not recorded.
     pub heading: Vec<f64>,
     /// Number of heading readings averaged in every row.
     pub readings: Vec<usize>,
     /// Number of heading readings of a complete row.
     pub full_readings: usize,
-    /// Rows with a heading.
+    /// Indices of the rows with a heading.
     pub observed: Vec<usize>,
     /// Usual time between rows, s.
     pub spacing: f64,
@@ -52,16 +52,16 @@ pub struct PreparedRecord {
     pub speed: Option<Polyline>,
     /// Sway velocity, m/s.
     pub sway: Option<Polyline>,
-    /// Relative wind speed, m/s, measured or computed from the true one, where its direction is there as well.
+    /// Relative wind speed, m/s, measured or computed from the true wind; `None` without its direction.
     pub wind_speed: Option<Polyline>,
-    /// Direction from which the relative wind comes, rad from the bow, where its speed is there as well.
+    /// Direction from which the relative wind comes, rad from the bow; `None` without its speed.
     pub wind_from: Option<Polyline>,
     /// Propeller revolutions, 1/s.
     pub propeller: Option<Polyline>,
 }
 
 impl PreparedRecord {
-    /// Record averaged to about `MIN_ROWS_PER_TIME` rows per `time` (s, L/U of the ship), within `MIN_ROWS` and
+    /// Record averaged to about `MIN_ROWS_PER_TIME` rows per `time` (s, ship time L/U), within `MIN_ROWS` and
     /// `MAX_ROWS`.
     pub fn averaged(trial: &Trial, time: f64) -> Self {
         let rows =
@@ -98,7 +98,7 @@ impl PreparedRecord {
             let rows = first + from..first + to;
             let read: Vec<usize> = rows.clone().filter(|&row| trial.heading()[row].is_finite()).collect();
             let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;
-            // A row without readings stands at the mean of all its times.
+            // A row without readings has the mean of all its times.
             time.push(if read.is_empty() { mean(&trial.time()[rows]) } else { mean_of(trial.time()) });
             heading.push(if read.is_empty() { f64::NAN } else { mean_of(trial.heading()) });
             readings.push(read.len());
@@ -137,7 +137,7 @@ impl PreparedRecord {
         }
     }
 
-    /// Signals that drive the replay of a ship, reduced to those it needs.
+    /// Input signals of the replay of a ship, reduced to the required signals.
     pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> RecordedSignals<'_> {
         let needed = |channel| ship.needs(channel);
         RecordedSignals {
@@ -169,7 +169,7 @@ fn groups(time: &[f64], group: usize, gap: f64) -> Vec<(usize, usize)> {
     groups
 }
 
-/// Mean of the finite values; NaN when fewer than half are finite.
+/// Mean of the finite values; NaN if fewer than half are finite.
 fn mean(values: &[f64]) -> f64 {
     let (sum, count) = values.iter().filter(|x| x.is_finite()).fold((0.0, 0usize), |(sum, n), x| (sum + x, n + 1));
     if 2 * count > values.len() { sum / count as f64 } else { f64::NAN }
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(groups(&[0.0, 1.0], 1, 3.0), [(0, 1), (1, 2)]);
     }
 
-    /// A mean of readings stands at the mean of their times and stores their number.
+    /// A mean of readings has the mean of their times and stores their number.
     #[test]
     fn every_heading_counts() {
         let time: Vec<f64> = (0..6000).map(|k| 0.1 * f64::from(k)).collect();

@@ -1,8 +1,8 @@
-//! Replay error after fitting a moment of the record beside its initial state: a constant one (rudder bias) or a slow
-//! one. The decrease can be due to weather or trim of that record.
+//! Replay error after fitting a moment of the record in addition to its initial state: a constant moment (rudder bias)
+//! or a slow moment. The decrease can be due to weather or trim of that record.
 //!
-//! A moment is an equivalent rudder angle and is added to the rudder. The base is linear in it, so one least-squares
-//! solution is exact. For an average, Gauss–Newton steps use the responses of the base.
+//! A moment is an equivalent rudder angle, added to the rudder. The base is linear in it, so one least-squares solution
+//! is exact. For an average, Gauss–Newton steps use the responses of the base.
 
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector};
@@ -22,10 +22,10 @@ const MAX_REPLAYS: [usize; 2] = [2, 4];
 /// Predicted relative decrease of the error below which the search ends.
 const MIN_DECREASE: f64 = 0.01;
 
-/// Factor by which a step that does not reduce the error is shortened.
+/// Reduction factor of a step that does not reduce the error.
 const STEP_FACTOR: f64 = 0.4;
 
-/// Relative singular value below which a combination of responses is treated as unobservable.
+/// Minimum relative singular value of an observable combination of responses.
 const MIN_SINGULAR_VALUE: f64 = 1e-10;
 
 /// Least squares of a residual on the heading responses of the base to initial state and moment.
@@ -82,7 +82,7 @@ impl<'a> RecordMoment<'a> {
         MomentErrors { bias, slow: slow.min(bias) }
     }
 
-    /// Errors of an average with a moment; `plain` is its replay without one, kept where its ships diverge.
+    /// Errors of an average with a moment; `plain` is its replay without one, kept if its ships diverge.
     pub fn of_average(&self, average: &Average, plain: &Replay) -> MomentErrors {
         let mut record = self.record.clone();
         let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; KNOTS]);
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// A traced drift stays in its record; bias and slow moment of another record are recognised as such.
+    /// An identified drift stays in its record; bias and slow moment of another record are recognised as such.
     #[test]
     fn a_moment_of_the_record_is_no_error_of_the_ship() {
         let drifting = [moved(&plain(1, 10.0), |t| 1e-4 * t)];

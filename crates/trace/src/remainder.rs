@@ -1,4 +1,4 @@
-//! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on what is left.
+//! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on the remainder.
 
 use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness};
 use trial::Trial;
@@ -22,7 +22,7 @@ pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
 }
 
 /// Normalised innovations of a record: one-step prediction errors of the heading over their standard deviations. They
-/// are white, normal and of unit variance where model and noise law describe the record (Ljung 1999, chapter 16).
+/// are white, normal and of unit variance if model and noise law describe the record (Ljung 1999, chapter 16).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Innovations {
     /// Time, s.
@@ -48,16 +48,16 @@ pub struct Remainder {
     /// `true` if the noise law describes the residual, or the structures replay better than the base; otherwise
     /// probabilities are not reported.
     pub is_credible: bool,
-    /// `true` if the residual is neither random nor of a shape that was searched for.
+    /// `true` if the residual is neither random nor of a searched shape.
     pub is_unexplained: bool,
     /// Location of a residual that is more than noise.
     pub signature: Option<Signature>,
 }
 
-/// Minimum residual, over the error of the base, that can be unexplained.
+/// Minimum unexplained residual, relative to the error of the base.
 const MIN_UNEXPLAINED_RATIO: f64 = 0.3;
 
-/// Minimum residual, in standard deviations of the white noise, that can be unexplained.
+/// Minimum unexplained residual, in standard deviations of the white noise.
 const MIN_UNEXPLAINED_SD: f64 = 1.5;
 
 impl Remainder {
@@ -90,7 +90,7 @@ impl Remainder {
         };
         let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
-        // In a calm there is no random yaw moment, so one has to be explained.
+        // In a calm there is no random yaw moment, so an estimated random moment is unexplained.
         let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
@@ -115,7 +115,7 @@ fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
     all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }
 
-/// Significance level below which innovations contradict the noise law.
+/// Significance level: at smaller p values innovations contradict the noise law.
 pub const IMPROBABLE: f64 = 1e-4;
 
 /// Normalised innovations of all records: their residuals (rad) whitened under a law.

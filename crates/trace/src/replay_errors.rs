@@ -15,16 +15,16 @@ use trial::{Channel, Columns, Trial, ZigZag};
 use crate::model::step;
 use crate::record::PreparedRecord;
 
-/// Solver steps per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
+/// Solver steps per minimum time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
 
 /// Window lengths of the restarted replays on every record, s.
 pub const HORIZONS: [f64; 2] = [20.0, 60.0];
 
-/// Shortest window of [`ReplayDepth::Growth`], s; every further one is twice as long.
+/// Minimum window of [`ReplayDepth::Growth`], s; every further window is twice as long.
 const MIN_WINDOW_S: f64 = 5.0;
 
-/// Share of a window below which the last piece is joined to the window before.
+/// Minimum last piece, as a share of a window; a shorter piece is joined to the window before.
 const MIN_LAST_PIECE: f64 = 0.5;
 
 /// Minimum number of headings in a window: two are used up by its initial state.
@@ -34,18 +34,18 @@ const MIN_HEADINGS: usize = 4;
 const MAX_STEPS: usize = 12;
 const MAX_STEP_LENGTHS: i32 = 10;
 
-/// Distance below which two initial states agree: of the heading, and of the yaw rate times the duration, rad.
+/// Tolerance of equal initial states: of the heading, and of the yaw rate times the duration, rad.
 const STATE_TOLERANCE: f64 = 1e-6;
 
-/// Predicted relative decrease of the sum of squares below which the search ends.
+/// Minimum predicted relative decrease of the sum of squares; below it the search ends.
 const MIN_DECREASE: f64 = 1e-7;
 
 /// Root mean square heading errors with a fitted moment of the record, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentErrors {
-    /// With a rudder bias.
+    /// Error with a rudder bias, rad.
     pub bias: f64,
-    /// With a piecewise linear moment of five knots.
+    /// Error with a piecewise linear moment of five knots, rad.
     pub slow: f64,
 }
 
@@ -65,9 +65,9 @@ pub struct ReplayErrors {
     pub heading: f64,
     /// Number of headings compared.
     pub rows: usize,
-    /// Root mean square yaw-rate error of the full replay, rad/s, where the record has a yaw rate.
+    /// Root mean square yaw-rate error of the full replay, rad/s, if the record has a yaw rate.
     pub yaw_rate: Option<f64>,
-    /// Mean absolute error of the overshoot angles, rad, where record and replay are zig-zags.
+    /// Mean absolute error of the overshoot angles, rad, if record and replay are zig-zags.
     pub overshoot: Option<f64>,
     /// Errors of the restarted replays, by window length.
     pub windows: Vec<WindowError>,
@@ -163,7 +163,7 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
 /// Mean absolute error of the overshoot angles of a replay, rad; `None` unless record and replay are zig-zags.
 pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
-    // Both have the executes of the recorded rudder; a peak may be missing in one of them.
+    // Record and replay have the executes of the recorded rudder; a peak may be missing in one of them.
     let time = |zigzag: &ZigZag, overshoot: &Overshoot| zigzag.executes[overshoot.execute].time.value;
     let replayed = |overshoot: &Overshoot| {
         let execute = time(&measured, overshoot);
@@ -192,7 +192,7 @@ pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64
         if record.time[count - 1] < end + MIN_LAST_PIECE * length {
             to = count;
         }
-        // The window ends where the next one begins.
+        // The window ends at the first row of the next window.
         let until = (to + 1).min(count);
         if (from..to).filter(|&row| record.heading[row].is_finite()).count() < MIN_HEADINGS {
             return None;
@@ -260,7 +260,7 @@ struct InitialStateFit {
 }
 
 /// Least-squares initial heading and yaw rate of some rows (Gauss–Newton with damped steps), preceded by the sum of
-/// squares; `None` if it is not finite, or when the search reaches a state already `visited`.
+/// squares; `None` if it is not finite, or if the search reaches a state already `visited`.
 fn fit_initial_state(
     ship: &dyn ReplayedShip,
     record: &PreparedRecord,

@@ -1,4 +1,4 @@
-//! Document of a trace, assembled from the results of its stages. Nothing is fitted here.
+//! Document of a trace, assembled from the results of the stages. Nothing is fitted here.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub struct TraceParts<'a> {
     pub settings: &'a Settings,
     /// Base.
     pub base: &'a Base,
-    /// Full model.
+    /// Full model with its noise law.
     pub full: &'a FullModel,
     /// Structures.
     pub structures: &'a Structures,
@@ -61,6 +61,8 @@ pub struct TraceParts<'a> {
     pub rudder_errors: &'a [Option<RudderError>],
     /// `true` if the replay of the base is kept on the fitted records.
     pub keeps_base: bool,
+    /// `true` if fitted hulls take part in the replays after.
+    pub has_hulls: bool,
     /// Prepared records.
     pub problem: &'a FittedRecords,
 }
@@ -72,7 +74,7 @@ const MIN_VISIBILITY: f64 = 4.0;
 const MAX_LISTED: usize = 20;
 
 impl TraceParts<'_> {
-    /// The document.
+    /// Document of the trace.
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = self.location.named.clone();
@@ -81,19 +83,20 @@ impl TraceParts<'_> {
         let signature = self.remainder.signature.as_ref();
         let error = self.errors();
         let disturbance = self.disturbance();
-        let verdict = match (self.location.is_located(), effects.is_empty(), disturbance) {
-            _ if self.remainder.is_unexplained => Verdict::Unexplained,
-            (true, ..) => Verdict::Located,
-            (_, false, _) => Verdict::Traced,
-            (.., Some(_)) => Verdict::Disturbed,
-            _ => Verdict::Clean,
-        };
+        let verdict = self.verdict(effects.is_empty(), disturbance.is_some());
         let located = self.located();
         let (base, indices) = (&self.base.estimate, self.indices());
+        let headline = sentences::Headline {
+            verdict,
+            effects: &effects,
+            error: &error,
+            disturbance,
+            located: &located,
+            has_hulls: self.has_hulls,
+        };
         Document {
             schema: SCHEMA.into(),
-            headline: sentences::Headline { verdict, effects: &effects, error: &error, disturbance, located: &located }
-                .text(),
+            headline: headline.text(),
             verdict,
             base: self.with_prime([base.K(), base.T(), base.rudder_bias()]),
             candidates: selection.ids().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
@@ -127,6 +130,17 @@ impl TraceParts<'_> {
             },
             error,
             effects,
+        }
+    }
+
+    /// Verdict of the trace, the first that holds.
+    fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> Verdict {
+        match (self.location.is_located(), is_unnamed, is_disturbed) {
+            _ if self.remainder.is_unexplained => Verdict::Unexplained,
+            (true, ..) => Verdict::Located,
+            (_, false, _) => Verdict::Traced,
+            (.., true) => Verdict::Disturbed,
+            _ => Verdict::Clean,
         }
     }
 
@@ -177,8 +191,8 @@ impl TraceParts<'_> {
         values.map(|((entry, (value, sd)), &fitted)| self.parameter(&entry, vec![(1.0, value, sd)], fitted)).collect()
     }
 
-    /// Entry of θ averaged over structures (weight, value, standard deviation); `fitted` is its fitted value in the
-    /// first.
+    /// Entry of θ averaged over structures (weight, value, standard deviation); `fitted` is the fitted value in the
+    /// first structure.
     fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, fitted: f64) -> ParameterEntry {
         let quantity = match entry.prior.is_fitted() {
             true => quantity(NormalMixture { parts }.summary()),
@@ -245,7 +259,7 @@ impl TraceParts<'_> {
         effects
     }
 
-    /// Waves as a named effect, where the noise law has them.
+    /// Waves as a named effect, if the noise law includes them.
     fn waves(&self) -> Option<EffectEntry> {
         let sea = self.full.law.colour.waves?;
         let waves = effects::WaveYaw;

@@ -2,18 +2,18 @@
 //!
 //! δ_i = δ(t_i) + ν_i, ν white with standard deviation s, rad. This is an errors-in-variables problem: an effect that
 //! is flat at large or small angles removes the noise and seems to explain it. A steering gear moves the rudder in
-//! rests and strokes of one rate, which many readings determine far better than one ([`pieces`]), so the recorded
-//! rudder is replaced by these. The remaining error, ∫ν dt over a stroke with the variance (s h)² per row of length h,
-//! acts on the ship as a white yaw moment of intensity K²/T² times [`RudderError::intensity`], a lower bound of the
-//! noise law.
+//! rests and strokes of one rate, which many readings determine far better than one reading ([`pieces`]), so the
+//! recorded rudder is replaced by rests and strokes. The remaining error, ∫ν dt over a stroke with the variance (s h)²
+//! per row of length h, acts on the ship as a white yaw moment of intensity K²/T² times [`RudderError::intensity`], a
+//! lower bound of the noise law.
 //!
 //! s is first 1.4826 median |δ_(i−1) − 2 δ_i + δ_(i+1)|/√6, which is robust to a few corners, then the standard
-//! deviation of the readings about the pieces. Angles rounded to q have the error variance q²/12; the part of it that
-//! the readings about a stroke do not show is common to all its rows.
+//! deviation of the readings about the pieces. Angles rounded to q have the error variance q²/12; the part that the
+//! readings about a stroke do not show is common to all rows of the stroke.
 //!
-//! A record is unchanged where s is below 0.05 deg and angles are rounded to less than 0.5 deg, where the rudder needs
-//! many pieces (waves, an autopilot) or the residual about them is correlated, and where the recorded rudder explains
-//! the heading better. Limits: small true motions of the rudder that the heading does not show are taken for noise,
+//! A record is unchanged if s is below 0.05 deg and angles are rounded to less than 0.5 deg, if the rudder needs many
+//! pieces (waves, an autopilot) or the residual about them is correlated, and if the recorded rudder explains the
+//! heading better. Limits: small true motions of the rudder that the heading does not show are treated as noise,
 //! correlated noise is not modelled, and a constant error of all angles, such as that of rounded rests, stays.
 
 mod pieces;
@@ -33,23 +33,24 @@ use crate::noise::CorrelatedNoise;
 use crate::weights::NoiseLaw;
 use pieces::RudderPiece;
 
-/// Standard deviation over the median absolute value of the normal law.
+/// Ratio of the standard deviation to the median absolute value of the normal law.
 const SD_PER_MEDIAN: f64 = 1.4826;
 
-/// Minimum standard deviation that is treated, deg.
+/// Minimum standard deviation that is removed, deg.
 const MIN_SD_DEG: f64 = 0.05;
 
 /// Minimum mean number of rows per piece: with more pieces the rudder does not rest between strokes.
 const MIN_ROWS_PER_PIECE: usize = 5;
 
-/// Autocorrelation, at any of [`LAGS`] lags, above which the residual about the pieces is a motion of the rudder.
+/// Maximum autocorrelation of noise about the pieces, at any of [`LAGS`] lags; above it the residual is a motion of the
+/// rudder.
 const MAX_AUTOCORRELATION: f64 = 0.15;
 const LAGS: usize = 10;
 
-/// Gain in log likelihood above which the recorded rudder is kept.
+/// Maximum gain in log likelihood of the recorded rudder; above it the recorded rudder is kept.
 const MIN_GAIN: f64 = 2.0;
 
-/// Unit of the search for a common divisor of the angles, deg, and the largest divisor taken for rounding, deg.
+/// Unit of the search for a common divisor of the angles, deg, and the maximum divisor treated as rounding, deg.
 const UNIT_DEG: f64 = 0.5;
 const MAX_ROUNDING_DEG: f64 = 2.0;
 
@@ -58,11 +59,11 @@ const MAX_ROUNDING_DEG: f64 = 2.0;
 pub struct RudderError {
     /// Standard deviation of a reading, rad.
     pub sd: f64,
-    /// Growth of the variance of the integrated error per second, rad² s.
+    /// Growth rate of the variance of the integrated error, rad² s.
     pub intensity: f64,
 }
 
-/// Records with the estimated true rudder, and the measurement errors; `None` for a record without one.
+/// Records with the estimated true rudder, and the measurement errors; `None` for a record without measurement error.
 pub fn without_noise(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderError>>) {
     let clean: Vec<Option<(Trial, RudderError)>> = trials.par_iter().map(smoothed).collect();
     let errors: Vec<Option<RudderError>> = clean.iter().map(|pair| pair.as_ref().map(|(_, error)| *error)).collect();
@@ -76,7 +77,7 @@ pub fn without_noise(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderEr
     (kept, errors)
 }
 
-/// Record with the estimated true rudder, and its measurement error; `None` if the readings are kept as exact.
+/// Record with the estimated true rudder, and its measurement error; `None` if the readings are treated as exact.
 fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
     let (time, angle) = (trial.time(), trial.rudder());
     let quantum = quantum(angle);
@@ -109,8 +110,8 @@ fn roughness(time: &[f64], angle: &[f64]) -> f64 {
     median(&mut bends).map_or(0.0, |bend| SD_PER_MEDIAN * bend / 6f64.sqrt())
 }
 
-/// Rounding unit of the angles, rad; 0 where there is no common divisor, and where every stroke begins with a full step
-/// at a row, as in an exact record of round numbers.
+/// Rounding unit of the angles, rad; 0 if there is no common divisor, or if every stroke begins with a full step at a
+/// row, as in an exact record of round numbers.
 fn quantum(angle: &[f64]) -> f64 {
     let units: Vec<f64> = angle.iter().map(|angle| to_deg(*angle) / UNIT_DEG).collect();
     if units.iter().any(|unit| (unit - unit.round()).abs() > 1e-3) {
@@ -170,12 +171,12 @@ fn log_likelihood(trial: &Trial) -> Option<f64> {
     method.log_likelihood(std::slice::from_ref(trial))
 }
 
-/// Decrease of the criterion above which another noise law is kept beside the rudder noise.
+/// Minimum decrease of the criterion by another noise law that is kept in addition to the rudder noise.
 const MIN_CRITERION_DECREASE: f64 = 10.0;
 
 /// Full models whose noise laws contain at least the rudder noise.
 ///
-/// The rudder noise is a white moment; another law replaces it only where it explains the records far better.
+/// The rudder noise is a white moment; another law replaces it only if it explains the records far better.
 pub fn bounded(
     fulls: Vec<FullModel>,
     problem: &FittedRecords,
@@ -196,7 +197,7 @@ pub fn bounded(
         let white = estimate(CorrelatedNoise::White);
         let kind = full.law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::White);
         let is_other = kind.is_some_and(|kind| estimate(kind).criterion + MIN_CRITERION_DECREASE < white.criterion);
-        // The size of waves is relative to the noise beside them.
+        // The size of waves is relative to the white noise.
         let mut law = if full.law.colour.waves.is_some() { full.law.clone() } else { white.law };
         let level = law.colour.correlated.filter(|(kind, _)| *kind == CorrelatedNoise::White).map_or(0.0, |(_, x)| x);
         law.colour.correlated = Some((CorrelatedNoise::White, level.max(least(&law))));

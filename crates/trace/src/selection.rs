@@ -45,7 +45,7 @@ pub struct Selection {
     pub without: Vec<EffectId>,
     /// `true` if effects that are not required are candidates.
     pub search: bool,
-    /// Effects given as formulas, candidates like the listed ones.
+    /// Effects given as formulas, candidates like the listed effects.
     pub formulas: Vec<Arc<Formula>>,
 }
 
@@ -67,7 +67,7 @@ impl Selection {
         Self { without, ..Self::default() }
     }
 
-    /// Effects in all their forms: the listed ones, then the formulas.
+    /// Effects in all their forms: the listed effects, then the formulas.
     pub fn effects(&self) -> Vec<Arc<dyn Effect>> {
         let formulas = self.formulas.iter().map(|formula| Arc::clone(formula) as Arc<dyn Effect>);
         effects::all().into_iter().chain(formulas).collect()
@@ -78,7 +78,7 @@ impl Selection {
         EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
     }
 
-    /// Formula of this name; `None` if there is none.
+    /// Formula of this name; `None` if no formula has it.
     pub fn formula(&self, name: &str) -> Option<&Formula> {
         self.formulas.iter().find(|formula| formula.id() == name).map(Arc::as_ref)
     }

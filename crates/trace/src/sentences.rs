@@ -48,7 +48,7 @@ fn listed(items: &[String]) -> String {
 /// Window of the restarted replays in the headline, s.
 const WINDOW: &str = "60";
 
-/// Minimum share of the heading error that counts as unchanged.
+/// Minimum ratio of heading errors, after to before, that counts as unchanged.
 const UNCHANGED_SHARE: f64 = 0.95;
 
 /// Heading errors (deg) of some records, before and after, as root mean squares; `None` if no record has both.
@@ -59,7 +59,7 @@ fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) ->
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
 }
 
-/// "27 %": an error after over that before; `None` if it is not finite.
+/// "27 %": ratio of the error after to the error before; `None` if it is not finite.
 fn percent(errors: Option<[f64; 2]>) -> Option<String> {
     let ratio = errors.map(|[before, after]| after / before).filter(|ratio| ratio.is_finite())?;
     Some(format!("{:.0} %", 100.0 * ratio))
@@ -73,15 +73,17 @@ pub struct Headline<'a> {
     pub effects: &'a [EffectEntry],
     /// Errors before and after.
     pub error: &'a ErrorEntry,
-    /// Random moment beside the named effects.
+    /// Random moment in addition to the named effects.
     pub disturbance: Option<DisturbanceEntry>,
     /// Located shapes.
     pub located: &'a [LocatedEntry],
+    /// `true` if fitted hulls take part in the replays after.
+    pub has_hulls: bool,
 }
 
 impl Headline<'_> {
-    /// The result in a few sentences: what the first-order response lacks, the heading error with and without it on
-    /// fitted and other records, and what remains.
+    /// Result in a few sentences: the effects missing from the first-order response, the heading error with and without
+    /// them on fitted and other records, and the remainder.
     pub fn text(&self) -> String {
         let name = |effect: &EffectEntry| match effect.aliases.is_empty() {
             true => names::effect_form(&effect.id, &effect.form),
@@ -136,7 +138,8 @@ impl Headline<'_> {
         let windows = ratios(|errors| errors.horizon_rmse_deg.get(WINDOW).copied().flatten());
         let windows = windows.map_or_else(String::new, |ratios| format!(" In replays of {WINDOW} s: {ratios}."));
         let [before, after] = mean_errors(&self.error.identification, whole).unwrap_or([f64::NAN; 2]).map(short);
-        format!("{condition} the heading error is {after}° instead of {before}°{replays}.{windows}")
+        let hulls = if self.has_hulls { " and the fitted hulls" } else { "" };
+        format!("{condition}{hulls} the heading error is {after}° instead of {before}°{replays}.{windows}")
     }
 
     /// Sentence on effects that improve one-step predictions but not the full replay; empty for others.
@@ -278,7 +281,7 @@ mod tests {
     }
 
     fn headline(effects: &[EffectEntry], error: &ErrorEntry) -> String {
-        Headline { verdict: Verdict::Traced, effects, error, disturbance: None, located: &[] }.text()
+        Headline { verdict: Verdict::Traced, effects, error, disturbance: None, located: &[], has_hulls: false }.text()
     }
 
     #[test]
@@ -296,7 +299,7 @@ mod tests {
         );
     }
 
-    /// A gain in BIC without a smaller replay error is reported as a gain of one-step prediction.
+    /// A gain in BIC without a smaller replay error is reported as a gain in one-step prediction.
     #[test]
     fn a_gain_that_no_replay_shows_is_one_of_prediction() {
         let error = ErrorEntry { identification: vec![record([2.0, 2.0], [None; 2])], ..ErrorEntry::default() };

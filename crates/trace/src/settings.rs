@@ -15,7 +15,7 @@ pub enum Rule {
     /// Marginal likelihood under the priors of all coefficients.
     #[default]
     Posterior,
-    /// exp(−BIC/2): every parameter pays ½ log n (Schwarz 1978).
+    /// exp(−BIC/2), with a penalty of ½ log n per parameter (Schwarz 1978).
     Bic,
 }
 
@@ -45,9 +45,9 @@ pub struct Settings {
     pub selection: Selection,
     /// `true` if errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
     pub thorough: bool,
-    /// `true` if only heading, yaw rate and rudder are used, as by methods without other channels.
+    /// `true` if only heading, yaw rate and rudder are used, as in methods without other channels.
     pub heading_alone: bool,
-    /// `true` if hull models of three degrees of freedom are fitted where the residual is more than noise.
+    /// `true` if hull models of three degrees of freedom are fitted if the residual is more than noise.
     pub hulls: bool,
     /// Hulls from earlier trials of the ship or a similar one, used as priors.
     pub earlier: Vec<EarlierHull>,
@@ -69,7 +69,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Fails for a setting out of its range.
+    /// Fails if a setting is out of its range.
     pub fn check(&self) -> Result<(), SettingsError> {
         if !(0.5..1.0).contains(&self.probability) {
             return Err(SettingsError::new("probability", self.probability, "a number from 0.5 to below 1"));
@@ -81,21 +81,21 @@ impl Settings {
 /// Error of a trace.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TraceError {
-    /// Setting out of its range.
+    /// A setting is out of its range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// Base that cannot be fitted.
+    /// The base cannot be fitted.
     #[error(transparent)]
     Base(#[from] IdentifyError),
     /// A requested effect is no candidate for these records.
     #[error("{} cannot be included as requested: {reason}", effect.as_str())]
     Asked {
-        /// The effect.
+        /// Effect.
         effect: EffectId,
         /// Reason.
         reason: &'static str,
     },
-    /// Record whose replay is not finite.
+    /// The replay of a record is not finite.
     #[error("{trial}: the replay of the model diverges; check units and signs of its rudder and heading")]
     Replay {
         /// Name of the trial.

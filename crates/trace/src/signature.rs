@@ -9,7 +9,7 @@ pub struct Signature {
     pub record: usize,
     /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
-    /// Strongest line of its spectrum; `None` if it has none.
+    /// Strongest line of the spectrum; `None` if there is none.
     pub line: Option<SpectralLine>,
     /// Quarter of the headings (rad) with the largest root mean square, and its value, rad.
     pub heading: ([f64; 2], f64),
@@ -74,7 +74,7 @@ pub fn signature(
 mod tests {
     use super::*;
 
-    /// Also in a record too long to sum every window separately.
+    /// The window is also found in a record too long to sum every window separately.
     #[test]
     fn the_fullest_part_of_a_long_record_is_found() {
         let rows = 400_000;

@@ -1,8 +1,8 @@
 //! Stepwise replay errors from the base to the most probable structure, one effect per step, by backward elimination
 //! (Draper and Smith 1998).
 //!
-//! Every step is refitted under white noise for the nearest replay. Terms are removed in the order of least loss, so
-//! the last step adds the least important effect.
+//! Every step is refitted under white noise for the nearest replay. The term of least loss is removed first, so the
+//! last step adds the least important effect.
 
 use rayon::prelude::*;
 

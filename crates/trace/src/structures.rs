@@ -23,13 +23,13 @@ use result::names;
 pub use quadratic::{Support, chi_square_p_value};
 pub use result::{Structures, WeighedStructure};
 
-/// Number of structures whose fit is driven to convergence.
+/// Maximum number of structures whose fit is iterated to convergence.
 const MAX_CONVERGED: usize = 8;
 
-/// Start value of a delay that replaces another, in standard deviations of its prior.
+/// Start value of a delay that replaces another delay, in standard deviations of the prior.
 const DELAY_START: f64 = 0.3;
 
-/// Number of rounds, each about the best structure of the one before.
+/// Number of rounds, each about the best structure of the round before.
 const ROUNDS: usize = 2;
 
 /// Search over the structures of one noise law.
@@ -43,13 +43,13 @@ struct StructureSearch<'a> {
     /// Evaluated structures by the names of their terms.
     evaluated: BTreeMap<Vec<TermName>, WeighedStructure>,
     visibility: BTreeMap<TermName, f64>,
-    /// Latest approximation, from which the support of every term is taken.
+    /// Latest approximation, which gives the support of every term.
     latest: Option<QuadraticPosterior>,
 }
 
-/// Weighs the structures under every noise law and chooses the most probable law by the evidence of its structures.
-/// Where structures under a smooth model error explain the misfit of the base, only such laws compete. `base` is the
-/// mean square residual of the base, rad².
+/// Weighs the structures under every noise law and chooses the most probable law by the evidence of its structures. If
+/// structures under a smooth model error explain the misfit of the base, only such laws compete. `base` is the mean
+/// square residual of the base, rad².
 pub fn choose(
     problem: &FittedRecords,
     fulls: Vec<FullModel>,
@@ -86,13 +86,14 @@ pub fn choose(
     (full, structures)
 }
 
-/// Replay error over that of the base, below which the structures explain the misfit.
+/// Maximum ratio of the replay error to the error of the base, for structures that explain the misfit.
 const MAX_PHYSICAL_RATIO: f64 = 0.4;
 
-/// The same where the replay under a random moment diverges.
+/// Maximum ratio if the replay under a random moment diverges.
 const MAX_PHYSICAL_RATIO_IF_DIVERGENT: f64 = 0.7;
 
-/// Replay error over that of the base, above which a random moment has replaced physics: its replay diverges.
+/// Maximum ratio of the replay error to the error of the base under a random moment; above it the moment has replaced
+/// physics.
 const MAX_RANDOM_RATIO: f64 = 2.0;
 
 /// Weighs the structures of a full model under its noise law.
@@ -127,7 +128,7 @@ fn weigh(
             break;
         };
         seen.push(names(&top.structure));
-        // Alternatives to a term appear when it is removed.
+        // Alternatives to a term appear after its removal.
         for out in 0..top.structure.terms.len() {
             let less = top.without(out, problem, &search.weights, Effort::COARSE);
             search.screen(&search.full_parameters(&less), &less.initial, &search.terms_of(&less));
@@ -155,8 +156,8 @@ impl StructureSearch<'_> {
         self.latest = Some(quadratic);
     }
 
-    /// Refits a structure with each of its delays replaced by every other one: they are nearly collinear, so only a fit
-    /// separates them.
+    /// Refits a structure with each of its delays replaced by every other delay: they are nearly collinear, so only a
+    /// fit separates them.
     fn swap_delays(&mut self, top: &StructureFit) {
         let terms = self.full.fit.structure.terms.iter().chain(self.variants.iter().copied());
         let delays: Vec<Arc<Term>> = terms.filter(|term| is_delay(term.effect.as_ref())).cloned().collect();
@@ -183,7 +184,7 @@ impl StructureSearch<'_> {
         self.store(fits);
     }
 
-    /// Stores fits; of several fits of one structure, the one of largest posterior density.
+    /// Stores fits; of several fits of one structure, the fit with the maximum posterior density.
     fn store(&mut self, fits: Vec<StructureFit>) {
         let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
         for fit in fits {
@@ -195,7 +196,7 @@ impl StructureSearch<'_> {
         }
     }
 
-    /// Drives the fits of the best structures to convergence.
+    /// Iterates the fits of the best structures to convergence.
     fn converge(&mut self) {
         let highest = self.top().map_or(0.0, |top| top.log_posterior);
         let mut best: Vec<&WeighedStructure> =
@@ -223,7 +224,7 @@ impl StructureSearch<'_> {
         if self.selection.requires(term.effect.id()) { required } else { term.log_odds }
     }
 
-    /// Visibility of every term: expected squared coefficient over its posterior variance beside all other terms.
+    /// Visibility of every term: expected squared coefficient over its posterior variance with all other terms present.
     fn visibility(&self, quadratic: &QuadraticPosterior) -> BTreeMap<TermName, f64> {
         let visibility = |(term, removable): (&Arc<Term>, &RemovableTerm)| {
             let expected: Vec<f64> = term
@@ -283,7 +284,7 @@ impl StructureSearch<'_> {
         }
     }
 
-    /// Evaluated structure of largest posterior probability.
+    /// Evaluated structure with the maximum posterior probability.
     fn top(&self) -> Option<&WeighedStructure> {
         self.evaluated
             .values()
@@ -291,7 +292,7 @@ impl StructureSearch<'_> {
             .max_by(|a, b| a.log_posterior.total_cmp(&b.log_posterior))
     }
 
-    /// Parameters of the full model: those of a fit, all other terms neutral.
+    /// Parameters of the full model: the parameters of a fit, all other terms neutral.
     fn full_parameters(&self, fit: &StructureFit) -> Vec<f64> {
         let structure = &self.full.fit.structure;
         let mut theta = fit.theta[..structure.base_count()].to_vec();

@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial};
 /// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg.
 pub const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
 
-/// The base with effects.
+/// Base response with effects.
 pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
     let parameters = BASE.iter().copied().chain(effects.iter().flat_map(|(_, values)| values.clone())).collect();
     ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
@@ -24,7 +24,7 @@ pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
 /// Plan of a simulated record.
 #[derive(Debug, Clone, Copy)]
 pub struct TrialPlan {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
     /// Time between rows, s.
     pub period: f64,
@@ -32,7 +32,7 @@ pub struct TrialPlan {
     pub rudder_deg: f64,
     /// Standard deviation of the heading noise, deg.
     pub noise_deg: f64,
-    /// Rows per heading.
+    /// Number of rows per heading.
     pub every: usize,
     /// Seed of the noise.
     pub seed: u64,
@@ -44,7 +44,7 @@ impl Default for TrialPlan {
     }
 }
 
-/// Times of the executes, s; uneven, so that the record is not periodic.
+/// Times of the executes, s; uneven, for an aperiodic record.
 const ORDERS: [f64; 9] = [4.0, 22.0, 60.0, 101.0, 139.0, 184.0, 220.0, 261.0, 300.0];
 
 /// Period after which the executes repeat, s.

@@ -16,8 +16,8 @@ const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 /// Spacing of the steps that are tried, as a share of the record.
 const STEP_SPACING: f64 = 1.0 / 80.0;
 
-/// Best start values of some moments beside a fit: (m, t_c, d) of a transient one and (m, t₀) of a step; `None` if
-/// the precision of the fit is singular.
+/// Best start values of some moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step;
+/// `None` if the precision of the fit is singular.
 pub fn places(
     problem: &FittedRecords,
     fit: &StructureFit,
@@ -31,7 +31,7 @@ pub fn places(
     terms.iter().map(|term| place(problem, fit, weights, term, &linear, &factor, &explained)).collect()
 }
 
-/// Best start values of one moment beside a linearised fit, whose Gauss–Newton step is `explained`.
+/// Best start values of one moment in addition to a linearised fit, whose Gauss–Newton step is `explained`.
 fn place(
     problem: &FittedRecords,
     fit: &StructureFit,

@@ -6,7 +6,7 @@ use crate::fit::FittedRecords;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
 
-/// Minimum frequency of waves over the fundamental of the manoeuvre; a lower band is model structure.
+/// Minimum frequency of waves over the fundamental of the manoeuvre; a lower band is treated as model structure.
 const MIN_FREQUENCY_RATIO: f64 = 5.0;
 
 /// Number of frequencies tried, damping ratios, and sizes over the white noise.
@@ -16,12 +16,12 @@ const DAMPINGS: [f64; 3] = [0.03, 0.08, 0.2];
 /// Maximum damping ratio of waves.
 const MAX_DAMPING: f64 = 0.3;
 
-/// Minimum share of waves in the mean square residual; a smaller one is a colour of the sensor.
+/// Minimum share of waves in the mean square residual; a smaller share is treated as sensor colour.
 const MIN_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
-/// Waves of largest likelihood beside the correlated noise of a law; `None` if the rows are too far apart, or where
-/// waves do not increase the likelihood.
+/// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, or
+/// if waves do not increase the likelihood.
 pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
@@ -77,7 +77,7 @@ pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> O
     (deviance < plain && is_sea).then_some(waves)
 }
 
-/// Fundamental angular frequency of the manoeuvre, rad/s: the rudder changes sides twice per period.
+/// Fundamental angular frequency of the manoeuvre, rad/s: the rudder changes side twice per period.
 fn fundamental(record: &crate::record::PreparedRecord) -> f64 {
     let rudder = record.rudder.values();
     let largest = rudder.iter().fold(0.0_f64, |largest, delta| largest.max(delta.abs()));

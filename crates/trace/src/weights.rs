@@ -12,18 +12,18 @@ pub struct NoiseLaw {
     pub colour: NoiseColour,
     /// Variance of the white noise of a full row of every record, rad².
     pub variance: Vec<f64>,
-    /// Power of the likelihood of every record: below one where the noise includes a model error, which more rows do
-    /// not average out (coarsened posterior; Miller and Dunson 2019).
+    /// Power of the likelihood of every record: below one if the noise includes a model error, which more rows do not
+    /// average out (coarsened posterior; Miller and Dunson 2019).
     pub power: Vec<f64>,
 }
 
 impl NoiseLaw {
-    /// `true` if it includes a smooth model error.
+    /// `true` if the law includes a smooth model error.
     pub fn is_of_model(&self) -> bool {
         matches!(self.colour.correlated, Some((CorrelatedNoise::Smooth(_), _)))
     }
 
-    /// `true` if it includes a random yaw moment.
+    /// `true` if the law includes a random yaw moment.
     pub fn is_random_moment(&self) -> bool {
         self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
     }

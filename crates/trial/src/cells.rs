@@ -8,13 +8,13 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Separator {
-    /// A tab; two in a row enclose an empty cell.
+    /// Tab; two in a row enclose an empty cell.
     Tab,
-    /// A semicolon.
+    /// Semicolon.
     Semicolon,
-    /// A comma.
+    /// Comma.
     Comma,
-    /// Any run of blanks and tabs; empty cells cannot be written.
+    /// Any run of blanks and tabs; no empty cells.
     Blank,
 }
 
@@ -26,7 +26,7 @@ impl Separator {
         self.mark().map_or(character.is_whitespace(), |mark| character == char::from(mark))
     }
 
-    /// The byte between two cells; `None` for blanks, which are many.
+    /// Byte between two cells; `None` for blanks, which may be several.
     fn mark(self) -> Option<u8> {
         match self {
             Separator::Tab => Some(b'\t'),
@@ -38,7 +38,7 @@ impl Separator {
 
     /// Puts the byte ranges of the cells of `line` into `cells`, without blanks and quotes around them.
     ///
-    /// A cell in double quotes may hold the separator; a doubled quote inside stays doubled (see `unquoted`).
+    /// A cell in double quotes may contain the separator; a doubled quote inside stays doubled (see `unquoted`).
     pub fn split(self, line: &str, cells: &mut Vec<Range<usize>>) {
         cells.clear();
         let mut take = |cell: &str| {
@@ -86,14 +86,14 @@ fn closing_quote(text: &str) -> Option<usize> {
     Some(at)
 }
 
-/// Text of a quoted cell, with doubled quotes made single.
+/// Text of a quoted cell, with single quotes for doubled ones.
 pub fn unquoted(cell: &str) -> String {
     cell.replace("\"\"", "\"")
 }
 
-/// Most plausible separator of a line: the highest `score` of its cells, the earlier of [`Separator::ALL`] on a tie.
+/// Most plausible separator of a line: the highest `score` of its cells, the first in [`Separator::ALL`] on a tie.
 ///
-/// Where no cells score, the first separator that occurs in the line.
+/// If no cell scores, the first separator that occurs in the line.
 pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
     let mut ranges = Vec::new();
     let mut best = (0, 0, Separator::Blank);
@@ -112,18 +112,18 @@ pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
 /// Content of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cell {
-    /// A finite number.
+    /// Finite number.
     Number(f64),
-    /// A finite number written with a decimal comma.
+    /// Finite number written with a decimal comma.
     CommaNumber(f64),
-    /// An empty cell or one of the usual marks of a missing value.
+    /// Empty cell or one of the usual marks of a missing value.
     Missing,
     /// Anything else.
     Text,
 }
 
 impl Cell {
-    /// The number, however it is written.
+    /// Number in either notation.
     pub fn number(self) -> Option<f64> {
         match self {
             Self::Number(value) | Self::CommaNumber(value) => Some(value),
@@ -132,10 +132,10 @@ impl Cell {
     }
 }
 
-/// Reads a cell; a decimal comma is understood, between commas in quotes only.
+/// Content of a cell; a decimal comma is accepted, for comma-separated cells in quotes only.
 ///
 /// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
-/// shows it. Exponents may be written with `D` (Fortran).
+/// displays it. Exponents may be written with `D` (Fortran).
 pub fn cell(text: &str, separator: Separator) -> Cell {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => return Cell::Number(value),
@@ -152,7 +152,7 @@ pub fn cell(text: &str, separator: Separator) -> Cell {
         return Cell::Text;
     }
     let has_comma = text.contains(',');
-    // Where commas separate the cells, this one stood in quotes: three digits after it may as well be thousands.
+    // With commas as separators this cell was in quotes: three digits after its comma may be thousands.
     let may_be_thousands = || separator == Separator::Comma && text.len() - text.find(',').unwrap_or(0) == 4;
     if has_comma && (text.contains('.') || may_be_thousands()) {
         return Cell::Text;
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(cell(".000000000", Separator::Blank), Cell::Number(0.0));
         assert_eq!(cell("1.5D+02", Separator::Blank), Cell::Number(150.0));
         assert_eq!(cell("1,5", Separator::Semicolon), Cell::CommaNumber(1.5));
-        // In quotes, or it would not be one cell; three digits after it may be thousands.
+        // The cell is in quotes, otherwise there would be two; three digits after the comma may be thousands.
         assert_eq!(cell("1,5", Separator::Comma), Cell::CommaNumber(1.5));
         assert_eq!(cell("1,500", Separator::Comma), Cell::Text);
         assert_eq!(cell("1.234,5", Separator::Semicolon), Cell::Text);

@@ -1,10 +1,10 @@
-//! Channels of a record: quantities beside time, each with its column names and units. A column name is
-//! `quantity_unit`; this module holds both halves and the factor to SI units. Tables are read in [`crate::reader`].
+//! Channels of a record: quantities in addition to time, each with its column names and units. A column name is
+//! `quantity_unit`; this module contains both halves and the factor to SI units. Tables are read in [`crate::reader`].
 
 use ship::angle::{DEGREE, KNOT};
 use ship::particulars::Dimension;
 
-/// A quantity of a record. Inside, every channel is in SI units and radians.
+/// Quantity of a record. In memory, every channel is in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Channel {
     /// Heading ψ, rad, clockwise, unwrapped.
@@ -31,15 +31,15 @@ pub enum Channel {
     PropellerRate,
     /// Relative wind speed, m/s.
     WindRelativeSpeed,
-    /// Direction the relative wind comes from, clockwise from the bow, rad.
+    /// Direction from which the relative wind comes, clockwise from the bow, rad.
     WindRelativeFrom,
     /// True wind speed, m/s.
     WindTrueSpeed,
-    /// Direction the true wind comes from, rad.
+    /// Direction from which the true wind comes, rad.
     WindTrueFrom,
 }
 
-/// A unit that can end a column name.
+/// Unit that can end a column name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unit {
     /// `s`
@@ -98,7 +98,7 @@ pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
 ];
 
 impl Unit {
-    /// The unit as the suffix of a column name.
+    /// Unit as the suffix of a column name.
     pub fn id(self) -> &'static str {
         UNITS[self as usize].1
     }
@@ -158,12 +158,12 @@ impl Channel {
         all
     };
 
-    /// Exponents of second and metre in the unit; angles have none.
+    /// Exponents of second and metre in the unit; 0 for angles.
     pub fn dimension(self) -> Dimension {
         CHANNELS[self as usize].2.1
     }
 
-    /// The quantity as the beginning of a column name.
+    /// Quantity as the beginning of a column name.
     pub fn quantity(self) -> &'static str {
         CHANNELS[self as usize].1
     }
@@ -230,7 +230,7 @@ pub fn time_column(name: &str) -> Option<Unit> {
 mod tests {
     use super::*;
 
-    /// The names are those that files have: a new one may be added, none may change.
+    /// The names occur in files: names may be added, but not changed.
     #[test]
     fn every_name_of_the_contract_is_known() {
         let names = Channel::ALL.map(Channel::accepted_names).join(", ");

@@ -1,6 +1,6 @@
 //! Cleaning of the columns of a table before they become a record: impossible rudder angles, channels that repeat an
-//! old value until the next one arrives, a heading that is frozen while the ship turns, and single wrong readings.
-//! Every change is located and reported; columns stay as they are where a sound record could look the same.
+//! old value until the next reading, a heading that is frozen while the ship turns, and single wrong readings.
+//! Every change is located and reported; columns are unchanged if a sound record could look the same.
 
 mod north;
 pub(crate) mod readings;
@@ -12,10 +12,10 @@ use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::wording::{counted, instant};
 
-/// Rudder angle beyond which a reading is impossible, rad.
+/// Minimum rudder angle of an impossible reading, rad.
 pub(crate) const IMPOSSIBLE_RUDDER: f64 = 1.6;
 
-/// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not single readings.
+/// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not a single reading.
 const MAX_RUDDER: f64 = 1.05;
 
 /// Maximum share of rows with an impossible rudder angle.
@@ -24,7 +24,7 @@ pub(crate) const MAX_IMPOSSIBLE_SHARE: f64 = 0.1;
 /// Maximum repetition of a value, rows.
 const MAX_HOLD_ROWS: usize = 100;
 
-/// Minimum number of changes of a channel that show a rhythm.
+/// Minimum number of changes that determine the rhythm of a channel.
 const MIN_CHANGES: usize = 12;
 
 /// Minimum share of rows with a reading in a channel that may repeat old values.
@@ -39,14 +39,14 @@ const MAX_CHANCE: f64 = 2e-3;
 /// Minimum number of rows of a frozen heading.
 const MIN_FROZEN_ROWS: usize = 8;
 
-/// Minimum rate at the end of a freeze over the 99th percentile of the rates.
+/// Minimum ratio of the rate at the end of a freeze to the 99th percentile of the rates.
 const MIN_THAW_RATIO: f64 = 3.0;
 
-/// Minimum change of heading on either side of a freeze, over a time as long, in steps of its digits. At a peak that
-/// the digits do not resolve it is 8.
+/// Minimum change of heading on either side of a freeze, over an equal time, in steps of its digits. At a peak that
+/// the digits do not resolve the change is 8.
 const MIN_TURN_STEPS: f64 = 20.0;
 
-/// Numbers that loggers write for a missing reading, without their sign.
+/// Sentinels: numbers that loggers write for a missing reading, without their sign.
 const SENTINELS: [f64; 12] =
     [999.0, 999.9, 9999.0, 9999.9, 99999.0, 327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 65535.0];
 
@@ -54,14 +54,14 @@ const SENTINELS: [f64; 12] =
 const MIN_SENTINEL_JUMP: f64 = 60.0;
 
 /// `true` for a sentinel: a number that loggers write for a missing reading, far from the last reading if there is
-/// one. A position may have any value.
+/// one. For a position any value is possible.
 pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bool {
     !matches!(channel, Channel::North | Channel::East)
         && SENTINELS.contains(&value.abs())
         && last.is_none_or(|last| (value - last).abs() > MIN_SENTINEL_JUMP)
 }
 
-/// Cleans the columns and returns a warning of every change. Single readings that are changed go to `rejected`.
+/// Cleans the columns and returns a warning of every change. Changed single readings are added to `rejected`.
 pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(written::below_360(columns));
@@ -79,7 +79,7 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
     warnings
 }
 
-/// Leaves out rows with an impossible rudder angle, where they are few.
+/// Omits rows with an impossible rudder angle, if they are few.
 fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > IMPOSSIBLE_RUDDER).collect();
@@ -101,7 +101,7 @@ fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     )))
 }
 
-/// 2nd, 3rd, 4th, …
+/// Ordinal number: 2nd, 3rd, 4th, …
 fn ordinal(number: usize) -> String {
     let ending = match (number % 10, number % 100) {
         (1, teen) if teen != 11 => "st",
@@ -137,26 +137,26 @@ struct Rhythm {
 impl Rhythm {
     /// Slowest rhythm of the changes of a channel; `None` for a channel without a rhythm of two rows or more.
     ///
-    /// A rudder of whole degrees that moves at a steady rate also changes in a rhythm, but with another phase in every
-    /// movement. Separate movements therefore have to agree.
+    /// A rudder of whole degrees that moves at a steady rate also changes in a rhythm, but with a different phase in
+    /// every movement. Separate movements therefore must agree.
     fn of(values: &[f64]) -> Option<Self> {
         let changed = |row: &usize| {
             let pair = [values[*row - 1], values[*row]];
             pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
         };
-        // A channel that is read in some rows only has a rhythm without repetition.
+        // A channel with readings in some rows only has a rhythm without repetition.
         let read = values.iter().filter(|value| value.is_finite()).count();
         if (read as f64) < MIN_READ_SHARE * values.len() as f64 {
             return None;
         }
-        // More changes than the quickest rhythm allows: most channels end here.
+        // More changes than the shortest rhythm allows: most channels end here.
         let count = (1..values.len()).filter(changed).count();
         if count < MIN_CHANGES || MIN_IN_STEP_SHARE * count as f64 > values.len().div_ceil(2) as f64 {
             return None;
         }
         let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
         let rhythm = |every: usize| {
-            // More changes than this rhythm allows need no counting.
+            // More changes than this rhythm allows are not counted.
             if MIN_IN_STEP_SHARE * changes.len() as f64 > values.len().div_ceil(every) as f64 {
                 return None;
             }
@@ -165,10 +165,10 @@ impl Rhythm {
             let (first, &most) = phases.iter().enumerate().max_by_key(|(_, count)| **count)?;
             let movements = 1 + changes.windows(2).filter(|pair| pair[1] - pair[0] > 3 * every).count();
             let accident = (every as f64).powi(1 - movements as i32);
-            // A channel that is new in nearly every such row keeps its rhythm without rests.
+            // A channel with new values in nearly every such row has this rhythm without rests.
             let full = most as f64 > 0.8 * (values.len() / every) as f64 && most >= MIN_CHANGES;
             let keeps = most as f64 >= MIN_IN_STEP_SHARE * changes.len() as f64;
-            // A channel of steps, such as an order, does not go on changing with the next new value.
+            // A channel of steps, such as an order, does not continue to change with the next new value.
             let continued = changes.windows(2).filter(|pair| pair[1] - pair[0] == every).count();
             let keeps = keeps && 2 * continued > changes.len();
             (keeps && (full || accident < MAX_CHANCE)).then_some(Self { every, first })
@@ -189,7 +189,7 @@ pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize
     }
 }
 
-/// Interpolates between the new values of a rudder that is repeated in between.
+/// Interpolates between the new values of a rudder with repetitions in between.
 fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
@@ -204,7 +204,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     )))
 }
 
-/// Takes the repetitions of a channel as missing.
+/// Sets the repetitions of a channel to missing.
 fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
     let rhythm = Rhythm::of(values)?;
@@ -222,7 +222,7 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     Some(WarningCode::MissingValues.warning(text))
 }
 
-/// `true` where a channel keeps its value over the minimum length of a freeze.
+/// `true` if a channel keeps its value over the minimum length of a freeze.
 fn has_rest(values: &[f64]) -> bool {
     let (mut last, mut count) = (f64::NAN, 0);
     for &value in values.iter().filter(|value| value.is_finite()) {
@@ -235,8 +235,8 @@ fn has_rest(values: &[f64]) -> bool {
     false
 }
 
-/// Takes a frozen heading as missing: it leaves its value faster than the ship turns, or the ship turns before and
-/// after by much more than the heading resolves.
+/// Sets a frozen heading to missing: the heading leaves its value faster than the ship turns, or the ship turns before
+/// and after by much more than the heading resolves.
 fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
@@ -260,7 +260,7 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     });
     let is_frozen = |span: &std::ops::Range<usize>| {
         let length = span.len();
-        // The resolution is the step by which the value is left or was reached.
+        // The resolution is the step from or to the value.
         let step = |at: Option<usize>| at.and_then(|at| steps.get(at)).copied().unwrap_or(0.0);
         let digit = step(span.start.checked_sub(1)).max(step(Some(span.end)));
         let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > MIN_TURN_STEPS * digit;
@@ -269,7 +269,7 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
         let leaves = rates_of_rows.get(span.end).is_some_and(|rate| *rate > MIN_THAW_RATIO * usual);
         length >= MIN_FROZEN_ROWS && steps[span.start] == 0.0 && (leaves || (before && after))
     };
-    // A rest of n steps has n + 1 rows, of which the first is a true reading.
+    // A rest of n steps has n + 1 rows, and the first is a true reading.
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|span| &seen[span.start..=span.end]).collect();
     let spans: Vec<String> = frozen
         .iter()
@@ -291,7 +291,7 @@ mod tests {
         super::clean(columns, &mut Vec::new()).into_iter().map(|warning| warning.text).collect()
     }
 
-    /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.
+    /// Synthetic zig-zag: the rudder goes to 10° and back at 2.5°/s, the heading oscillates; 10 Hz, 300 s.
     pub(super) fn columns() -> Columns {
         let time: Vec<f64> = (0..3000).map(|row| 0.1 * f64::from(row)).collect();
         let rudder = |t: f64| (25.0 * (t / 9.7).sin()).clamp(-10.0, 10.0).to_radians();
@@ -318,12 +318,12 @@ mod tests {
     #[test]
     fn numbers_of_loggers_are_no_readings() {
         assert!(is_sentinel(Channel::Heading, -999.0, Some(12.0)) && is_sentinel(Channel::Rudder, 327.67, None));
-        // A ship that turns and turns has such a heading once, and a position may be anything.
+        // A ship in continued turning has such a heading once, and a position may have any value.
         assert!(!is_sentinel(Channel::Heading, 999.0, Some(998.2)) && !is_sentinel(Channel::North, 999.0, None));
         assert!(!is_sentinel(Channel::Heading, -998.0, Some(12.0)));
     }
 
-    /// Neither digits, nor an order in steps, nor a rest before the trial is a fault.
+    /// Digits, orders in steps, and a rest before the trial are not faults.
     #[test]
     fn a_sound_record_is_left_alone() {
         let order = |row: usize, values: &[f64]| {
@@ -353,7 +353,7 @@ mod tests {
         let [text] = clean(&mut wild).try_into().expect("one sentence");
         assert!(text.contains("1 row") && text.contains("-327°") && text.contains("t = 70 s"), "{text}");
         assert_eq!((wild.time.len(), wild.channels[&Channel::Heading].len()), (2999, 2999));
-        // All of a record in degrees under a name of radians is no reading that is off.
+        // A record in degrees under a name of radians is not a single wrong reading.
         let mut degrees = with(Channel::Rudder, |row, values| values[row].to_degrees());
         assert_eq!(clean(&mut degrees), [] as [String; 0]);
     }

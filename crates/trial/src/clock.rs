@@ -1,20 +1,20 @@
-//! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. The notations and the
+//! Stamps of date and time as written by loggers and spreadsheets, and the seconds between them. The notations and the
 //! calendar are here; time columns are chosen in [`crate::reader`].
 //!
-//! The calendar is that of `chrono`. No library reads the notations: jiff and chrono read ISO 8601 and one given
-//! notation at a time, no decimal commas, and no date of which the file has yet to show the month.
+//! The calendar is that of `chrono`. No library reads all these notations: jiff and chrono read ISO 8601 and one given
+//! notation at a time, no decimal commas, and no date whose month is determined later in the file.
 
 use chrono::NaiveDate;
 
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
 
-/// A date as it stands in a stamp.
+/// Date of a stamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Date {
     /// Days since 1970-01-01 (Gregorian).
     Day(i64),
-    /// Two numbers up to 31 and a year; later dates of the file have to show which number is the month.
+    /// Two numbers up to 31 and a year; later dates of the file determine which number is the month.
     Either { first: u32, second: u32, year: i32 },
 }
 
@@ -29,7 +29,7 @@ impl Date {
     }
 }
 
-/// One stamp: a date, a time of day or both, and the zone where it stands beside them.
+/// Stamp: a date, a time of day or both, with the zone if stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
     date: Option<Date>,
@@ -37,7 +37,7 @@ pub struct Stamp {
     second: Option<f64>,
     /// Minutes the local time is ahead of UTC.
     zone: Option<i32>,
-    /// `true` if the seconds have a fraction that is not zero.
+    /// `true` if the seconds have a nonzero fraction.
     fraction: bool,
 }
 
@@ -46,12 +46,12 @@ pub fn days(year: i32, month: u32, day: u32) -> Option<i64> {
     NaiveDate::from_ymd_opt(year, month, day).map(|date| i64::from(date.to_epoch_days()))
 }
 
-/// Date of a day since 1970-01-01: `2026-11-20`. A day beyond the calendar, as in damaged files, gives its last date.
+/// Date of a day since 1970-01-01: `2026-11-20`. A day beyond the calendar, as in damaged files, gives the last date.
 pub fn date(day: i64) -> impl std::fmt::Display {
     i32::try_from(day).ok().and_then(NaiveDate::from_epoch_days).unwrap_or(NaiveDate::MAX)
 }
 
-/// Day of a text such as `2026-11-20`, as [`date`] writes it.
+/// Day of a text such as `2026-11-20`, as written by [`date`].
 pub fn day(text: &str) -> Option<String> {
     text.trim().parse::<NaiveDate>().ok().map(|day| day.to_string())
 }
@@ -74,7 +74,7 @@ impl Scan<'_> {
         while self.eat(b" \t").is_some() {}
     }
 
-    /// A number of up to nine digits, and how many digits it has.
+    /// Number of up to nine digits, and its count of digits.
     fn number(&mut self) -> Option<(u32, usize)> {
         let digits = self.tail.iter().take(10).take_while(|byte| byte.is_ascii_digit()).count();
         if digits == 0 || digits > 9 {
@@ -85,7 +85,7 @@ impl Scan<'_> {
         Some((value, digits))
     }
 
-    /// A month by the first three letters of its English name.
+    /// Month from the first three letters of its English name.
     fn month(&mut self) -> Option<u32> {
         const MONTHS: [&[u8]; 12] =
             [b"jan", b"feb", b"mar", b"apr", b"may", b"jun", b"jul", b"aug", b"sep", b"oct", b"nov", b"dec"];
@@ -105,7 +105,7 @@ impl Scan<'_> {
     }
 }
 
-/// The year of four digits or two.
+/// Year from four digits or two.
 pub(crate) fn full_year(year: u32, digits: usize) -> Option<i32> {
     match digits {
         4 => Some(year as i32),
@@ -146,7 +146,7 @@ fn read_date(scan: &mut Scan) -> Option<Date> {
     possible.map(|_| Date::Either { first, second, year })
 }
 
-/// Second of the day, and whether it has a fraction that is not zero.
+/// Second of the day, and `true` if it has a nonzero fraction.
 fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     let (first, digits) = scan.number()?;
     let (hour, minute, second) = match digits {
@@ -172,7 +172,7 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     } else {
         hour
     };
-    // A leap second is the 60th.
+    // A leap second is second 60.
     let valid = hour < 24 && minute < 60 && second <= 60;
     valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, fraction > 0.0))
 }
@@ -200,10 +200,10 @@ fn read_zone(scan: &mut Scan) -> Option<i32> {
 }
 
 impl Stamp {
-    /// Reads a stamp: ISO 8601 (`2026-11-20T14:03:05.2Z`, a blank for the T, `/` for the hyphens), `20.11.2026
+    /// Stamp of a text: ISO 8601 (`2026-11-20T14:03:05.2Z`, a blank for the T, `/` for the hyphens), `20.11.2026
     /// 14:03:05`, `11/20/2026 2:03:05 PM`, `20-Nov-2026 14:03:05`, or a date or a time of day alone.
     ///
-    /// `None` for any other text, a single number included.
+    /// `None` for any other text, including a single number.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim().as_bytes();
         let mut scan = Scan { tail: text };
@@ -212,7 +212,7 @@ impl Stamp {
         let mut stamp = Self { date, second: None, zone: None, fraction: false };
         if date.is_some() {
             if scan.tail.is_empty() {
-                // Eight digits may as well be a number.
+                // Eight digits may be a number instead.
                 return text.iter().any(|byte| !byte.is_ascii_digit()).then_some(stamp);
             }
             scan.eat(b"Tt ,_-;")?;
@@ -227,12 +227,12 @@ impl Stamp {
         scan.tail.is_empty().then_some(stamp)
     }
 
-    /// A stamp from a date and a time of day.
+    /// Stamp from a date and a time of day.
     pub fn joined(date: Self, time: Self) -> Self {
         Self { date: date.date, ..time }
     }
 
-    /// A stamp from a day since 1970-01-01, if there is one, and a second of the day (UTC).
+    /// Stamp from a day since 1970-01-01, if there is one, and a second of the day (UTC).
     pub fn new(day: Option<i64>, second: f64) -> Self {
         let fraction = second.fract() != 0.0;
         Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
@@ -248,7 +248,7 @@ impl Stamp {
         self.date.is_some()
     }
 
-    /// `true` if the seconds have a fraction that is not zero.
+    /// `true` if the seconds have a nonzero fraction.
     pub fn has_fraction(&self) -> bool {
         self.fraction
     }
@@ -257,27 +257,27 @@ impl Stamp {
 /// Clock of the ship at time 0 of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Days since 1970-01-01; `None` if the file has times of day alone, or leaves open which number is the month.
+    /// Days since 1970-01-01; `None` if the file has times of day alone, or does not determine the month.
     pub day: Option<i64>,
     /// Second of the day.
     pub second: f64,
-    /// Minutes the clock is ahead of UTC, where the file says so.
+    /// Minutes of the clock ahead of UTC, if the file states a zone.
     pub zone: Option<i32>,
 }
 
 impl Clock {
-    /// The time of day at time `t` (s) of the record: `14:03:05`.
+    /// Time of day at time `t` (s) of the record: `14:03:05`.
     pub fn at(&self, t: f64) -> String {
         let second = (self.second + t).rem_euclid(DAY).floor() as u32;
         format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
     }
 
-    /// The date at time `t` (s) of the record: `2026-11-20`.
+    /// Date at time `t` (s) of the record: `2026-11-20`.
     pub fn date_at(&self, t: f64) -> Option<String> {
         Some(date(self.day? + ((self.second + t) / DAY).floor() as i64).to_string())
     }
 
-    /// Time (s) of the record at a stamp; a time of day alone is the first such time at or after time 0.
+    /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0.
     pub fn time_of(&self, stamp: &Stamp) -> Option<f64> {
         let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
@@ -289,33 +289,33 @@ impl Clock {
     }
 }
 
-/// Fault of a stamp that has no time on the clock of its file.
+/// Fault of a stamp without a time on the clock of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StampFault {
-    /// It has no time of day.
+    /// Stamp without a time of day.
     NoTime,
     /// The date changes, and either number may be the month.
     EitherMonth,
 }
 
-/// State of a conversion of the stamps of a file to seconds since the first.
+/// State of the conversion of the stamps of a file to seconds since the first.
 #[derive(Debug, Clone, Default)]
 pub struct Stamps {
     first: Option<Stamp>,
-    /// The date read last, and its days after the first one.
+    /// Last date, and its days after the first date.
     last: Option<(Date, i64)>,
-    /// The second of the day read last, for stamps without a date, and the midnights passed.
+    /// Last second of the day, for stamps without a date, and the number of midnights passed.
     last_second: f64,
     midnights: i64,
-    /// `true` if the first of two numbers is the month, once a date has shown it.
+    /// `true` if the first of two numbers is the month, once a date determines it.
     month_first: Option<bool>,
 }
 
 impl Stamps {
     /// Seconds from the first stamp to this one.
     ///
-    /// A time of day that falls by more than half a day has passed midnight. A date such as 03/04/2026 is read either
-    /// way until one shows which number is the month: a number above 12, or the step of one day to the next date.
+    /// A time of day that decreases by more than half a day has passed midnight. A date such as 03/04/2026 is kept in
+    /// both readings until one date determines the month: a number above 12, or the step of one day to the next date.
     pub fn seconds(&mut self, stamp: Stamp) -> Result<f64, StampFault> {
         let second = stamp.second.ok_or(StampFault::NoTime)?;
         let first = *self.first.get_or_insert(stamp);
@@ -335,7 +335,7 @@ impl Stamps {
         Ok(day as f64 * DAY + second - first.second.unwrap_or(0.0) + zone)
     }
 
-    /// Days from the first date to another.
+    /// Days from the first date to another date.
     fn day(&mut self, begin: Date, date: Date) -> Result<i64, StampFault> {
         if let Some((last, day)) = self.last
             && last == date
@@ -366,7 +366,7 @@ impl Stamps {
         Ok(day)
     }
 
-    /// The clock at the first stamp; `None` before there was one.
+    /// Clock at the first stamp; `None` before the first stamp.
     pub fn clock(&self) -> Option<Clock> {
         let first = self.first?;
         let day = first.date.and_then(|date| match (self.month_first, date.day(false), date.day(true)) {

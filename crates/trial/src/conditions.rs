@@ -1,5 +1,5 @@
-//! Declared conditions of a trial for the form of MSC/Circ.1053, appendix 6: particulars of the ship that no record
-//! holds, conditions of the trial, and the limits of the circular.
+//! Declared conditions of a trial for the form of MSC/Circ.1053, appendix 6: particulars of the ship outside the
+//! record, conditions of the trial, and the limits of the circular.
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -25,26 +25,26 @@ pub const MAX_INTERVAL_S: f64 = 20.0;
 pub enum Loading {
     /// Summer load line draught, with a tolerance of 5 %.
     Full,
-    /// A smaller draught, as in ballast.
+    /// Smaller draught, as in ballast.
     Partial,
 }
 
 /// Declared weather of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub enum DeclaredWeather {
-    /// A calm: neither wind nor waves nor any other moment from outside, as in a towing tank.
+    /// Calm: neither wind nor waves nor any other external moment, as in a towing tank.
     #[serde(rename = "none")]
     Calm,
 }
 
-/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` if nothing is declared. In
-/// brackets, what the key of a sidecar may be.
+/// Particulars and conditions declared in a sidecar under `[form]`; SI units, `None` if undeclared. In
+/// brackets, the kind of value of the sidecar key.
 ///
 /// Source of the entries: MSC/Circ.1053 (2002), appendix 6.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Conditions {
-    /// Administration the form of MSC/Circ.1053 goes to; texts have at most 100 characters. (text)
+    /// Administration that receives the form of MSC/Circ.1053; texts have at most 100 characters. (text)
     pub administration: Option<String>,
     /// Container ship, tanker, gas carrier, ro-ro ship, bulk carrier, ... (text)
     pub ship_type: Option<String>,
@@ -96,11 +96,11 @@ pub struct Conditions {
     pub wind_beaufort: Option<u8>,
     /// Sea state at the trial. (0 to 9)
     pub sea_state: Option<u8>,
-    /// Loading at the trial; by the two draughts, with a tolerance of 5 %, when absent. (full or partial)
+    /// Loading at the trial; by the two draughts, with a tolerance of 5 %, if absent. (full or partial)
     #[serde(rename = "loading")]
     #[schemars(with = "Option<String>")]
     pub declared_loading: Option<Loading>,
-    /// A remark for the form. (text)
+    /// Remark for the form. (text)
     pub remark: Option<String>,
 }
 
@@ -108,31 +108,31 @@ pub struct Conditions {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Shortcoming {
-    /// A condition is not declared.
+    /// Undeclared condition.
     #[error("{what} is not declared; required: {asked}")]
     Unknown { what: &'static str, asked: &'static str },
-    /// The water is too shallow.
+    /// Water depth below the minimum.
     #[error("the water is {draughts:.1} mean draughts deep; required: more than {MIN_DEPTH_DRAUGHTS}")]
     Depth { draughts: f64 },
-    /// The wind is too strong.
+    /// Wind above the maximum.
     #[error("the wind is Beaufort {beaufort}; required: at most {MAX_BEAUFORT}")]
     Wind { beaufort: u8 },
-    /// The sea is too rough.
+    /// Sea state above the maximum.
     #[error("the sea state is {state}; required: at most {MAX_SEA_STATE}")]
     Sea { state: u8 },
-    /// Readings are too far apart: the median time between rows.
+    /// Median time between rows above the maximum interval.
     #[error("readings are {seconds:.0} s apart; required: at most {MAX_INTERVAL_S} s")]
     Interval { seconds: f64 },
-    /// The ship was not at full load; her draught as a share of the draught at full load, where both are declared.
+    /// Loading other than full; her draught as a share of the draught at full load, if both are declared.
     #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]
     Load { draught: Option<f64> },
-    /// Full load is declared and the draughts say otherwise: the draught as a share of that at full load.
+    /// Declared full load that contradicts the draughts: the draught as a share of that at full load.
     #[error(
         "the loading is declared as \"full\", but the draught is {:.0} % of that at full load; tolerance: 5 %",
         100.0 * draught
     )]
     Contradiction { draught: f64 },
-    /// The ship was not on an even keel; trim by the stern, m.
+    /// Trim other than an even keel, m, positive by the stern.
     #[error(
         "the trim is {:.2} m by the {}; required: an even keel", trim.abs(), if *trim > 0.0 { "stern" } else { "bow" }
     )]
@@ -157,7 +157,7 @@ impl Conditions {
         self
     }
 
-    /// Merges the hull particulars of [ship] with those declared here. Returns the key that both declare with different
+    /// Merges the hull particulars of [ship] with those declared here. Returns the key declared in both with different
     /// values, if any. Block coefficients may differ: the value here is that at full load.
     pub(crate) fn join(&mut self, hull: HullParticulars) -> Option<&'static str> {
         let pairs = [
@@ -180,8 +180,8 @@ impl Conditions {
         conflict
     }
 
-    /// Key of a contradictory declaration with the expected value: an impossible ratio of lengths, or weather beside a
-    /// declared calm.
+    /// Key of a contradictory declaration with the expected value: an impossible ratio of lengths, or weather in
+    /// addition to a declared calm.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
         let length = self.particulars.map(|particulars| particulars.length);
         let calm = self.weather.map(|_| 1.0);

@@ -1,5 +1,5 @@
 //! Guards around third-party decoders, which trust the sizes stated in a file and panic on some damaged files. Each
-//! reader sets its own limits of the stated sizes.
+//! reader sets its own limits on the stated sizes.
 
 use std::cell::Cell;
 use std::io;
@@ -10,7 +10,7 @@ use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
 
-/// Bytes of a page that are read for its head.
+/// Number of bytes of a page that are read for its head.
 const PAGE_HEAD_BYTES: usize = 40;
 
 /// Length of the tail of a Parquet file, bytes.
@@ -33,7 +33,7 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
         }));
     });
     let before = IS_GUARDED.replace(true);
-    // What the work has changed is thrown away with the reader when it panics.
+    // The work of a decoder that panics is discarded with the reader.
     let done = catch_unwind(AssertUnwindSafe(work));
     IS_GUARDED.set(before);
     done.ok()
@@ -56,7 +56,7 @@ impl PageHead {
     /// Reads a head; `None` for bytes that are not a head.
     ///
     /// A head is a Thrift struct in compact form (Apache Parquet format, `PageHeader`): kind, size unpacked, size
-    /// packed, perhaps a checksum, and then the head of a page of its kind, which begins with the number of values.
+    /// packed, an optional checksum, and then the head of a page of its kind, which begins with the number of values.
     fn read(head: &[u8]) -> Option<Self> {
         const NEXT_FIELD_STRUCT: u8 = 0x0c;
         const DICTIONARY: u64 = 2;
@@ -74,7 +74,7 @@ impl PageHead {
     }
 }
 
-/// The next field of a Thrift struct, if it is a whole number, still zigzag.
+/// Next field of a Thrift struct, if it is a whole number, still zigzag.
 fn number(bytes: &mut &[u8]) -> Option<u64> {
     const NEXT_FIELD_INTEGER: u8 = 0x15;
     let (&field, mut digits) = bytes.split_first()?;
@@ -91,14 +91,14 @@ fn number(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// A zigzag number, if it is 0 or above.
+/// Zigzag number, if it is 0 or above.
 fn whole(zigzag: u64) -> Option<u64> {
     zigzag.is_multiple_of(2).then_some(zigzag / 2)
 }
 
 /// Bytes of a Parquet file; the head of a page is checked before the page is decoded.
 pub struct CheckedPages<B> {
-    /// The bytes.
+    /// Bytes.
     pub bytes: B,
     /// Limit of the sizes that a page may state.
     pub fits: fn(PageHead) -> bool,

@@ -1,4 +1,4 @@
-//! Angles in files: degrees there, radians in the program.
+//! Angles in files: degrees in the file, radians in the program.
 
 use std::borrow::Cow;
 use std::marker::PhantomData;
@@ -11,7 +11,7 @@ use ship::angle::{from_deg, to_deg};
 /// Serde adapter of an angle or angular rate, degrees in the file and rad here: `#[serde(with = "Degrees::<…>")]`.
 pub struct Degrees<T>(PhantomData<T>);
 
-/// A number or an optional number that [`Degrees`] converts.
+/// Number or optional number that [`Degrees`] converts.
 pub trait Angle: Sized {
     /// Applies a conversion to the number.
     fn map_angle(self, change: fn(f64) -> f64) -> Self;
@@ -29,7 +29,7 @@ impl Angle for Option<f64> {
     }
 }
 
-/// Degrees of an angle (rad), rounded to 14 digits so that a conversion to radians and back does not show.
+/// Degrees of an angle (rad), rounded to 14 digits so that the rounding of a conversion to radians and back vanishes.
 pub fn written_deg(angle: f64) -> f64 {
     ShortNumber::rounded(to_deg(angle), 14).0
 }

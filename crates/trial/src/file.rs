@@ -1,4 +1,4 @@
-//! Files that a user names: scenarios, sidecars and records are opened here. Only files and pipes are opened, and
+//! Files named by a user: scenarios, sidecars and records are opened here. Only files and pipes are opened, and
 //! reading stops at the maximum size of the kind of file, so that no name can fill the memory.
 
 use std::fs::{self, File};
@@ -20,16 +20,16 @@ pub struct Kind {
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum FileError {
-    /// There is no such file.
+    /// No such file.
     #[error("there is no such file; check its name and folder")]
     NotFound,
-    /// A folder was named.
+    /// Folder in place of a file.
     #[error("this is a folder; name one file in it")]
     Folder,
-    /// A device or a socket was named.
+    /// Device or a socket in place of a file.
     #[error("this is neither a file nor a pipe (a device or a socket); name a file")]
     NoFile,
-    /// The file is larger than its kind allows.
+    /// File larger than the maximum size of its kind.
     #[error(
         "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.max_bytes
@@ -38,7 +38,7 @@ pub enum FileError {
     /// Bytes that are not text.
     #[error("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text; save the file as UTF-8")]
     NotUtf8 { line: usize, byte: u8 },
-    /// The system refused to give the bytes.
+    /// Input/output error of the system.
     #[error("the file cannot be read: {0}; check its access rights and the disk")]
     Io(io::Error),
 }
@@ -54,7 +54,7 @@ impl From<io::Error> for FileError {
     }
 }
 
-/// An open file that ends with an error beyond the maximum size of its kind.
+/// Open file that ends with an error beyond the maximum size of its kind.
 pub struct Limited<'a> {
     file: Box<dyn Read + 'a>,
     kind: Kind,
@@ -81,7 +81,7 @@ impl Read for Limited<'_> {
     }
 }
 
-/// Name of standard input in the place of a file.
+/// Name that means standard input.
 pub const STDIN: &str = "-";
 
 /// Path of a file for names and messages; `stdin` for standard input.
@@ -91,8 +91,8 @@ pub fn display_path(path: &Path) -> &Path {
 
 /// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
-/// Fails if there is no such file or its size exceeds that of its kind. A file that hides its size fails in reading,
-/// with an error that becomes a [`FileError`] again.
+/// Fails if there is no such file or its size exceeds that of its kind. A file of unknown size fails in reading,
+/// with an error that is converted back to a [`FileError`].
 pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
     if path == Path::new(STDIN) {
         return Ok(Limited::new(Box::new(io::stdin().lock()), kind, None));
@@ -120,7 +120,7 @@ fn is_pipe(_: fs::FileType) -> bool {
     false
 }
 
-/// The text of a file or a pipe. Fails as [`open`] does, and when it is not UTF-8.
+/// Text of a file or a pipe. Fails as [`open`] does, and if it is not UTF-8.
 pub fn read_text(path: &Path, kind: Kind) -> Result<String, FileError> {
     let mut bytes = Vec::new();
     open(path, kind)?.read_to_end(&mut bytes)?;
@@ -152,7 +152,7 @@ mod tests {
         assert!(matches!(read_text(&folder.path().join("none"), SMALL), Err(FileError::NotFound)));
     }
 
-    /// Files of the system under /proc claim to have no bytes; a disk that grows while it is read does the same.
+    /// Files under /proc state a size of zero; so does a file that grows while it is read.
     #[cfg(target_os = "linux")]
     #[test]
     fn what_hides_its_size_is_stopped_while_it_is_read() {

@@ -1,9 +1,9 @@
 //! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, for a zig-zag record. The limits of
-//! the turning circle are here too; nothing is measured here.
+//! the turning circle are here, too, without measurements.
 //!
 //! The criteria are for ships of 100 m and above (chemical and gas carriers of any length) at full load and even keel,
 //! in deep unrestricted water and calm weather, at the test speed: at least 90 % of the speed at 85 % of the maximum
-//! engine output. A record does not show these conditions. L and V have to be of the same scale as the record.
+//! engine output. A record does not contain these conditions. L and V must be of the same scale as the record.
 
 use document::Quantity;
 use document::fit::CriterionVerdict;
@@ -37,7 +37,7 @@ pub fn second_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
     between(particulars, 25.0, 40.0, |seconds| 17.5 + 0.75 * seconds)
 }
 
-/// Limit as a function of L/V: constant below 10 s and from 30 s on, a line between.
+/// Limit as a function of L/V: constant below 10 s and from 30 s on, linear between.
 fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, line: impl Fn(f64) -> f64) -> f64 {
     match length / speed {
         seconds if seconds < 10.0 => short,
@@ -46,7 +46,7 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
     }
 }
 
-/// Caution for a ship shorter than the criteria cover; `None` for a longer ship.
+/// Caution for a ship shorter than covered by the criteria; `None` for a longer ship.
 pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
     (length < MIN_LENGTH_M).then(|| {
         format!(
@@ -76,7 +76,7 @@ impl Unit {
     }
 }
 
-/// A criterion with its measured value.
+/// Criterion with its measured value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Criterion {
     /// Name of the limited quantity.
@@ -101,10 +101,10 @@ impl Criterion {
 }
 
 /// Criteria of a zig-zag with the measured values: overshoots and initial turning of a 10/10, the first overshoot of a
-/// 20/20. Other pairs, and a record that begins within the trial, have no values. Initial turning and first overshoot
-/// require a ship that goes straight until the first execute.
+/// 20/20. Other pairs, and a record that begins within the trial, give no values. Initial turning and first overshoot
+/// require a straight course until the first execute.
 ///
-/// The distance of the initial turning is the integral of the recorded speed, or V t_a where the speed was not
+/// The distance of the initial turning is the integral of the recorded speed, or V t_a if the speed was not
 /// recorded; the latter is slightly long, because a ship loses speed as it begins to turn.
 pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
@@ -162,7 +162,7 @@ mod tests {
         table.iter().map(|criterion| criterion.measured.map(|quantity| quantity.value)).collect()
     }
 
-    /// Simulated YUKUN: 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), 1.97 L, by an independent simulation.
+    /// Simulated YUKUN: 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), 1.97 L, from an independent simulation.
     #[test]
     fn each_pair_measures_its_own_criteria() {
         let ten = table(10.0, 10.0);
@@ -182,7 +182,7 @@ mod tests {
         assert_eq!(values(&table(10.0, 20.0)), [None; 4]);
     }
 
-    /// A ship that turns at the first execute, at a third of her largest rate, has another first overshoot.
+    /// A ship that turns at the first execute, at a third of her maximum rate, has another first overshoot.
     #[test]
     fn a_turn_before_the_first_execute_leaves_the_second_overshoot() {
         let plant = Plant { approach: 40.0, ..Plant::new(10.0, 10.0, 2.5) };

@@ -1,15 +1,15 @@
-//! One manoeuvring trial as a time series, simulated or measured: the only thing an identification method sees.
+//! One manoeuvring trial as a time series, simulated or measured: the only input of an identification method.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`], [`names`] |
 //! | noise parameters of a record | [`noise_model`] |
-//! | which files are opened, and how much of them is read | [`mod@file`] |
+//! | opening of files, with their maximum sizes | [`mod@file`] |
 //! | decoders that may panic | [`decoder`] |
 //! | angles in files | [`degrees`] |
 //! | stamps of date and time | [`clock`] |
-//! | particulars and conditions that are declared | [`conditions`] |
+//! | declared particulars and conditions | [`conditions`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | plausibility checks of a record | [`plausibility`] |

@@ -1,7 +1,7 @@
 //! Manoeuvres: the rudder orders of each, its keys in a file and its name in a list. Helm and steering gear are in the
-//! simulator, detection in a log in [`crate::find`], predicted figures in `predict`.
+//! simulator, detection in a log in [`crate::find`], predicted characteristics in `predict`.
 //!
-//! In a file angles are in degrees, here in rad; times are in s.
+//! In a file angles are in degrees, in the program in rad; times are in s.
 //!
 //! Sources: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials; MSC.137(76) for the initial turning test; IAMSAR Manual,
 //! volume III, for the Williamson turn.
@@ -18,11 +18,11 @@ use ship::angle::{DEGREE, from_deg, to_deg};
 use crate::degrees::Degrees;
 use crate::zigzag::Side;
 
-/// A manoeuvre; in a file it has one key, its name.
+/// Manoeuvre; in a file it has one key, its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Manoeuvre {
-    /// Zig-zag: the rudder is reversed whenever the heading deviates far enough from the base course.
+    /// Zig-zag: the rudder is reversed at each deviation of the heading by ψ from the base course.
     ZigZag {
         /// Rudder angle δ to either side.
         #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
@@ -39,7 +39,7 @@ pub enum Manoeuvre {
         #[serde(rename = "duration-s")]
         duration: Option<f64>,
     },
-    /// Turning circle: one order, held.
+    /// Turning circle: one rudder order, held.
     TurningCircle {
         /// Rudder angle δ.
         #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
@@ -62,14 +62,14 @@ pub enum Manoeuvre {
         /// Side of the turn.
         #[serde(default)]
         side: Side,
-        /// Time the rudder is held.
+        /// Duration of the held rudder.
         #[serde(rename = "hold-s")]
         hold: f64,
         /// Time from the order amidships to the end.
         #[serde(rename = "duration-s")]
         duration: f64,
     },
-    /// The rudder of a record, replayed without helmsman and steering gear.
+    /// Rudder of a record, replayed without helmsman and steering gear.
     Replay {
         /// Record with a rudder, relative to the scenario.
         file: String,
@@ -85,8 +85,8 @@ pub enum Manoeuvre {
         /// Side of the turn.
         side: Side,
     },
-    /// A Williamson turn, which brings a ship back to her own track on the opposite course: hard over until the heading
-    /// has changed by 60°, hard over to the other side until it is 20° short of the opposite course, then amidships.
+    /// Williamson turn, which returns a ship to her own track on the opposite course: hard over until the heading
+    /// has changed by 60°, hard over to the opposite side until it is 20° short of the opposite course, then amidships.
     #[serde(skip)]
     Williamson {
         /// Rudder angle, rad.
@@ -96,7 +96,7 @@ pub enum Manoeuvre {
         /// Time from the order amidships to the end, s.
         duration: f64,
     },
-    /// Steady turns up to a rudder to either side, their unstable branch included; no helm steers it.
+    /// Steady turns up to a rudder to either side, their unstable branch included; computed, not steered.
     #[serde(skip)]
     Spiral {
         /// Maximum rudder angle, rad.
@@ -107,7 +107,7 @@ pub enum Manoeuvre {
 /// Condition that triggers the next order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trigger {
-    /// A time, s: of a step from the order before it, or else from the beginning of the manoeuvre.
+    /// Time, s, from the previous order at a step, or else from the beginning of the manoeuvre.
     Time(f64),
     /// `side` · (ψ − base course) ≥ `angle`, with side ±1 and angle in rad.
     Deviation {
@@ -116,7 +116,7 @@ pub enum Trigger {
         /// Size of the deviation, rad.
         angle: f64,
     },
-    /// No condition: no order follows.
+    /// No condition; no order follows.
     Never,
 }
 
@@ -125,39 +125,39 @@ pub enum Trigger {
 pub struct OrderStep {
     /// Condition of the order.
     pub trigger: Trigger,
-    /// Ordered rudder, rad; `None` if the manoeuvre ends.
+    /// Ordered rudder, rad; `None` for the end of the manoeuvre.
     pub order: Option<f64>,
-    /// Scenario key that the trigger depends on.
+    /// Scenario key of the trigger.
     pub key: &'static str,
 }
 
 /// Change of heading of the initial turning test, rad.
 pub const INITIAL_TURN: f64 = 10.0 * DEGREE;
 
-/// Changes of heading in a Williamson turn, rad: to the first side until the rudder is shifted, then to the other side
-/// until it is put amidships.
+/// Changes of heading in a Williamson turn, rad: to the first side until the rudder is reversed, then to the opposite
+/// side until it is put amidships.
 const WILLIAMSON: [f64; 2] = [PI / 3.0, PI - PI / 9.0];
 
 /// Default rudder of a Williamson turn, degrees.
 const HARD_OVER_DEG: f64 = 35.0;
 
 impl Manoeuvre {
-    /// A zig-zag with starboard first, until the end of the record; angles in rad.
+    /// Zig-zag with starboard first, until the end of the record; angles in rad.
     pub fn zig_zag(rudder: f64, heading: f64) -> Self {
         Self::ZigZag { rudder, heading, first: Side::Starboard, executes: None, duration: None }
     }
 
-    /// A turning circle to starboard with a rudder (rad), without an end.
+    /// Turning circle to starboard with a rudder (rad), without an end.
     pub fn turning_circle(rudder: f64) -> Self {
         Self::TurningCircle { rudder, side: Side::Starboard, duration: None, heading_change: None }
     }
 
-    /// A replay of a recorded rudder, rad.
+    /// Replay of a recorded rudder, rad.
     pub fn replay(rudder: Polyline) -> Self {
         Self::Replay { file: String::new(), rudder: Some(rudder) }
     }
 
-    /// The same zig-zag until an execute, counted from 1; n executes show n − 2 whole overshoots.
+    /// The same zig-zag until an execute, counted from 1; n executes give n − 2 complete overshoots.
     pub fn until_execute(mut self, number: usize) -> Self {
         if let Self::ZigZag { executes, .. } = &mut self {
             *executes = Some(number);
@@ -173,7 +173,7 @@ impl Manoeuvre {
         self
     }
 
-    /// The step after a number of orders; the first order is given at once.
+    /// Step after a number of orders; the first order is given at once.
     pub fn step(&self, orders: usize) -> OrderStep {
         use Trigger::{Deviation, Never, Time};
         let (trigger, order, key) = match (self, orders) {
@@ -182,7 +182,7 @@ impl Manoeuvre {
             }
             (Self::ZigZag { rudder, heading, first, .. }, _) => {
                 let side = if orders.is_multiple_of(2) { first.sign() } else { -first.sign() };
-                // The rudder lies to the side opposite to the next execute, and so does the deviation it causes.
+                // The rudder is on the side opposite to the next execute, and so is the deviation it causes.
                 let deviation = Deviation { side: -side, angle: *heading };
                 (if orders == 0 { Time(0.0) } else { deviation }, Some(side * rudder), "manoeuvre.zig-zag.executes")
             }
@@ -219,7 +219,7 @@ impl Manoeuvre {
         OrderStep { trigger, order, key }
     }
 
-    /// The steps in order, up to the end of the manoeuvre; endless for a zig-zag that ends with the record.
+    /// Steps in order, up to the end of the manoeuvre; endless for a zig-zag that ends with the record.
     pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
         let mut ended = false;
         (0..)
@@ -227,7 +227,7 @@ impl Manoeuvre {
             .take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
     }
 
-    /// Time from the first execute to the end, s; infinite where headings or the record decide.
+    /// Time from the first execute to the end, s; infinite if headings or the record determine it.
     pub fn length(&self) -> f64 {
         if let Self::ZigZag { duration: Some(duration), .. } = self {
             return *duration;
@@ -278,7 +278,7 @@ impl Manoeuvre {
         }
     }
 
-    /// The same manoeuvre with its first execute to a side; a replay and a spiral stay.
+    /// The same manoeuvre with its first execute to a side; a replay and a spiral are unchanged.
     pub fn to(mut self, first_side: Side) -> Self {
         match &mut self {
             Self::ZigZag { first: side, .. }
@@ -323,12 +323,12 @@ impl fmt::Display for Manoeuvre {
     }
 }
 
-/// An angle (rad) in degrees, rounded to a millionth.
+/// Angle (rad) in degrees, rounded to a millionth.
 pub fn whole_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 
-/// Error of a text that names no manoeuvre.
+/// Error of a text that is no manoeuvre.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is not a manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \

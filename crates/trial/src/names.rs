@@ -1,24 +1,24 @@
 //! Customary names of columns: the header of a column, split into a quantity and its unit, becomes a [`ColumnMeaning`].
-//! It holds names and units; the reader decides which column of a table is used.
+//! This module contains names and units; the reader decides which column of a table is used.
 
 use crate::channel::{Channel, UNITS, Unit, column, time_column};
 
-/// Meaning of a column name: quantity and, where the name has it, unit.
+/// Meaning of a column name: quantity and, if stated, unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ColumnMeaning {
     /// Time, or a stamp of date and time.
     Time(Option<Unit>),
-    /// A date alone.
+    /// Date without a time.
     Date,
-    /// A channel; its unit where the name has it.
+    /// Channel, with its unit if stated.
     Channel(Channel, Option<Unit>),
-    /// A speed over ground, which stands for the speed if there is none through the water.
+    /// Speed over ground, used as the speed if there is none through the water.
     OverGround(Option<Unit>),
     /// Latitude, degrees north.
     Latitude,
     /// Longitude, degrees east.
     Longitude,
-    /// The course over ground, which is no heading.
+    /// Course over ground, which is not a heading.
     Course,
 }
 
@@ -147,8 +147,8 @@ pub(crate) fn contract(name: &str) -> Option<ColumnMeaning> {
 
 /// Meaning of a column name; `None` for an unknown name and for a unit that the quantity cannot have.
 ///
-/// A unit may follow in brackets, after a comma, a slash or a blank (`ROT deg/min`, `Heading [°]`, `SOG_kn`), with `in`
-/// before it or not. Case does not matter.
+/// A unit may follow in brackets, after a comma, a slash or a blank (`ROT deg/min`, `Heading [°]`, `SOG_kn`), with or
+/// without `in`. Case does not matter.
 pub fn meaning(name: &str) -> Option<ColumnMeaning> {
     let name = name.trim();
     if name.len() > MAX_NAME_BYTES {
@@ -169,14 +169,14 @@ pub fn meaning(name: &str) -> Option<ColumnMeaning> {
     unitless_meaning(&normalised(name))
 }
 
-/// Unit at the end of a name; blanks and `_` may stand for a slash: `deg_s` as well as `deg/s`.
+/// Unit at the end of a name; blanks and `_` may replace a slash: `deg_s` as well as `deg/s`.
 fn suffix_unit(text: &str) -> Option<Unit> {
     unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
 }
 
 /// Unit of a channel for a written unit; `None` if the channel cannot have it.
 fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
-    // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
+    // A rate of turn in "ms" has no meaning; a speed in "ms" means m/s.
     let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
     Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
 }
@@ -238,7 +238,7 @@ mod tests {
         for (name, expected) in cases {
             assert_eq!(meaning(name), expected, "{name}");
         }
-        // Neither what is not known nor a unit that the quantity cannot have.
+        // Unknown names, and units that the quantity cannot have, give no meaning.
         for name in
             ["", "helm", "rudder port", "heading_m", "Heading [kn]", "course_deg_x", "wind speed", "load_t", "Ä["]
         {

@@ -9,7 +9,7 @@ pub struct NoiseModel {
     pub heading_sd: f64,
     /// Correlation time of the compass error, s; `None` for white.
     pub heading_correlation: Option<f64>,
-    /// Standard deviation of the white gyro error, rad/s; used where a record has a yaw rate.
+    /// Standard deviation of the white gyro error, rad/s; used if a record has a yaw rate.
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
     pub moment: MomentKind,
@@ -23,7 +23,7 @@ pub struct NoiseModel {
 }
 
 impl NoiseModel {
-    /// A white compass error and nothing else.
+    /// White compass error without any other noise.
     pub fn compass(heading_sd: f64) -> Self {
         Self {
             heading_sd,

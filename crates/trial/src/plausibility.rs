@@ -26,7 +26,7 @@ pub(crate) use motion::{changes, extremes, mean_rate, range};
 use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 use rudder::rudder_movements;
 
-/// Implausibility of a record. Angles in degrees, for people.
+/// Implausibility of a record, with angles in degrees for messages.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Implausible {
@@ -42,28 +42,28 @@ pub enum Implausible {
          heading sensor was recorded and the right column is used"
     )]
     HeadingConstant { heading_deg: f64, rudder_deg: f64 },
-    /// Degrees under a name that says radians.
+    /// Degrees in a column named in radians.
     #[error(
         "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
          name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml; if it already has \
          that name, its numbers have another scale"
     )]
     RudderInDegrees { largest_deg: f64 },
-    /// Radians under a name that says degrees.
+    /// Radians in a column named in degrees.
     #[error(
         "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
          under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
          NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     RudderInRadians { largest_deg: f64, heading_deg: f64 },
-    /// Degrees under a name that says radians.
+    /// Degrees in a column named in radians.
     #[error(
         "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
          under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
          NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
-    /// A yaw rate in another unit than its name says, where it stands for the heading.
+    /// Yaw rate in another unit than its column name, used for the heading.
     #[error(
         "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks \
          like deg/min under a name that says deg/s (a factor of 60), or degrees under a name that says radians (57.3); \
@@ -71,7 +71,7 @@ pub enum Implausible {
          NAME.trial.toml"
     )]
     YawRateInMinutes { heading_deg: f64, rudder_deg: f64 },
-    /// Radians under a name that says degrees.
+    /// Radians in a column named in degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
          radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
@@ -100,7 +100,7 @@ pub enum Implausible {
          sidecar NAME.trial.toml"
     )]
     YawRateSign { ratio: f64, culprit: &'static str },
-    /// The ship turns round and round away from its rudder.
+    /// The ship turns through several circles away from its rudder.
     #[error(
         "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, {share_percent:.0} % of it to port \
          under positive rudder; write `flip = true` for the rudder column in a sidecar NAME.trial.toml (for the heading \
@@ -120,34 +120,37 @@ pub enum Implausible {
 /// Minimum range of a movement, deg; smaller ranges are the resolution of an instrument.
 const MIN_RANGE_DEG: f64 = 0.01;
 
-/// Minimum range of a rudder that is compared with the heading, deg. The smallest amplitude in use is 5° (10° range).
+/// Minimum range of a rudder that is compared with the heading, deg. The minimum amplitude in use is 5° (10° range).
 const MIN_RUDDER_RANGE_DEG: f64 = 4.0;
 
-/// Minimum range of a heading that shows the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and more.
+/// Minimum range of a heading that determines the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and
+/// more.
 const MIN_RESPONSE_DEG: f64 = 1.0;
 
 /// Bounds of the mean rate of turn of ships and models in a manoeuvre, deg/s.
 pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
 
-/// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more.
+/// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more
+/// reversals.
 const MAX_REVERSALS: usize = 24;
 
 /// Maximum range of a heading outside a turning circle, deg. In a circle the integrals of heading and rudder grow
 /// alike, and a regression cannot separate them.
 const MAX_SWING_DEG: f64 = 360.0;
 
-/// Share of the heading that a flipped rudder has to explain for an error. The zig-zags of KVLCC2 and Esso Osaka reach
-/// 0.82 to 0.99 with the right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
+/// Minimum share of the heading explained by a flipped rudder, for an error. The zig-zags of KVLCC2 and Esso Osaka
+/// reach 0.82 to 0.99 with the right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
 const ERROR_SHARE: f64 = 0.7;
 
-/// Share of the heading that a flipped rudder has to explain for a warning.
+/// Minimum share of the heading explained by a flipped rudder, for a warning.
 const WARNING_SHARE: f64 = 0.4;
 
-/// Checks a record; returns warnings.
+/// Checks a record and returns the warnings.
 ///
-/// Fails with [`Implausible`] when nothing moves, a unit is wrong by the factor between degrees and radians, or the
-/// signs of rudder, heading and yaw rate contradict each other. The sign of the rudder is the sign of b = K/T in
-/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle of ∫δ dψ.
+/// Fails with [`Implausible`] if rudder and heading do not move, a unit is wrong by the factor between degrees and
+/// radians, or the signs of rudder, heading and yaw rate contradict each other. The sign of the rudder is the sign of b
+/// = K/T in ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle of
+/// ∫δ dψ.
 pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
@@ -165,7 +168,7 @@ fn range_deg(values: &[f64]) -> f64 {
     to_deg(range(values))
 }
 
-/// `true` where a heading in "degrees" steps by 2π: 6.28 between two readings, and no other large steps.
+/// `true` if a heading in "degrees" steps by 2π: 6.28 between two readings, and no other large steps.
 pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
     let mut last = f64::NAN;
     let (mut wraps, mut large_steps) = (0, 0);
@@ -185,7 +188,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     if heading_deg < MIN_RANGE_DEG && rudder_deg < MIN_RANGE_DEG {
         return Err(Implausible::NothingMoves { heading_deg, rudder_deg });
     }
-    // 1.6 rad: no rudder goes beyond 90°.
+    // 1.6 rad: no rudder exceeds 90°.
     if largest_deg > 92.0 {
         return Err(Implausible::RudderInDegrees { largest_deg });
     }
@@ -198,7 +201,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     }
     let ratio = heading_deg / rudder_deg;
     // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to
-    // about 20 times; radians for degrees make that 50 and more.
+    // about 20 times; radians in place of degrees make that 50 and more.
     if largest_deg < 0.72 {
         if heading_deg > 1.0 && ratio > 20.0 {
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
@@ -271,7 +274,7 @@ fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<W
     let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
     let warning = |flipped: Implausible| Some(WarningCode::RudderSign.warning(flipped.to_string()));
     if heading_deg > MAX_SWING_DEG {
-        // A circle is a single movement of the rudder: enough for a warning, not for an error.
+        // A circle is a single movement of the rudder: sufficient for a warning, not for an error.
         return Ok(warning(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
     }
     let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
@@ -282,7 +285,7 @@ fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<W
     }
 }
 
-/// Check of the mean rate of turn, which shows the unit of the time.
+/// Check of the mean rate of turn, which depends on the unit of the time.
 fn rate_of_turn(trial: &Trial) -> Option<Warning> {
     if range_deg(trial.rudder()) < MIN_RUDDER_RANGE_DEG || range_deg(trial.heading()) < MIN_RESPONSE_DEG {
         return None;
@@ -300,7 +303,7 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
 /// Maximum interval between two headings without a missing heading, usual intervals.
 const MAX_INTERVAL: f64 = 1.5;
 
-/// Warning of missing headings with their longest gap; rejected readings have another warning.
+/// Warning of missing headings with their maximum gap; rejected readings have a warning of their own.
 fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
     let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;

@@ -1,4 +1,4 @@
-//! The record of one trial: columns that belong together, checked once when the record is made.
+//! Record of one trial: columns that belong together, checked once on creation of the record.
 
 mod changed;
 mod corners;
@@ -18,10 +18,10 @@ use estimation::statistics::upper_median;
 
 pub use corners::Corner;
 
-/// Where a record comes from.
+/// Origin of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Origin {
-    /// Simulated: the scenario and the place of the trial in it.
+    /// Simulated: the scenario and the position of the trial in it.
     Simulated {
         /// Name of the scenario.
         scenario: String,
@@ -32,14 +32,14 @@ pub enum Origin {
     },
     /// Measured: the file and its content.
     Measured {
-        /// File as the user named it.
+        /// File as named by the user.
         file: String,
         /// SHA-256 of the bytes, hexadecimal.
         sha256: String,
     },
 }
 
-/// Declared standard deviations of the sensors; `None` if nothing is declared.
+/// Declared standard deviations of the sensors; `None` if undeclared.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Noise {
     /// Heading, rad.
@@ -50,19 +50,19 @@ pub struct Noise {
     pub rudder: Option<f64>,
 }
 
-/// The columns a record is made of, in SI units and radians. NaN means missing.
+/// Columns of a record, in SI units and radians; NaN for missing.
 #[derive(Debug, Clone, Default)]
 pub struct Columns {
-    /// Time, s. Rows with a missing time or rudder have to be left out before.
+    /// Time, s. Rows with a missing time or rudder must be omitted before.
     pub time: Vec<f64>,
-    /// All other quantities by name; each as long as `time`.
+    /// Other channels, each as long as `time`.
     pub channels: BTreeMap<Channel, Vec<f64>>,
-    /// Columns with an unknown name, carried unchanged.
+    /// Columns with an unknown name, kept unchanged.
     pub unknown: Vec<(String, Vec<f64>)>,
 }
 
 impl Columns {
-    /// Leaves out rows; `keep` has one flag per row.
+    /// Omits rows; `keep` has one flag per row.
     pub(crate) fn retain(&mut self, keep: &[bool]) {
         let retain_rows = |values: &mut Vec<f64>| {
             let mut keep = keep.iter();
@@ -74,42 +74,42 @@ impl Columns {
     }
 }
 
-/// A reading that cleaning took as missing or reported as doubtful.
+/// Reading set to missing by the cleaning, or reported as doubtful.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RejectedReading {
     /// Channel of the reading.
     pub channel: Channel,
     /// Time, s.
     pub time: f64,
-    /// The reading, in SI units and radians; of a heading unwrapped.
+    /// Reading, in SI units and radians; a heading unwrapped.
     pub value: f64,
 }
 
-/// Why columns do not make a record.
+/// Reason why columns do not form a record.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum TrialError {
-    /// A needed quantity is absent.
+    /// Absent required quantity.
     #[error("the record has no {0}")]
     Missing(&'static str),
     /// Columns of different length.
     #[error("{channel:?} has {found} values, time has {expected}")]
     Length { channel: Channel, found: usize, expected: usize },
-    /// Too short to be a manoeuvre.
+    /// Fewer rows than the minimum.
     #[error("a record needs at least {needed} rows with heading and rudder; this record has {found}")]
     TooShort { needed: usize, found: usize },
-    /// Time does not increase or is not finite.
+    /// Time that does not increase or is not finite.
     #[error("time must increase: row {row} has {time} s after {before} s")]
     Time { row: usize, before: f64, time: f64 },
-    /// A rudder angle is not finite.
+    /// Rudder angle that is not finite.
     #[error("row {row} has no rudder angle")]
     Rudder { row: usize },
 }
 
 /// One manoeuvring trial as a time series; immutable, in SI units and radians.
 ///
-/// Time increases strictly; the rudder is finite in every row; heading (and any other channel) may be missing in single
-/// rows, as NaN. A record without a heading column gets the integral of its yaw rate, and says so.
+/// Time increases strictly; the rudder is finite in every row; heading and other channels may be missing in single
+/// rows, as NaN. A record without a heading column has the integral of its yaw rate, and a flag for it.
 ///
 /// ```
 /// use kempf_trial::{Channel, Columns, Origin, Trial};
@@ -155,10 +155,10 @@ impl Trial {
     /// Minimum number of rows with a heading.
     pub const MIN_ROWS: usize = 8;
 
-    /// Checks the columns and makes the record.
+    /// Record of checked columns.
     ///
-    /// Fails if the rudder, or both heading and yaw rate, are absent; when columns differ in length; when time does
-    /// not increase; or when fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows hold a heading.
+    /// Fails if the rudder, or both heading and yaw rate, are absent; if columns differ in length; if time does
+    /// not increase; or if fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows contain a heading.
     pub fn new(name: impl Into<String>, origin: Origin, columns: Columns) -> Result<Self, TrialError> {
         let Columns { time, mut channels, unknown } = columns;
         for (&channel, values) in &channels {
@@ -196,7 +196,7 @@ impl Trial {
         Self { noise, ..self }
     }
 
-    /// The same record with the length and speed of its ship.
+    /// The same record with length and speed of the ship.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }
     }
@@ -206,7 +206,7 @@ impl Trial {
         Self { conditions, ..self }
     }
 
-    /// The same record with its rejected readings: those taken as missing or reported as doubtful.
+    /// The same record with its rejected readings: those set to missing or reported as doubtful.
     pub fn with_rejected(self, rejected: Vec<RejectedReading>) -> Self {
         Self { rejected, ..self }
     }
@@ -216,12 +216,12 @@ impl Trial {
         &self.name
     }
 
-    /// Name of the record for people.
+    /// Name of the record for display.
     pub fn title(&self) -> String {
         document::names::record(&self.name)
     }
 
-    /// Where the record comes from.
+    /// Origin of the record.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }
@@ -241,7 +241,7 @@ impl Trial {
         self.rudder.rows.times()
     }
 
-    /// Length of the record in time, s.
+    /// Duration of the record, s.
     pub fn duration(&self) -> f64 {
         self.time()[self.len() - 1] - self.time()[0]
     }
@@ -253,7 +253,7 @@ impl Trial {
         upper_median(pairs.map(|pair| pair[1] - pair[0])).expect("a record has rows")
     }
 
-    /// Heading of every row, rad, unwrapped; NaN where it was not recorded.
+    /// Heading of every row, rad, unwrapped; NaN if missing.
     pub fn heading(&self) -> &[f64] {
         &self.channels[&Channel::Heading]
     }
@@ -268,23 +268,23 @@ impl Trial {
         self.rudder.rows.values()
     }
 
-    /// The rudder as a signal: linear between rows and the [corners](Self::rudder_corners) between them.
+    /// Rudder as a signal: linear between rows and the [corners](Self::rudder_corners) between them.
     pub fn rudder_signal(&self) -> &Polyline {
         self.rudder.path()
     }
 
-    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; none if it does not
+    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; empty if it does not
     /// rest or move at one rate.
     pub fn rudder_corners(&self) -> &[Corner] {
         &self.rudder.corners
     }
 
-    /// Yaw rate of every row, rad/s, where the record has it; NaN where a row does not.
+    /// Yaw rate of every row, rad/s, if recorded; NaN if missing in a row.
     pub fn yaw_rate(&self) -> Option<&[f64]> {
         self.channel(Channel::YawRate)
     }
 
-    /// Any channel, row by row, where the record has it.
+    /// Any channel, row by row, if recorded.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         match channel {
             Channel::Rudder => Some(self.rudder()),
@@ -292,12 +292,12 @@ impl Trial {
         }
     }
 
-    /// The channels of the record, rudder excepted.
+    /// Channels of the record, except the rudder.
     pub fn channels(&self) -> impl Iterator<Item = (Channel, &[f64])> {
         self.channels.iter().map(|(&channel, values)| (channel, values.as_slice()))
     }
 
-    /// Columns with an unknown name, as they were read.
+    /// Columns with an unknown name, as read.
     pub fn unknown(&self) -> &[(String, Vec<f64>)] {
         &self.unknown
     }
@@ -307,12 +307,12 @@ impl Trial {
         self.noise
     }
 
-    /// Readings that cleaning took as missing or reported as doubtful.
+    /// Readings set to missing by the cleaning, or reported as doubtful.
     pub fn rejected(&self) -> &[RejectedReading] {
         &self.rejected
     }
 
-    /// Length and approach speed of the ship, where declared.
+    /// Length and approach speed of the ship, if declared.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
     }
@@ -327,7 +327,7 @@ impl Trial {
         &self.conditions
     }
 
-    /// `true` where the sidecar declares a calm.
+    /// `true` if the sidecar declares a calm.
     pub fn is_calm(&self) -> bool {
         self.conditions.weather == Some(DeclaredWeather::Calm)
     }
@@ -340,13 +340,13 @@ impl Trial {
         shortcomings
     }
 
-    /// Rows in which the heading was recorded.
+    /// Rows with a recorded heading.
     pub fn observed_rows(&self) -> impl Iterator<Item = usize> {
         self.heading().iter().enumerate().filter(|(_, psi)| psi.is_finite()).map(|(row, _)| row)
     }
 }
 
-/// Trapezoid integral of a rate, from 0. NaN where the rate is missing; the integral runs on between its neighbours.
+/// Trapezoid integral of a rate, from 0. NaN if the rate is missing; the integral continues between its neighbours.
 pub(crate) fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
     let mut total = 0.0;
     let mut last: Option<(f64, f64)> = None;

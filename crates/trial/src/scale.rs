@@ -10,15 +10,15 @@ use thiserror::Error;
 
 use crate::record::Trial;
 
-/// Tolerance of equal lengths, as a share. Different speeds of the same ship are not different scales: the records show
-/// whether K and T follow the speed.
+/// Tolerance of equal lengths, as a share. Different speeds of the same ship are not different scales: the records
+/// determine whether K and T follow the speed.
 const LENGTH_TOLERANCE: f64 = 0.05;
 
-/// Error of records that cannot be brought to a common scale.
+/// Error of records without a common scale.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ScaleError {
-    /// A record of unknown length and speed among records of several scales.
+    /// Record of unknown length and speed among records of several scales.
     #[error(
         "the records have {scales} scales, but length and speed of {record} are not declared; declare them in its sidecar"
     )]
@@ -28,7 +28,7 @@ pub enum ScaleError {
     NotPositive { record: String, length: f64, speed: f64 },
 }
 
-/// The scales of some records, in the order in which they appear.
+/// Scales of records, in the order of their occurrence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scales {
     /// Length and speed of the first record of every length.
@@ -38,9 +38,9 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of records; `None` if the declared scales do not differ.
+    /// Scales of records; `None` if the declared scales do not differ.
     ///
-    /// Fails if records differ in scale and a record declares none.
+    /// Fails if records differ in scale and a record does not declare its scale.
     pub fn among<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
         let mut particulars: Vec<Particulars> = Vec::new();
         let mut indices = Vec::new();
@@ -86,16 +86,16 @@ impl Scales {
     }
 }
 
-/// Minimum significant difference, standard deviations: one in 370 of a normal distribution.
+/// Minimum significant difference, standard deviations: exceeded by one in 370 of a normal distribution.
 const SIGNIFICANT_SDS: f64 = 3.0;
 
-/// Difference, as a share of the value, that has to be significant before a number is said to scale.
+/// Difference, as a share of the value, that must be significant before a number is accepted as independent of scale.
 const RESOLVED_SHARE: f64 = 0.25;
 
 /// Minimum relative standard deviation: the rounding of the arithmetic.
 const ROUNDING: f64 = 1e-12;
 
-/// Comparison of independent dimensionless estimates at different scales: the largest difference of two, x₂ − x₁ in
+/// Comparison of independent dimensionless estimates at different scales: the maximum difference of two, x₂ − x₁ in
 /// units of √(s₁² + s₂²), and its verdict. The difference is `None` if fewer than two estimates have a standard
 /// deviation.
 pub fn scaling(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
@@ -171,7 +171,8 @@ mod tests {
         assert_eq!(scaling(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
         assert_eq!(scaling(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
         assert_eq!(scaling(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
-        // One of three without an error: what the others say is said, but not that all agree.
+        // One of three estimates without an error: the verdict is that of the two others, except agreement of all
+        // three.
         let three = [of(1.0, 0.01), Quantity::bare(1.0), of(1.01, 0.01)];
         assert_eq!(scaling(&three).1, Scaling::CannotBeTold);
         let (difference, word) = scaling(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);

@@ -1,7 +1,7 @@
-//! Sidecar: a small TOML file that describes a table whose columns are not named `quantity_unit`. The table is read in
-//! [`crate::reader`].
+//! Sidecar: a small TOML file that describes a table with columns that are not named `quantity_unit`. The table is read
+//! in [`crate::reader`].
 //!
-//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar has to be
+//! `NAME.trial.toml` next to `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar must be
 //! named. [`keys`] lists its keys; none is required.
 
 use std::ops::{Range, RangeInclusive};
@@ -23,7 +23,7 @@ use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys,
 pub use crate::sidecar_keys::{Key, keys, schema};
 use crate::wording::shortened;
 
-/// Kind of file of a sidecar; the longest in use has a hundred lines.
+/// Kind of file of a sidecar; in use are up to a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
@@ -33,24 +33,24 @@ pub(crate) enum Which {
     Index(usize),
     /// Name in the header.
     Name(String),
-    /// A new column, computed from others.
+    /// New column, computed from others.
     Formula(ColumnFormula),
 }
 
-/// A checked `[[column]]`.
+/// Checked `[[column]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
     pub(crate) which: Which,
     pub(crate) meaning: Option<ColumnMeaning>,
-    /// Value of a unit of its numbers; negative where the sign is changed.
+    /// Value of a unit of the numbers; negative for a changed sign.
     pub(crate) scale: f64,
-    /// Number at a value of zero.
+    /// Number in the file at a value of zero.
     pub(crate) zero: f64,
     pub(crate) ignore: bool,
 }
 
-/// A sidecar, checked as far as possible without its table; the default is the empty sidecar.
+/// Sidecar, checked as far as possible without its table; the default is the empty sidecar.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sidecar {
     pub(crate) file: PathBuf,
@@ -60,12 +60,12 @@ pub struct Sidecar {
     pub(crate) columns: Vec<DescribedColumn>,
     pub(crate) rudder: RudderKeys,
     pub(crate) noise: Noise,
-    /// Particulars and conditions that are declared for the form of MSC/Circ.1053.
+    /// Declared particulars and conditions for the form of MSC/Circ.1053.
     pub conditions: Conditions,
 }
 
 impl Sidecar {
-    /// Path of the sidecar of a table: `NAME.trial.toml` beside `NAME.*`.
+    /// Path of the sidecar of a table: `NAME.trial.toml` next to `NAME.*`.
     pub fn beside(table: &Path) -> PathBuf {
         table.with_extension("trial.toml")
     }
@@ -75,8 +75,8 @@ impl Sidecar {
         Some(Self::beside(table)).filter(|beside| beside.is_file())
     }
 
-    /// Path of the sidecar that describes a table: the given file, or the file under its name in the given folder; else
-    /// the file beside the table.
+    /// Path of the sidecar of a table: the given file, or the file of its name in the given folder; else
+    /// the file next to the table.
     pub fn describing(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
         let given = given.and_then(|given| match given.is_dir() {
             true => Self::existing_beside(&given.join(table.file_name()?)),
@@ -99,8 +99,8 @@ impl Sidecar {
 
     /// Checks the text of a sidecar; `file` is its name in messages.
     ///
-    /// Fails on text that is not TOML, unknown keys and quantities, and numbers outside their range; the error points
-    /// to the line.
+    /// Fails for text that is not TOML, unknown keys and quantities, and numbers outside their range; the error states
+    /// the line.
     pub fn parse(text: &str, file: &Path) -> Result<Self, SidecarError> {
         resolve(text, file).map_err(|(span, problem)| SidecarError {
             file: file.to_path_buf(),
@@ -118,12 +118,12 @@ impl Sidecar {
         self.table.header.unwrap_or(true)
     }
 
-    /// Part of the record that is used, s.
+    /// Used part of the record, s.
     pub(crate) fn part(&self) -> RangeInclusive<f64> {
         self.part.from_s.unwrap_or(f64::NEG_INFINITY)..=self.part.until_s.unwrap_or(f64::INFINITY)
     }
 
-    /// `true` where readings are cleaned and an implausible record is refused.
+    /// `true` if readings are cleaned and an implausible record is refused.
     pub(crate) fn is_checked(&self) -> bool {
         self.check.plausibility.unwrap_or(true)
     }
@@ -134,7 +134,7 @@ fn line_of(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
 
-/// Position of a key in the text, or of its table where the key is absent.
+/// Position of a key in the text, or of the table if the key is absent.
 fn span(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
     key_span(document, table, key).or_else(|| Some(entry(document, table)?.span()))
 }
@@ -149,7 +149,7 @@ fn entry<'a, 'b>(table: &'a DeTable<'b>, wanted: &str) -> Option<&'a Spanned<DeV
     table.iter().find(|(key, _)| key.get_ref() == wanted).map(|(_, value)| value)
 }
 
-/// Rule of a value: `true` for a valid value, and the description of valid values; `None` for a key without a rule.
+/// Rule of a value: validity, and the description of valid values; `None` for a key without a rule.
 fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'static str)> {
     let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).filter(|x| x.is_finite());
     let above_zero = number.is_some_and(|number| number > 0.0);
@@ -185,7 +185,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
     })
 }
 
-/// Checks every value without regard to others.
+/// Checks every value independently.
 fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
     let values: toml::Table = text.parse().map_err(syntax)?;
     for Key { key: name, value: kind, .. } in keys() {
@@ -225,7 +225,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     };
     let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, rudder, noise, conditions };
     let (from_s, until_s) = sidecar.part().into_inner();
-    // NaN is below nothing.
+    // Comparisons with NaN are false.
     if from_s.partial_cmp(&until_s) != Some(std::cmp::Ordering::Less) {
         let key = if sidecar.part.until_s.is_some() { "until-s" } else { "from-s" };
         return Err((span(&document, "part", key), SidecarProblem::Part { from_s, until_s }));
@@ -233,7 +233,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     Ok(sidecar)
 }
 
-/// Conditions declared by [form] and [ship] together; a particular of both tables may be in either.
+/// Conditions declared by [form] and [ship] together; a particular known to both tables may be in either.
 fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Conditions) -> Result<Conditions, Fault> {
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
@@ -314,7 +314,7 @@ mod tests {
         Sidecar::parse(text, Path::new("run.trial.toml"))
     }
 
-    /// A key that is listed is understood, though a value may not fit beside the others.
+    /// Every listed key is accepted, though a value may contradict others.
     #[test]
     fn every_listed_key_is_known() {
         for Key { key, .. } in keys().into_iter().filter(|key| key.key.starts_with('[')) {
@@ -353,7 +353,7 @@ mod tests {
         assert!(parse("").expect("no key is required").is_checked());
     }
 
-    /// [ship] and [form] complete each other; a trial in ballast has not the block coefficient of full load.
+    /// [ship] and [form] complete each other; a trial in ballast has another block coefficient than full load.
     #[test]
     fn the_hull_is_declared_in_either_table() {
         let ship = "[ship]\nlength-m = 320\nspeed-m-s = 7.97\nbeam-m = 58\nrudder-height-m = 15.8\nx-g-m = -2\n\

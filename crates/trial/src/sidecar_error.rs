@@ -12,11 +12,11 @@ use crate::file::FileError;
 #[derive(Debug, Error)]
 #[error("{}:{} {problem}", file.display(), line.map_or_else(String::new, |line| format!(" line {line}:")))]
 pub struct SidecarError {
-    /// The sidecar.
+    /// Sidecar.
     pub file: PathBuf,
     /// Line, from 1; `None` for a problem of the whole file.
     pub line: Option<usize>,
-    /// The problem.
+    /// Problem.
     pub problem: SidecarProblem,
 }
 
@@ -30,43 +30,43 @@ pub enum SidecarProblem {
     /// Not TOML, or an unknown key or value.
     #[error("{message}")]
     Syntax { message: String },
-    /// `is` is not a quantity.
+    /// Unknown quantity of `is`.
     #[error(
         "`is = \"{name}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, \
          rudder_deg, yaw_rate_deg_s, speed_m_s or speed_kn"
     )]
     UnknownQuantity { name: String },
-    /// A column without index and name, or with both.
+    /// Column without index and name, or with both.
     #[error("a [[column]] needs either `index` (from 1) or `name`, but this one has {given}")]
     Which { given: &'static str },
-    /// A column without a description.
+    /// Column without a description.
     #[error("this [[column]] says nothing; add `is`, `flip = true`, `scale`, `zero` or `ignore = true`")]
     Idle,
-    /// `ignore` beside other keys.
+    /// `ignore` in addition to other keys.
     #[error("`ignore = true` leaves the column out, so other keys beside it mean nothing; remove one or the other")]
     IgnoredAndUsed,
-    /// A formula that cannot be read, or names no column.
+    /// Formula that cannot be read, or contains no column.
     #[error("`formula`: {problem}")]
     Formula { problem: String },
-    /// A name, but the table has no header.
+    /// Name for a table without a header.
     #[error("`name` needs a header, but [table] says `header = false`; use `index`")]
     NameWithoutHeader,
-    /// The name is not in the header.
+    /// Name that is not in the header.
     #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::wording::listed(header))]
     NameNotFound { name: String, table: PathBuf, header: Vec<String> },
     /// Columns described in a log of sentences.
     #[error("the file holds sentences or messages (NMEA), which have no columns; remove every [[column]]")]
     NoTable,
-    /// The index is larger than the number of columns.
+    /// Index above the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]
     IndexBeyond { index: usize, table: PathBuf, columns: usize },
     /// Two entries for one column.
     #[error("the column `{name}` is described twice; keep one [[column]] for it")]
     DescribedTwice { name: String },
-    /// The column keeps its name, which has no meaning.
+    /// Column that keeps its name, which has no meaning.
     #[error("the column name `{name}` is unknown; add `is` to say what the column holds")]
     NameSaysNothing { name: String },
-    /// A part that ends before it begins, or whose bounds are not numbers.
+    /// Part that ends before it begins, or with bounds that are not numbers.
     #[error("the part from {from_s} s until {until_s} s is empty; expected numbers with `from-s` below `until-s`")]
     Part { from_s: f64, until_s: f64 },
     /// Length or speed alone, or two speeds.
@@ -75,10 +75,10 @@ pub enum SidecarProblem {
     /// Implausible particulars.
     #[error("{0}")]
     Particulars(Box<ParticularsError>),
-    /// A value outside its range.
+    /// Value outside its range.
     #[error("`{key}` is {value}, expected {expected}")]
     Value { key: String, value: String, expected: &'static str },
 }
 
-/// A problem with its position in the text.
+/// Problem with its position in the text.
 pub(crate) type Fault = (Option<Range<usize>>, SidecarProblem);

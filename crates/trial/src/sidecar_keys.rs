@@ -1,5 +1,5 @@
-//! Keys of a sidecar, each declared by its field; the brackets at the end of the field's comment hold the kind of its
-//! value. The JSON schema and the list of keys are made from these comments.
+//! Keys of a sidecar, each declared by its field; the brackets at the end of the field's comment contain the kind of
+//! its value. The JSON schema and the list of keys are made from these comments.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -18,12 +18,12 @@ use crate::conditions::{Conditions, DeclaredWeather};
 use crate::encoding::Encoding;
 use crate::trial_particulars::TrialParticulars;
 
-// The tables of the file. Comments on fields are the descriptions in `study list sidecar` and in the JSON schema.
+// Tables of the file. Comments on fields are the descriptions in `study list sidecar` and in the JSON schema.
 
 #[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct SidecarKeys {
-    /// Declares a calm, as in a towing tank: a trace looks for no effect of weather. Stands above every table. (none)
+    /// Declares a calm, as in a towing tank: a trace searches for no effect of weather. Key above every table. (none)
     pub weather: Option<DeclaredWeather>,
     #[serde(default)]
     pub table: TableKeys,
@@ -50,15 +50,15 @@ pub(crate) struct SidecarKeys {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct TableKeys {
-    /// Lines before the header, or before the rows when there is none; not even decoded. (number)
+    /// Number of lines before the header, or before the rows if there is none; they are not even decoded. (number)
     #[serde(default)]
     pub skip_lines: usize,
-    /// What stands between cells; recognised when absent. (comma, semicolon, tab or blank)
+    /// Separator of cells; recognised if absent. (comma, semicolon, tab or blank)
     pub separator: Option<Separator>,
-    /// How bytes stand for letters; when absent utf-8, and windows-1252 in lines that are not. (utf-8 or windows-1252)
+    /// Character encoding; if absent utf-8, and windows-1252 in other lines. (utf-8 or windows-1252)
     #[serde(default)]
     pub encoding: Encoding,
-    /// `true` if a line with names comes before the rows; true when absent. (true or false)
+    /// `true` if a line with names comes before the rows; true if absent. (true or false)
     pub header: Option<bool>,
     #[schemars(
         description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \
@@ -70,30 +70,30 @@ pub(crate) struct TableKeys {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct PartKeys {
-    /// First time that is used, on the clock of the record. (s)
+    /// Start of the used part, on the clock of the record. (s)
     pub from_s: Option<f64>,
-    /// Last time that is used. (s)
+    /// End of the used part. (s)
     pub until_s: Option<f64>,
-    /// The first row of the part and every n-th after it. (number)
+    /// Thinning: the first row of the part and every n-th after it. (number)
     pub every: Option<usize>,
 }
 
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ColumnKeys {
-    /// Which column: counted from 1; this or its name. (number)
+    /// Index of the column, from 1; this or its name. (number)
     pub index: Option<usize>,
-    /// Which column: its name in the header. (text)
+    /// Name of the column in the header. (text)
     pub name: Option<String>,
-    /// What it holds: a name of `study list columns`; its own name when absent. (name such as heading_rad)
+    /// Quantity of the column: a name of `study list columns`; its own name if absent. (name such as heading_rad)
     #[schemars(with = "Option<String>")]
     pub is: Option<Spanned<String>>,
-    /// Change the sign. (true)
+    /// Reversal of the sign. (true)
     #[serde(default)]
     pub flip: bool,
-    /// What one of its numbers stands for, in the unit of `is`: 0.1 for tenths of a degree. (number)
+    /// Value of a unit of the numbers, in the unit of `is`: 0.1 for tenths of a degree. (number)
     pub scale: Option<f64>,
-    /// The number at zero, which is taken from every one before it is scaled: counts of a converter. (number)
+    /// Number at zero, subtracted before scaling: counts of a converter. (number)
     pub zero: Option<f64>,
     #[schemars(
         with = "Option<String>",
@@ -101,7 +101,7 @@ pub(crate) struct ColumnKeys {
         `(port - starboard) / 2`; needs `is`. (text)"
     )]
     pub formula: Option<Spanned<String>>,
-    /// Leave the column out. (true)
+    /// Omission of the column. (true)
     #[serde(default)]
     pub ignore: bool,
 }
@@ -109,9 +109,9 @@ pub(crate) struct ColumnKeys {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RudderKeys {
-    /// How late the rudder was logged, on the clock of the record; below zero: early. (s)
+    /// Delay of the logged rudder, on the clock of the record; negative if early. (s)
     pub late_s: Option<f64>,
-    /// The column is the order, and the rudder follows it at this rate; 2 to 7 are usual. (deg/s)
+    /// Rate at which the rudder follows the column, which is the order; 2 to 7 are usual. (deg/s)
     pub order_rate_deg_s: Option<f64>,
 }
 
@@ -127,7 +127,7 @@ const SPEED_KN: &str = "speed-kn";
 static SHIP_KEYS: LazyLock<Vec<&str>> =
     LazyLock::new(|| PARTICULARS.iter().map(|particular| particular.key).chain([SPEED_KN]).collect());
 
-/// A key of [ship]; any other key is refused.
+/// Key of [ship]; any other key is refused.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ShipKey(String);
 
@@ -176,22 +176,22 @@ impl JsonSchema for ShipKeys {
 #[derive(Deserialize, Default, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct NoiseKeys {
-    /// Standard deviation of the heading, where it is known. (deg)
+    /// Standard deviation of the heading, if known. (deg)
     pub heading_deg: Option<f64>,
-    /// The same of the yaw rate. (deg/s)
+    /// Standard deviation of the yaw rate, if known. (deg/s)
     pub yaw_rate_deg_s: Option<f64>,
-    /// The same of the rudder. (deg)
+    /// Standard deviation of the rudder, if known. (deg)
     pub rudder_deg: Option<f64>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct CheckKeys {
-    /// With false nothing is cleaned, and what looks implausible is a warning in place of an error. (true or false)
+    /// If false, readings are not cleaned, and an implausible record is a warning in place of an error. (true or false)
     pub plausibility: Option<bool>,
 }
 
-/// JSON schema (draft 7) of a sidecar, with which an editor completes and checks its keys.
+/// JSON schema (draft 7) of a sidecar, for completion and checks in editors.
 pub fn schema() -> Schema {
     // Inlined tables let `keys` walk from a table to its keys.
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
@@ -200,18 +200,18 @@ pub fn schema() -> Schema {
     schema
 }
 
-/// A key of a sidecar.
+/// Key of a sidecar.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Key {
-    /// Table and key; the key alone where it stands above the tables.
+    /// Table and key; the key alone if it is above the tables.
     pub key: String,
-    /// Kind of its value.
+    /// Kind of the value.
     pub value: String,
     /// Meaning of the key, and its default.
     pub meaning: String,
 }
 
-/// All keys, in the order in which they are written.
+/// All keys, in the order of declaration.
 pub fn keys() -> Vec<Key> {
     let schema = schema();
     let properties = |schema: &serde_json::Value| schema["properties"].as_object().cloned().unwrap_or_default();

@@ -1,5 +1,5 @@
 //! Fixtures of tests: an exact first-order zig-zag (straight pieces of rudder, closed-form response, and executes at
-//! the root of the heading condition, which shares nothing with the detection it tests), noise, and measured records.
+//! the root of the heading condition, independent of the detection under test), noise, and measured records.
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -10,7 +10,7 @@ use ship::first_order::{State, Transition};
 
 use crate::{Channel, Columns, Origin, Trial};
 
-/// A ship and its zig-zag; angles in radians, starboard first.
+/// Ship and its zig-zag; angles in radians, starboard first.
 #[derive(Clone, Copy)]
 pub(crate) struct Plant {
     pub delta: f64,
@@ -28,7 +28,7 @@ impl Default for Plant {
     }
 }
 
-/// From `time` on: the state then, and a rudder that is linear in time.
+/// Piece from `time` on: the state then, and a rudder that is linear in time.
 struct Piece {
     time: f64,
     state: State,
@@ -54,7 +54,7 @@ impl Plant {
         let pieces = self.pieces(time[time.len() - 1]);
         time.iter()
             .map(|&t| {
-                // The value from the left at a jump, so that the record starts with its rudder amidships.
+                // The value from the left at a jump, so that the record starts with the rudder amidships.
                 let piece = &pieces[pieces.partition_point(|piece| piece.time < t).saturating_sub(1)];
                 let after = t - piece.time;
                 (advance(piece.state, piece.rudder, piece.slope, after).heading, piece.rudder + piece.slope * after)

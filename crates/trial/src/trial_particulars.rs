@@ -6,26 +6,26 @@ use toml::Value;
 
 use crate::clock::day;
 
-/// Ship, day and draughts of a trial, as a sidecar declares them under `[trial]`; `None` if nothing is declared. In
-/// brackets, what the key of a sidecar may be.
+/// Ship, day and draughts of a trial, as declared in a sidecar under `[trial]`; `None` if undeclared. In
+/// brackets, the kind of value of the sidecar key.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct TrialParticulars {
-    /// Name of the ship, which stands on the first page of a report. (text)
+    /// Name of the ship, for the first page of a report. (text)
     pub ship_name: Option<String>,
-    /// Day of the trial; that of the stamps of the record when absent. (date such as 2026-11-20)
+    /// Day of the trial; from the stamps of the record if absent. (date such as 2026-11-20)
     #[serde(default, deserialize_with = "date")]
     pub date: Option<String>,
     /// Draught at the fore perpendicular. (m)
     #[serde(rename = "draught-fore-m")]
     pub draught_fore: Option<f64>,
-    /// Draught at the aft perpendicular; with that fore it gives draught-m and trim-m where these are absent. (m)
+    /// Draught at the aft perpendicular; with the draught fore it gives draught-m and trim-m if these are absent. (m)
     #[serde(rename = "draught-aft-m")]
     pub draught_aft: Option<f64>,
 }
 
 impl TrialParticulars {
-    /// The same, completed with `other` where it says nothing.
+    /// The same, with missing entries from `other`.
     pub fn or(self, other: &Self) -> Self {
         let text = |given: Option<String>, other: &Option<String>| given.or_else(|| other.clone());
         Self {
@@ -36,7 +36,7 @@ impl TrialParticulars {
         }
     }
 
-    /// Draughts fore and aft, m, where both are known.
+    /// Draughts fore and aft, m, if both are known.
     pub fn draughts(&self) -> Option<[f64; 2]> {
         Some([self.draught_fore?, self.draught_aft?])
     }
@@ -52,7 +52,7 @@ impl TrialParticulars {
     }
 }
 
-/// A date of TOML, or a text that is one.
+/// Date of TOML, or a text with a date.
 fn date<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D::Error> {
     let text = match Value::deserialize(deserializer)? {
         Value::String(text) => text,

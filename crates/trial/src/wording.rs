@@ -2,7 +2,7 @@
 
 use ship::ShortNumber;
 
-/// A list of names in backquotes; at most thirty are shown.
+/// List of names in backquotes, at most thirty.
 pub(crate) fn listed(names: &[String]) -> String {
     const SHOWN: usize = 30;
     let mut text = names.iter().take(SHOWN).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");
@@ -12,7 +12,7 @@ pub(crate) fn listed(names: &[String]) -> String {
     text
 }
 
-/// A text cut to forty characters, without control characters.
+/// Text cut to forty characters, without control characters.
 pub(crate) fn shortened(text: &str) -> String {
     const SHOWN: usize = 40;
     let mut short: String = text.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -22,17 +22,17 @@ pub(crate) fn shortened(text: &str) -> String {
     short
 }
 
-/// A number with its noun: `1 sentence`, `12 sentences`.
+/// Number with its noun: `1 sentence`, `12 sentences`.
 pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// A time rounded to a millisecond, s: without the digits that arithmetic leaves.
+/// Time rounded to a millisecond, s, without the digits of rounding errors.
 pub(crate) fn instant(time: f64) -> ShortNumber {
     ShortNumber((1e3 * time).round() / 1e3)
 }
 
-/// One end of a part of a record, as ` from 12 s`; empty for an end that is not given (infinite).
+/// End of a part of a record, as ` from 12 s`; empty for an end that is not given (infinite).
 pub(crate) fn end(word: &str, time: f64) -> String {
     if time.is_finite() { format!(" {word} {} s", instant(time)) } else { String::new() }
 }

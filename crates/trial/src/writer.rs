@@ -1,5 +1,6 @@
 //! Writer of a record as CSV with `quantity_unit` column names, so that reading it gives the same record. A sidecar
-//! holds length and speed of the ship, the declared weather and the declared noise; other declarations are not written.
+//! contains length and speed of the ship, the declared weather and the declared noise; other declarations are not
+//! written.
 
 use std::io::Write;
 
@@ -10,10 +11,10 @@ use crate::channel::{Channel, TIME_COLUMN};
 use crate::record::{Noise, Trial};
 
 /// Writes `trial` as CSV: `t_s`, then its channels in the order of [`Channel::ALL`] (angles in degrees), then its
-/// columns with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is left
-/// out.
+/// columns with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is
+/// omitted.
 ///
-/// Numbers have as many digits as they need to be read back as the same `f64`. Fails if `output` does.
+/// Numbers have the digits required to read back the same `f64`. Fails if `output` does.
 pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     let channels: Vec<(Channel, f64, &[f64])> = Channel::ALL
         .into_iter()
@@ -57,7 +58,7 @@ pub fn sidecar(trial: &Trial) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-/// A number rounded to 12 decimals, without the rounding errors of a change of units.
+/// Number rounded to 12 decimals, without the rounding errors of a change of units.
 fn short(value: f64) -> f64 {
     (1e12 * value).round() / 1e12
 }

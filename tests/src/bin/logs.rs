@@ -1,4 +1,4 @@
-//! Writes the logs that are kept into `tests/logs`; see [`kempf_tests::logs`].
+//! Writes the stored logs to `tests/logs`; see [`kempf_tests::logs`].
 
 use std::fs;
 use std::io;

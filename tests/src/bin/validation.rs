@@ -1,4 +1,5 @@
-//! Writes VALIDATION.md and docs/validation.csv: every reference number this workspace is held against, beside its own.
+//! Writes VALIDATION.md and docs/validation.csv: every reference number of the validation, with the number of this
+//! workspace.
 
 fn main() -> std::io::Result<()> {
     kempf_tests::validation::pages::write()

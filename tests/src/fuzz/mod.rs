@@ -1,9 +1,9 @@
-//! Damaged files for every reader. [`targets`] holds one function a format: it feeds bytes through the public interface
-//! and asserts what every reader promises, which is a reading that makes sense or one message. Two things feed them:
+//! Damaged files for every reader. [`targets`] has one function per format: it passes bytes through the public
+//! interface and asserts that the result is a valid reading or one message. Two programs generate the files:
 //! [`runner`], with the small [`mutate`] on stable Rust and in every `cargo test`, and libFuzzer from the package in
 //! `tests/fuzz`.
 //!
-//! `tests/fuzz/corpus/NAME` holds whole files to begin with, `tests/fuzz/regressions/NAME` what once broke something.
+//! `tests/fuzz/corpus/NAME` contains the initial files, `tests/fuzz/regressions/NAME` files that once caused a fault.
 
 pub mod mutate;
 pub mod runner;
@@ -14,22 +14,22 @@ use std::path::PathBuf;
 
 use targets::{cells, find, formula, gzip, manifest, nmea, record, rows, scenario, sidecar, stamp};
 
-/// A format, and what is done with a file of it.
+/// Target: a file format, and the check of a file in it.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Name of its folders.
+    /// Name of the folders of the target.
     pub name: &'static str,
-    /// Feeds one file through and asserts, panicking when a promise is broken; whether the file was accepted.
+    /// Check of one file; panics if an assertion fails. `true` if the file was accepted.
     pub run: fn(&[u8]) -> bool,
-    /// The dictionary of what files of the format are made of, in `words/`; empty without one.
+    /// Dictionary of words of the format, in `words/`; empty if there is none.
     dictionary: &'static str,
-    /// Its part of all cases, of the sum of all shares.
+    /// Share of all cases, relative to the sum of all shares.
     pub share: usize,
-    /// Files to begin with that are made when the test runs.
+    /// Initial files that are generated when the test runs.
     made: fn() -> Vec<Vec<u8>>,
 }
 
-/// Every format.
+/// All formats.
 pub const TARGETS: [Target; 11] = [
     Target { name: "record", run: record, dictionary: "record", share: 6, made: Vec::new },
     Target { name: "nmea", run: nmea, dictionary: "nmea", share: 3, made: Vec::new },
@@ -45,19 +45,19 @@ pub const TARGETS: [Target; 11] = [
 ];
 
 impl Target {
-    /// The files to begin with: those of the corpus, and those that are made.
+    /// Initial files: files of the corpus, and generated files.
     pub fn corpus(&self) -> Vec<Vec<u8>> {
         let stored = self.files("corpus").into_iter().map(|path| read(&path));
         stored.chain((self.made)()).collect()
     }
 
-    /// Files that once broke something.
+    /// Files that once caused a fault.
     pub fn regressions(&self) -> Vec<PathBuf> {
         self.files("regressions")
     }
 
-    /// What files of the format are made of, from a dictionary as libFuzzer reads it: a quoted word a line, with `\xAB`
-    /// for bytes that are not printed.
+    /// Words of the format, from a dictionary in the format of libFuzzer: one quoted word a line, with `\xAB` for bytes
+    /// that are not printable.
     pub fn words(&self) -> Vec<Vec<u8>> {
         let path = folder("words").join(self.dictionary).with_extension("dict");
         let text = if self.dictionary.is_empty() { Vec::new() } else { read(&path) };

@@ -1,24 +1,24 @@
-//! Damages a file: flips, cuts, splices, repeats, words of the format, other numbers. What comes out depends on the
+//! Damage to a file: flips, cuts, splices, repeats, words of the format, other numbers. The result depends on the
 //! generator alone.
 
 use std::ops::Range;
 
 use rand::{RngExt, rngs::ChaCha8Rng};
 
-/// Maximum damaged file, bytes.
+/// Maximum size of a damaged file, bytes.
 const LARGEST: usize = 32 * 1024;
 
-/// Most kinds of damage to one file.
+/// Maximum number of kinds of damage to one file.
 const MOST_DAMAGE: usize = 6;
 
-/// Numbers that readers stumble over.
+/// Numbers that often cause errors in readers.
 const NUMBERS: &str = "0 -0 1 -1 2 7 360 -360.5 1e-12 1e-320 1e18 1e308 -1e308 \
                        1e999 nan inf -inf 4294967296 9223372036854775807 18446744073709551616";
 
-/// A damaged copy of one of the files.
+/// Damaged copy of one of the files.
 pub fn damaged(files: &[Vec<u8>], words: &[Vec<u8>], generator: &mut ChaCha8Rng) -> Vec<u8> {
     let mut file = one(files, generator).clone();
-    // Half of the files are hurt once only: more of them are accepted, and get further.
+    // Half of the files are damaged only once: more of them are accepted and pass the first checks.
     let times = if generator.random() { 1 } else { generator.random_range(2..=MOST_DAMAGE) };
     for _ in 0..times {
         damage(&mut file, files, words, generator);
@@ -103,7 +103,7 @@ fn place(file: &[u8], generator: &mut ChaCha8Rng) -> Option<usize> {
     (!file.is_empty()).then(|| generator.random_range(0..file.len()))
 }
 
-/// A range of at most 256 bytes.
+/// Range of at most 256 bytes.
 fn range(file: &[u8], generator: &mut ChaCha8Rng) -> Range<usize> {
     let start = generator.random_range(0..=file.len());
     start..file.len().min(start + generator.random_range(0..256usize))
@@ -125,7 +125,7 @@ fn line(file: &[u8], generator: &mut ChaCha8Rng) -> Range<usize> {
     line_start(file, place)..end
 }
 
-/// Where numbers stand.
+/// Positions of the numbers.
 fn numbers(file: &[u8]) -> Vec<Range<usize>> {
     let part = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+' | b'e');
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Runs a target on many damaged files, spread over threads, and says which input broke it.
+//! Runner of a target on many damaged files, in several threads; it reports the inputs that cause faults.
 
 use std::any::Any;
 use std::fmt::Write as _;
@@ -13,38 +13,38 @@ use rand::{SeedableRng, rngs::ChaCha8Rng};
 
 use super::{Target, mutate};
 
-/// Maximum time a case may take.
+/// Maximum time of a case.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// Most memory the process may ever have had, MiB.
+/// Maximum peak memory of the process, MiB.
 const MOST_MEMORY: u64 = 512;
 
-/// Stack of a thread, bytes: that of the main thread of a program.
+/// Stack size of a thread, bytes: equal to the main thread of a program.
 const STACK: usize = 8 << 20;
 
-/// Key of all damage.
+/// Seed of all damage.
 const SEED: u64 = 0x6b65_6d70_6600_0000;
 
-/// What running a target came to.
+/// Result of the runs of a target.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// Cases run.
+    /// Number of cases.
     pub cases: usize,
-    /// Cases that were accepted; the others were refused.
+    /// Number of accepted cases; all other cases were rejected.
     pub accepted: usize,
-    /// The longest case.
+    /// Duration of the slowest case.
     pub longest: Duration,
-    /// What went wrong, one line a fault, with where its input was saved; the first of each kind.
+    /// Faults, one line each, with the path of the saved input; the first fault of each kind.
     pub faults: Vec<String>,
 }
 
-/// Runs `cases` damaged files of a target.
+/// Result of `cases` damaged files of a target.
 pub fn run(target: &Target, cases: usize) -> Outcome {
     let corpus = target.corpus();
     let words = target.words();
     assert!(!corpus.is_empty(), "no files for {} to begin with", target.name);
     let case = |index: usize| {
-        // The files themselves come first.
+        // The undamaged files come first.
         corpus.get(index).cloned().unwrap_or_else(|| {
             let mut generator = ChaCha8Rng::seed_from_u64(SEED ^ index as u64);
             mutate::damaged(&corpus, &words, &mut generator)
@@ -53,7 +53,7 @@ pub fn run(target: &Target, cases: usize) -> Outcome {
     all(target, cases, case)
 }
 
-/// Runs every regression file of a target.
+/// Result of every regression file of a target.
 pub fn run_regressions(target: &Target) -> Outcome {
     let files = target.regressions();
     all(target, files.len(), |index| super::read(&files[index]))
@@ -85,7 +85,7 @@ fn all(target: &Target, cases: usize, case: impl Fn(usize) -> Vec<u8> + Sync) ->
             };
             thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).expect("a thread can be made");
         }
-        // A case that never ends cannot be stopped, only named.
+        // A case that never ends cannot be stopped, only reported.
         while at_work.load(Ordering::Relaxed) > 0 {
             thread::sleep(Duration::from_millis(20));
             for slot in &running {
@@ -119,12 +119,12 @@ impl Outcome {
     }
 }
 
-/// A fault up to its numbers, so that each kind is told once.
+/// Kind of a fault: its place without the message, so that each kind is reported once.
 fn kind(fault: &str) -> &str {
     fault.split_once(" | ").map_or(fault, |(place, _)| place)
 }
 
-/// Runs one file: whether it was accepted, or `place | message` of a panic.
+/// Result of one file: `true` if it was accepted; fails with `place | message` of a panic.
 fn attempt(target: &Target, data: &[u8]) -> Result<bool, String> {
     let caught = panic::catch_unwind(AssertUnwindSafe(|| (target.run)(data)));
     let payload = match caught {
@@ -136,16 +136,16 @@ fn attempt(target: &Target, data: &[u8]) -> Result<bool, String> {
     Err(format!("{} | {message}", place.map_or_else(|| "a panic".to_owned(), |(place, _)| place)))
 }
 
-/// The message of a panic.
+/// Message of a panic.
 fn said(payload: &(dyn Any + Send)) -> String {
     let owned = payload.downcast_ref::<String>().cloned();
     owned.or_else(|| payload.downcast_ref::<&str>().map(|&text| text.to_owned())).unwrap_or_default()
 }
 
-/// Where threads panicked lately, and with what: a reader may decode on a thread of its own.
+/// Places and messages of recent panics of all threads, because a reader may decode in a separate thread.
 static PLACES: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
-/// Keeps panics off the screen and remembers their places.
+/// Panic hook: it suppresses the output and stores the place of the panic.
 fn listen(info: &PanicHookInfo<'_>) {
     let place =
         info.location().map_or_else(|| "a panic".to_owned(), |place| format!("{}:{}", place.file(), place.line()));
@@ -165,14 +165,14 @@ fn save(target: &Target, data: &[u8]) -> PathBuf {
     written.map_or_else(|error| PathBuf::from(format!("nothing ({error})")), |()| path)
 }
 
-/// Maximum memory of this process so far, MiB; `None` if the system does not say.
+/// Maximum memory of this process so far, MiB; `None` if the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string(Path::new("/proc/self/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? / 1024)
 }
 
-/// The table of a run.
+/// Table of the results of a run.
 pub fn table(outcomes: &[(&str, Outcome)]) -> String {
     let mut text = String::new();
     for (name, outcome) in outcomes {
@@ -198,7 +198,7 @@ mod tests {
         data.len() > 1
     }
 
-    /// A panic is one fault however often it comes, names its place, and its input can be had again.
+    /// Fault of a panic: one fault for any number of repetitions, with its place and a stored input.
     #[test]
     fn a_panic_is_named_with_its_input() {
         let target = Target { run: breaks_on_an_empty_file, ..TARGETS[0] };
@@ -210,7 +210,7 @@ mod tests {
         assert_eq!(std::fs::read(saved).expect("it is there"), b"");
     }
 
-    /// The same damage in every run.
+    /// Damage is identical in every run.
     #[test]
     fn damage_is_the_same_in_every_run() {
         let target = &TARGETS[0];

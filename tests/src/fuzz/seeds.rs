@@ -1,4 +1,4 @@
-//! Files to begin with that are made: packed records, and those of a small study that is run once.
+//! Initial files that are generated: packed records, and files of a small study that is run once.
 
 use std::sync::LazyLock;
 
@@ -12,12 +12,12 @@ use campaign::scenario::Scenario;
 use campaign::store::StoredStudy;
 use tempfile::TempDir;
 
-/// The files of the study, and what they say.
+/// Files of the study, with its design and its manifest.
 pub(super) struct Seed {
     folder: TempDir,
-    /// Its design.
+    /// Design of the study.
     pub design: Design,
-    /// Its manifest.
+    /// Manifest of the study.
     pub manifest: Manifest,
 }
 
@@ -35,7 +35,7 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
     Seed { design, manifest, folder }
 });
 
-/// The study.
+/// Small study, run once.
 pub(super) fn study() -> &'static Seed {
     &STUDY
 }
@@ -44,7 +44,7 @@ fn stored(name: &str) -> Vec<Vec<u8>> {
     vec![super::read(&study().folder.path().join(name))]
 }
 
-/// The first block of rows.
+/// First block of rows.
 pub(super) fn rows() -> Vec<Vec<u8>> {
     stored(&format!("{}/{}.parquet", files::ROWS, Block { cell: 0, number: 0 }))
 }
@@ -57,7 +57,7 @@ pub(super) fn manifest() -> Vec<Vec<u8>> {
     stored(files::MANIFEST)
 }
 
-/// A packed table and a packed log of sentences.
+/// Packed table and packed log of sentences.
 pub(super) fn packed() -> Vec<Vec<u8>> {
     let plain: [&[u8]; 2] =
         [include_bytes!("../../fuzz/corpus/record/plain.csv"), include_bytes!("../../fuzz/corpus/nmea/receiver.nmea")];

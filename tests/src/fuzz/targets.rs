@@ -1,4 +1,5 @@
-//! One function a format: bytes in, promises asserted. Each says whether the file was accepted.
+//! Targets, one function per format: checks of the results for given bytes. Each returns `true` if the file was
+//! accepted.
 
 use std::cell::OnceCell;
 use std::path::{Component, Path};
@@ -24,26 +25,26 @@ use trial::{Channel, Trial};
 
 use super::seeds;
 
-/// Maximum message, bytes: a few lines of a file and the advice.
+/// Maximum length of a message, bytes: a few lines of a file and the advice.
 const LONGEST_MESSAGE: usize = 8192;
 
-/// Rows of the longest record that is handed on to the methods; more only costs time.
+/// Maximum number of rows of a record for the methods; more rows only take more time.
 const IDENTIFIED_ROWS: usize = 300;
 
-/// Cells and trials that an accepted scenario may ask for.
+/// Maximum number of cells and of trials of an accepted scenario.
 const MOST: u64 = 1_000_000_000;
 
-/// Line between a sidecar and the table it is for.
+/// Line between a sidecar and its table.
 const TABLE: &str = "\n# table\n";
 
-/// Table for sidecars that bring none: names of the contract beside others.
+/// Table for sidecars without one: names of the contract and other names.
 const PLAIN_TABLE: &str = include_str!("../../fuzz/corpus/record/plain.csv");
 
 static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
     registry::defaults().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
 });
 
-/// A measured record, read by its header alone and handed to every method.
+/// Target of a measured record, read by its header alone and passed to every method.
 pub fn record(data: &[u8]) -> bool {
     let name = Path::new("case.csv");
     match reader::read_bytes(name, data, Some(data.len() as u64), None) {
@@ -60,7 +61,7 @@ fn read(name: &str, data: &[u8]) -> Result<ReadRecord, reader::ReadError> {
     reader::read_bytes(Path::new(name), data, None, None)
 }
 
-/// A log of sentences.
+/// Target of a log of sentences.
 pub fn nmea(data: &[u8]) -> bool {
     match read("case.nmea", data) {
         Ok(reading) => {
@@ -71,7 +72,7 @@ pub fn nmea(data: &[u8]) -> bool {
     }
 }
 
-/// A packed record; what is not packed is packed first, and has to be read as if it were not.
+/// Target of a packed record; other bytes are packed first, and must give the reading of the unpacked bytes.
 pub fn gzip(data: &[u8]) -> bool {
     if data.starts_with(&[0x1f, 0x8b]) {
         return nmea(data);
@@ -94,7 +95,7 @@ pub fn gzip(data: &[u8]) -> bool {
     }
 }
 
-/// Stamps, one a line, on one clock.
+/// Target of time stamps, one a line, on one clock.
 pub fn stamp(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
     let mut stamps = Stamps::default();
@@ -114,7 +115,7 @@ pub fn stamp(data: &[u8]) -> bool {
     read
 }
 
-/// The manoeuvres of a record.
+/// Target of the search for manoeuvres in a record.
 pub fn find(data: &[u8]) -> bool {
     let Ok(ReadRecord { trial, .. }) = read("case.csv", data) else { return false };
     let found = trial::find::manoeuvres(&trial::find::Signals {
@@ -136,7 +137,7 @@ pub fn find(data: &[u8]) -> bool {
     !found.is_empty()
 }
 
-/// A sidecar, and after the line `# table` the table it is for; without one a plain table.
+/// Target of a sidecar, followed by the line `# table` and its table; without one, a plain table is used.
 pub fn sidecar(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
     let (text, table) = text.split_once(TABLE).unwrap_or((&text, PLAIN_TABLE));
@@ -153,10 +154,10 @@ pub fn sidecar(data: &[u8]) -> bool {
     }
 }
 
-/// A scenario, resolved in every cell; no trial is run.
+/// Target of a scenario, resolved in every cell; no trial is run.
 pub fn scenario(data: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(data) else { return false };
-    // Records that a scenario replays are looked for beside it, where there is nothing.
+    // Records that a scenario replays are searched for in its folder, which does not exist.
     let path = Path::new("no-such-folder/case.toml");
     match Scenario::parse(path, "case", text.to_owned(), None) {
         Ok(scenario) => {
@@ -167,12 +168,12 @@ pub fn scenario(data: &[u8]) -> bool {
     }
 }
 
-/// The first block of the small study, summarised.
+/// Target of the first block of rows of the small study, summarised.
 pub fn rows(data: &[u8]) -> bool {
     summarised(data, &seeds::study().design)
 }
 
-/// The stored design, with the rows of the small study.
+/// Target of the stored design, with the rows of the small study.
 pub fn cells(data: &[u8]) -> bool {
     static ROWS: LazyLock<Vec<u8>> = LazyLock::new(|| seeds::rows().swap_remove(0));
     match Design::of_text(data) {
@@ -206,7 +207,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
     }
 }
 
-/// A manifest, compared with another and resolved as the scenario it holds.
+/// Target of a manifest, compared with another manifest and resolved as the scenario that it contains.
 pub fn manifest(data: &[u8]) -> bool {
     scratch(|folder| {
         let path = folder.join(files::MANIFEST);
@@ -233,7 +234,7 @@ fn is_a_failure(failure: &Failure) -> bool {
     is_one_message(&failure.message)
 }
 
-/// One message for a person: not empty, not endless, and, as it is written, nothing in it that a terminal would obey.
+/// Assertion of a readable message: not empty, not too long, and without control characters for a terminal.
 fn is_one_message(message: &str) -> bool {
     assert!(!message.trim().is_empty(), "an empty message");
     assert!(message.len() <= LONGEST_MESSAGE, "a message of {} bytes", message.len());
@@ -256,7 +257,7 @@ fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
     assert!(trial.heading().iter().filter(|heading| heading.is_finite()).count() >= Trial::MIN_ROWS);
 }
 
-/// An effect as a line of text; one that is read is worked out at all sorts of instants.
+/// Target of an effect as a line of text; a valid formula is evaluated at various instants.
 pub fn formula(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
     match effects::formula(&text) {
@@ -271,7 +272,7 @@ pub fn formula(data: &[u8]) -> bool {
     }
 }
 
-/// In plain numbers and in numbers with derivatives it has the same value, finite or not.
+/// Assertion that a formula has equal values in plain and in dual numbers, finite or not.
 fn worked_out(formula: &Formula) {
     for size in [0.0, -0.3, 1e-12, 7.0, 1e300, f64::NAN] {
         let some = Some(size);
@@ -292,7 +293,7 @@ fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, mea
     R::action(formula).yaw_acceleration(&values, &[], &now)
 }
 
-/// Every method gives numbers or a reason.
+/// Assertion that every method gives an estimate or a reason.
 fn identified(trial: &Trial) {
     if trial.len() > IDENTIFIED_ROWS {
         return;
@@ -300,7 +301,7 @@ fn identified(trial: &Trial) {
     for method in METHODS.iter() {
         match method.identify(std::slice::from_ref(trial)) {
             Ok(estimate) => {
-                // Neutral stability is an ordinary answer, with both at infinity.
+                // Neutral stability is a regular estimate, with K and T infinite.
                 assert!(!estimate.K().value.is_nan() && !estimate.T().value.is_nan(), "no number from {}", method.id());
             }
             Err(error) => {
@@ -327,7 +328,7 @@ fn is_a_scenario(scenario: &Scenario) {
     }
 }
 
-/// Runs `work` in a folder of this thread, which is made once.
+/// Result of `work` in a folder of this thread, which is created once.
 fn scratch<T>(work: impl FnOnce(&Path) -> T) -> T {
     thread_local! {
         static FOLDER: OnceCell<TempDir> = const { OnceCell::new() };

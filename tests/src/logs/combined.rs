@@ -1,22 +1,22 @@
-//! Two troubles in one log. What comes of it is right, or refused, or told with its cause.
+//! Logs with two faults. The reading is correct, or rejected, or has a warning with the cause.
 
 use super::tables::table;
 use super::voyage::{TENTHS, every, seconds, voyage};
 
-/// The rows of a log: time, s, heading and rudder, deg.
+/// Rows of a log: time, s, heading and rudder, deg.
 pub type Rows = Vec<[f64; 3]>;
 
-/// A trouble of a log.
+/// Fault of a log.
 pub struct Trouble {
-    /// Its name.
+    /// Name of the fault.
     pub name: &'static str,
-    /// Puts it into the rows.
+    /// Function that adds the fault to the rows.
     pub put: fn(&mut Rows),
-    /// Words of which a message has one, where K or T are wrong by it.
+    /// Words of which a message contains one if the fault makes K or T wrong.
     pub told: &'static [&'static str],
 }
 
-/// The sound rows, one a second.
+/// Rows without faults, one a second.
 pub fn rows() -> Rows {
     every(TENTHS).map(|tenth| [seconds(tenth), voyage().heading(tenth), voyage().rudder(tenth)]).collect()
 }
@@ -29,14 +29,14 @@ pub fn written(rows: &Rows) -> String {
     })
 }
 
-/// A column as it was so many rows before.
+/// Replaces a column by its values `by` rows earlier.
 fn delayed(rows: &mut Rows, column: usize, by: usize) {
     for row in (0..rows.len()).rev() {
         rows[row][column] = rows[row.saturating_sub(by)][column];
     }
 }
 
-/// Every trouble, those of the instruments before those of the logger.
+/// All faults, faults of the instruments before faults of the logger.
 pub const TROUBLES: [Trouble; 16] = [
     Trouble {
         name: "compass damped over 4 s",

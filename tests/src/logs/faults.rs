@@ -1,4 +1,5 @@
-//! Logs whose channels are not what an instrument read, or in no unit of their name: mended, told or refused.
+//! Logs whose channels are not readings of an instrument, or in a unit other than that of their name: corrected, warned
+//! about or rejected.
 
 use super::File;
 use super::Outcome::{Doubted, Read, Refused};
@@ -7,7 +8,7 @@ use super::voyage::{EPOCH, LENGTH, TENTHS, every, seconds, voyage};
 
 const HEADER: &str = "t_s,heading_deg,rudder_deg";
 
-/// A table by the contract, one row a second, through changes of heading and rudder, deg, by row.
+/// Table by the contract, one row a second, with changes of heading and rudder, deg, by row.
 fn changed(header: &str, change: impl Fn(usize, [f64; 2]) -> [String; 2]) -> String {
     table(header, every(TENTHS), |tenth| {
         let [heading, rudder] = change(tenth / TENTHS, [voyage().heading(tenth), voyage().rudder(tenth)]);
@@ -15,17 +16,17 @@ fn changed(header: &str, change: impl Fn(usize, [f64; 2]) -> [String; 2]) -> Str
     })
 }
 
-/// The same with another rudder.
+/// Table by the contract with changes of the rudder only.
 fn with_rudder(change: impl Fn(usize, f64) -> String) -> String {
     changed(HEADER, |row, [heading, rudder]| [format!("{heading:.2}"), change(row, rudder)])
 }
 
-/// Noise of a row, of ±0.25.
+/// Noise of a row, within ±0.25.
 fn noise(row: usize) -> f64 {
     0.5 * (((row * row) as f64 * 0.618_034).fract() - 0.5)
 }
 
-/// Every log of such a channel.
+/// All logs with a faulty channel.
 pub(super) fn all() -> Vec<File> {
     let mut files = of_readings();
     files.extend(of_headings());

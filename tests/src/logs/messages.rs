@@ -1,4 +1,4 @@
-//! Sound logs of messages: NMEA 2000 as canboat writes it, and a long table as Signal K exports it.
+//! Logs of messages without faults: NMEA 2000 in the format of canboat, and a long table in the format of Signal K.
 
 use super::File;
 use super::Outcome::Read;
@@ -9,12 +9,12 @@ fn stamp(tenth: usize) -> String {
     format!("2026-11-20T{}00Z", time_of_day(tenth, true))
 }
 
-/// A JSON line of canboat.
+/// JSON line of canboat.
 fn json(tenth: usize, [pgn, source]: [usize; 2], fields: &str) -> String {
     format!(r#"{{"timestamp":"{}","prio":2,"src":{source},"dst":255,"pgn":{pgn},"fields":{{{fields}}}}}"#, stamp(tenth))
 }
 
-/// Every sound log of messages.
+/// All logs of messages without faults.
 pub(super) fn all() -> Vec<File> {
     let (heading, rudder) = (|tenth: usize| voyage().heading(tenth), |tenth: usize| voyage().rudder(tenth));
     let lines = every(TENTHS).map(|tenth| {

@@ -1,37 +1,37 @@
-//! Sound logs as sentences of NMEA 0183.
+//! Logs without faults as sentences of NMEA 0183.
 
 use super::File;
 use super::Outcome::Read;
 use super::voyage::{TENTHS, every, time_of_day, voyage};
 
-/// A sentence with its checksum.
+/// Sentence with its checksum.
 pub fn sentence(body: &str) -> String {
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
     format!("${body}*{sum:02X}")
 }
 
-/// Heading of a gyro.
+/// Heading sentence of a gyro.
 pub(super) fn hdt(tenth: usize) -> String {
     sentence(&format!("HEHDT,{:.2},T", voyage().heading(tenth)))
 }
 
-/// One rudder.
+/// Sentence of a single rudder.
 pub(super) fn rsa(tenth: usize) -> String {
     sentence(&format!("IIRSA,{:.1},A,,V", voyage().rudder(tenth)))
 }
 
-/// The clock of a receiver, with a position that stands still.
+/// Clock sentence of a receiver, with a constant position.
 pub(super) fn rmc(tenth: usize) -> String {
     let clock = time_of_day(tenth, false).replace(':', "");
     sentence(&format!("GPRMC,{clock},A,5400.0,N,01000.0,E,,,201126,,"))
 }
 
-/// A log with a clock at every epoch, which lasts so many tenths.
+/// Log with a clock sentence every `epoch` tenths of a second.
 pub(super) fn clocked(epoch: usize, more: impl Fn(usize) -> String) -> String {
     every(epoch).map(|tenth| format!("{}\r\n{}\r\n", rmc(tenth), more(tenth))).collect()
 }
 
-/// Every sound log of sentences.
+/// All logs of sentences without faults.
 pub(super) fn all() -> Vec<File> {
     let two = |tenth: usize| {
         let (starboard, port) = (voyage().rudder(tenth) + 0.3, voyage().rudder(tenth) - 0.3);

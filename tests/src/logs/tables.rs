@@ -1,4 +1,4 @@
-//! Sound logs as tables: what export programs and spreadsheets write.
+//! Logs without faults as tables of export programs and spreadsheets.
 
 use std::io::Write as _;
 
@@ -9,7 +9,7 @@ use super::File;
 use super::Outcome::Read;
 use super::voyage::{EPOCH, TENTHS, every, seconds, time_of_day, time_of_half_day, voyage};
 
-/// A header, and a line of each row.
+/// Table of a header and one line per row.
 pub(super) fn table(header: &str, tenths: impl Iterator<Item = usize>, line: impl Fn(usize) -> String) -> String {
     let mut text = format!("{header}\n");
     for tenth in tenths {
@@ -26,7 +26,7 @@ pub(super) fn angles(tenth: usize) -> [String; 2] {
     [heading, format!("{:.2}", voyage().rudder(tenth))]
 }
 
-/// A table by the contract, one row a second.
+/// Table by the contract, one row a second.
 pub(super) fn clean() -> String {
     table("t_s,heading_deg,rudder_deg", every(TENTHS), |tenth| {
         let [heading, rudder] = angles(tenth);
@@ -34,7 +34,7 @@ pub(super) fn clean() -> String {
     })
 }
 
-/// Packed as `gzip` does.
+/// Bytes packed as by `gzip`.
 pub fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("memory takes all bytes")
@@ -44,7 +44,7 @@ fn with_comma(number: &str) -> String {
     number.replace('.', ",")
 }
 
-/// Every sound table.
+/// All tables without faults.
 pub(super) fn all() -> Vec<File> {
     let mut files = of_contract();
     files.extend(of_programs());
@@ -160,7 +160,7 @@ fn of_programs() -> Vec<File> {
     ]
 }
 
-/// Heading and rudder that were read at different instants.
+/// Tables with heading and rudder read at different instants.
 fn of_two_rates() -> Vec<File> {
     const LATE: usize = 5;
     let rudder_rows = || every(TENTHS).map(|tenth| tenth + LATE).filter(|tenth| *tenth <= super::voyage::LENGTH);

@@ -1,4 +1,4 @@
-//! Logs with a trouble: read with a word about it, or refused with what to do.
+//! Logs with a fault: read with a warning, or rejected with advice.
 
 use super::File;
 use super::Outcome::{Read, Refused};
@@ -8,7 +8,7 @@ use super::voyage::{TENTHS, every, seconds, time_of_day, voyage};
 
 const HEADER: &str = "t_s,heading_deg,rudder_deg";
 
-/// The clean table with other lines; a line is given the row and the cells it would have, and may be several or none.
+/// Table without faults with changed lines: `change` receives row and cells and returns one, several or no lines.
 fn with_lines(change: impl Fn(usize, [&str; 3]) -> String) -> String {
     let clean = clean();
     let rows = clean.lines().skip(1).enumerate().map(|(row, line)| {
@@ -23,7 +23,7 @@ fn joined(cells: [&str; 3]) -> String {
     cells.join(",")
 }
 
-/// Every log with a trouble.
+/// All logs with a fault.
 pub(super) fn all() -> Vec<File> {
     let mut files = of_instruments();
     files.extend(of_clocks());
@@ -83,7 +83,7 @@ fn of_instruments() -> Vec<File> {
 }
 
 fn of_clocks() -> Vec<File> {
-    // Where the rudder rests: nobody knows what it did in a gap.
+    // A row with the rudder at rest, because its motion in a gap is unknown.
     let rest = voyage().execute(1) / TENTHS + 10;
     let other = voyage().execute(3) / TENTHS + 10;
     let midnight = |tenth: usize| {
@@ -201,7 +201,7 @@ fn of_wires() -> Vec<File> {
         .lines()
         .enumerate()
         .map(|(line, text)| match line % 40 {
-            // The tens of the heading, as a bit that was lost on the wire would change them.
+            // Changed tens of the heading, as after a bit error in transmission.
             16 | 28 => format!("{}\r\n", text.replacen(['1', '3', '5', '7', '9'], "8", 1)),
             _ => format!("{text}\r\n"),
         })
@@ -210,7 +210,7 @@ fn of_wires() -> Vec<File> {
         let course = sentence(&format!("GPVTG,{:.1},T,,M,12.0,N,22.2,K,A", voyage().heading(tenth)));
         format!("{course}\r\n{}", rsa(tenth))
     });
-    // Every frame holds a heading of 57.3 degrees: eight bytes of PGN 127250 in base64.
+    // Every frame contains a heading of 57.3 degrees: eight bytes of PGN 127250 in base64.
     let frame = |row: usize| format!("{:.1},0x9f1120a,1,0,0,8,/xAn/3//f/0=\n", 0.1 * row as f64);
     let frames = (0..20).map(frame).collect::<String>();
     vec![

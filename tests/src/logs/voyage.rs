@@ -1,5 +1,5 @@
-//! The zig-zag that every log tells of, on a grid of a tenth of a second, and the stamps of its instants. What of it a
-//! log holds, and how it writes that, is decided there.
+//! Zig-zag of all logs, on a grid of a tenth of a second, and the stamps of its instants. Every log has its own
+//! selection and format.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ pub const K: f64 = 0.06;
 /// T of the ship, s.
 pub const T: f64 = 25.0;
 
-/// Rows in a second.
+/// Number of rows per second.
 pub const TENTHS: usize = 10;
 
 /// Length of the log, tenths of a second.
@@ -21,25 +21,25 @@ pub const LENGTH: usize = 400 * TENTHS;
 /// Angles of rudder and heading at an execute, deg.
 const ANGLE: f64 = 10.0;
 
-/// Rate of the rudder, deg/s: it starts and stops at full seconds, and straight lines between these are what it did.
+/// Rate of the rudder, deg/s: it starts and stops at full seconds, so that straight lines between these are exact.
 const RUDDER_RATE: f64 = 2.5;
 
-/// The first execute, s.
+/// Time of the first execute, s.
 const FIRST: usize = 30;
 
 /// Course of the approach, deg: the heading crosses north.
 const COURSE: f64 = 355.0;
 
-/// Standard deviation of the compass, deg.
+/// Standard deviation of the compass noise, deg.
 const NOISE: f64 = 0.1;
 
-/// Second of the day at which the log begins: 14:03:05.
+/// Beginning of the log, seconds of the day: 14:03:05.
 pub const BEGIN: f64 = 50_585.0;
 
-/// Seconds from 1970-01-01 to that moment on 2026-11-20, UTC (day 20777).
+/// Beginning of the log on 2026-11-20, UTC (day 20777), in seconds from 1970-01-01.
 pub const EPOCH: u64 = 20_777 * 86_400 + 50_585;
 
-/// What the instruments read, one row a tenth of a second.
+/// Readings of the instruments, one row every tenth of a second.
 pub struct Voyage {
     /// Heading of the compass, deg, continuous.
     heading: Vec<f64>,
@@ -51,13 +51,13 @@ pub struct Voyage {
 
 static VOYAGE: LazyLock<Voyage> = LazyLock::new(Voyage::steered);
 
-/// The voyage.
+/// Voyage of all logs, computed once.
 pub fn voyage() -> &'static Voyage {
     &VOYAGE
 }
 
 impl Voyage {
-    /// Steers the zig-zag, starboard first; the helmsman reads the compass once a second.
+    /// Simulated zig-zag, starboard first; the helmsman reads the compass once a second.
     fn steered() -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1957);
         let (mut psi, mut r, mut delta, mut order) = (0.0, 0.0, 0.0, 0.0);
@@ -75,7 +75,7 @@ impl Voyage {
                 order = -order;
             }
             let next = delta + f64::clamp(order - delta, -RUDDER_RATE * step, RUDDER_RATE * step);
-            // T r' + r = K δ, solved for a rudder that runs straight over the step.
+            // T r' + r = K δ, solved for a rudder that is linear in time within the step.
             let slope = (next - delta) / step;
             let steady = K * (delta - slope * T);
             let (free, decay) = (r - steady, (-step / T).exp());
@@ -86,7 +86,7 @@ impl Voyage {
         own
     }
 
-    /// Heading, deg, of [0, 360).
+    /// Heading, deg, in [0, 360).
     pub fn heading(&self, tenth: usize) -> f64 {
         self.heading[tenth].rem_euclid(360.0)
     }
@@ -101,10 +101,10 @@ impl Voyage {
         self.rate[tenth]
     }
 
-    /// The tenth of a second at which the rudder begins to move for the n-th time, from 0.
+    /// Time of execute `n` (from 0), tenths of a second: the rudder begins to move.
     ///
     /// # Panics
-    /// When there are not so many executes: a mistake of the test.
+    /// If there are fewer executes: a programming error of the test.
     pub fn execute(&self, n: usize) -> usize {
         let moves = |tenth: &usize| self.rudder[*tenth] == self.rudder[tenth - 1];
         let begins = (1..LENGTH).filter(|tenth| moves(tenth) && self.rudder[*tenth] != self.rudder[tenth + 1]);
@@ -112,12 +112,12 @@ impl Voyage {
     }
 }
 
-/// Tenths of a second of rows that are so many tenths apart.
+/// Times of rows that are `step` tenths apart, tenths of a second.
 pub fn every(step: usize) -> impl Iterator<Item = usize> + Clone {
     (0..=LENGTH).step_by(step)
 }
 
-/// Seconds of a tenth.
+/// Time in seconds, from tenths of a second.
 pub fn seconds(tenth: usize) -> f64 {
     tenth as f64 / TENTHS as f64
 }
@@ -128,14 +128,14 @@ fn clock(tenth: usize) -> [usize; 4] {
     [second / 3600, second / 60 % 60, second % 60, tenth % TENTHS]
 }
 
-/// `14:03:05`, with one decimal where it is wanted.
+/// Time of day as `14:03:05`, with one decimal if requested.
 pub fn time_of_day(tenth: usize, decimal: bool) -> String {
     let [hour, minute, second, rest] = clock(tenth);
     let fraction = if decimal { format!(".{rest}") } else { String::new() };
     format!("{hour:02}:{minute:02}:{second:02}{fraction}")
 }
 
-/// `2:03:05 PM`.
+/// Time of day as `2:03:05 PM`.
 pub fn time_of_half_day(tenth: usize, decimal: bool) -> String {
     let [hour, minute, second, rest] = clock(tenth);
     let fraction = if decimal { format!(".{rest}") } else { String::new() };

@@ -10,7 +10,7 @@ use crate::records::Case;
 const TABLE: [(f64, f64, f64); 5] =
     [(2., 0.1002, 16.33), (3., 0.1004, 16.36), (4., 0.1007, 16.41), (6., 0.1015, 16.54), (8., 0.1026, 16.72)];
 
-/// The checks: K and T for five half widths.
+/// Checks of K and T for five half widths.
 pub fn section() -> Section {
     let trial = Case::default().trial(0);
     let mut checks = Vec::new();

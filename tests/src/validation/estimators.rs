@@ -1,4 +1,4 @@
-//! The published Fourier method, its mended steps and the methods it is held against, on the published window.
+//! Published Fourier method, its corrected steps and the methods compared with it, on the published window.
 
 use identify::fourier::Fundamental;
 use identify::fourier::regression::RegressionForm;
@@ -14,13 +14,13 @@ use rayon::prelude::*;
 use super::{Check, Section, Tolerance};
 use crate::records::{Begin, Case};
 
-/// Trials of a cell with noise.
+/// Number of trials of a cell with noise.
 const TRIALS: u64 = 200;
 
 /// Rudder and heading, deg; noise, deg; K and T, %. Without noise the error of the method, with noise its rms error.
 type Line = (f64, f64, f64, f64, f64);
 
-/// A method and what the independent computation found for it.
+/// Method with the errors of the independent computation.
 struct Published {
     name: &'static str,
     settings: IdentifierSettings,
@@ -125,7 +125,7 @@ fn published() -> Vec<Published> {
 /// Error of K and T, %, on the record without noise, else rms error over the trials that gave an estimate.
 fn errors(method: &dyn Identifier, case: &Case) -> [f64; 2] {
     let error = |replicate| {
-        // A method that draws at random draws anew for every trial, as in a study.
+        // A randomised method has another seed in every trial, as in a study.
         let own = method.with_seed(replicate);
         let method = own.as_deref().unwrap_or(method);
         let response = method.identify(&[case.trial(replicate)]).ok()?.response;
@@ -139,7 +139,7 @@ fn errors(method: &dyn Identifier, case: &Case) -> [f64; 2] {
     [0, 1].map(|i| (found.iter().map(|pair| pair[i].powi(2)).sum::<f64>() / found.len() as f64).sqrt())
 }
 
-/// The checks.
+/// Checks of the errors of K and T.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     for Published { name, settings, lines } in published() {

@@ -11,8 +11,8 @@ use simulate::{Simulation, StreamKey, Truth};
 use super::{Check, INDEPENDENT, Section, Tolerance};
 use crate::records::Case;
 
-/// One row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate
-/// at executes 2 to 4 and its largest value (deg/s).
+/// Row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate at
+/// executes 2 to 4 and its maximum (deg/s).
 type Row = (f64, f64, f64, [f64; 4], [f64; 3], f64, [f64; 3], f64);
 
 const TABLE: [Row; 9] = [
@@ -27,20 +27,20 @@ const TABLE: [Row; 9] = [
     (5., 5., 2.5, [23.10, 74.07, 127.94, 181.95], [2.36, 3.09, 3.12], 108.04, [0.371, 0.456, 0.460], 0.460),
 ];
 
-/// Times to check yaw at 2.5 deg/s, s: δ = ψ (deg) and the first three.
+/// Times to check yaw at 2.5 deg/s, s: δ = ψ (deg) and the first three times.
 const CHECK_YAW: [(f64, [f64; 3]); 2] = [(10.0, [13.74, 14.95, 15.01]), (20.0, [18.64, 19.63, 19.68])];
 
-/// The tolerance stated with the table and half of its last digit; s and deg, then deg/s.
+/// Tolerance stated with the table plus half of its last digit; s and deg, then deg/s.
 const TOLERANCE: f64 = 0.02 + 0.005;
 const RATE_TOLERANCE: f64 = 0.002;
 
-/// Step of the independent program, s: its rudder is reversed at the first step beyond the heading requested.
+/// Step of the independent program, s: its rudder is reversed at the first step beyond the requested heading.
 const STEP: f64 = 0.01;
 
-/// Length simulated, s, which is that of the independent program as its median periods show.
+/// Simulated duration, s; the median periods of the independent program show that its duration is equal.
 const LENGTH: f64 = 434.0;
 
-/// How a run is made.
+/// Method of simulation of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     /// Closed form, executes exactly on the heading.
@@ -57,7 +57,7 @@ impl Way {
         }
     }
 
-    /// What the executes of the table may be later than ours for each execute before, s.
+    /// Maximum delay, s, of the executes of the table relative to ours, for each preceding execute.
     fn lateness(self, jumps: bool) -> f64 {
         match self {
             Self::Exact => STEP * if jumps { 2.0 } else { 1.0 },
@@ -69,13 +69,13 @@ impl Way {
         if self == Self::Stepped {
             simulation.solver = Solver::RungeKutta(STEP);
             simulation.helmsman.reads_display_every = Some(STEP);
-            // A rudder without rate limit moves within a step of the independent program: half a step late.
+            // A rudder without rate limit moves within a step of the independent program: it is late by half a step.
             simulation.gear.dead_time = if jumps { 0.5 * STEP } else { 0.0 };
         }
     }
 }
 
-/// The truth of a zig-zag (angles in deg, rate in deg/s) recorded every `period` s.
+/// Truth of a zig-zag (angles in deg, rate in deg/s) recorded every `period` s.
 fn truth(way: Way, rudder_deg: f64, heading_deg: f64, rate_deg_s: f64, period_s: f64) -> Arc<Truth> {
     let case = Case { rudder_deg, heading_deg, rate_deg_s, period_s, duration_s: LENGTH, ..Case::default() };
     let mut simulation = case.simulation();
@@ -83,14 +83,14 @@ fn truth(way: Way, rudder_deg: f64, heading_deg: f64, rate_deg_s: f64, period_s:
     simulation.run(&StreamKey::default()).expect("a zig-zag of a stable ship").truth
 }
 
-/// Index of the row with the largest deviation between executes `k` and `k + 1` (from 0).
+/// Index of the row with the maximum deviation between executes `k` and `k + 1` (from 0).
 pub(super) fn peak(truth: &Truth, k: usize) -> usize {
     let span = truth.executes[k].time..truth.executes[k + 1].time;
     let rows = (0..truth.time.len()).filter(|&row| span.contains(&truth.time[row]));
     rows.max_by(|&i, &j| truth.heading[i].abs().total_cmp(&truth.heading[j].abs())).expect("rows between two executes")
 }
 
-/// The checks of section 1: nine zig-zags twice, times to check yaw, and the closed form of an overshoot.
+/// Checks of section 1: nine zig-zags twice, times to check yaw, and the closed form of an overshoot.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     for way in [Way::Exact, Way::Stepped] {
@@ -156,7 +156,7 @@ fn table_row(way: Way, row: &Row, checks: &mut Vec<Check>) {
     push("largest-rate".into(), "largest yaw rate".into(), largest, 3, swing, RATE_TOLERANCE, "deg/s");
 }
 
-/// t_peak = T ln(1 + r_e/A) and overshoot = T r_e − A T ln(1 + r_e/A) with A = K δ, for a rudder that jumps.
+/// t_peak = T ln(1 + r_e/A) and overshoot = T r_e − A T ln(1 + r_e/A) with A = K δ, for an instantaneous rudder.
 fn overshoot_in_closed_form() -> Vec<Check> {
     let truth = truth(Way::Exact, 10.0, 10.0, f64::INFINITY, 0.001);
     let execute = truth.executes[1];

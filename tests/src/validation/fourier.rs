@@ -1,4 +1,4 @@
-//! The Fourier fit of the heading and what follows from it, without noise, against an independent computation.
+//! Fourier fit of the heading and its results, without noise, against an independent computation.
 
 use identify::Identifier;
 use identify::fourier::regression::RegressionForm;
@@ -9,10 +9,10 @@ use trial::Trial;
 use super::{Check, Section, Tolerance};
 use crate::records::{Begin, Case};
 
-/// Harmonics of the paper.
+/// Number of harmonics in the paper.
 const HARMONICS: usize = 8;
 
-/// A fit: rudder, heading (deg), begin, global or local search, w (rad/s), R².
+/// Fit: rudder, heading (deg), beginning, global or local search, w (rad/s), R².
 type Fit = (f64, f64, Begin, bool, f64, f64);
 
 const FITS: [Fit; 7] = [
@@ -25,7 +25,7 @@ const FITS: [Fit; 7] = [
     (20., 20., Begin::Mid, true, 0.01807, 0.99996),
 ];
 
-/// A regression on all samples: rudder, heading (deg), rudder in the equations, K (1/s), T (s).
+/// Regression on all samples: rudder, heading (deg), rudder in the equations, K (1/s), T (s).
 const REGRESSIONS: [(f64, f64, RudderTreatment, f64, f64); 4] = [
     (10., 20., RudderTreatment::Recorded, 0.0930, 15.15),
     (10., 20., RudderTreatment::Projected, 0.1001, 16.32),
@@ -33,17 +33,17 @@ const REGRESSIONS: [(f64, f64, RudderTreatment, f64, f64); 4] = [
     (10., 10., RudderTreatment::Projected, 0.1001, 16.36),
 ];
 
-/// What the fundamental of an independent search may differ by, rad/s: stated with the anchors.
+/// Tolerance of the fundamental of an independent search, rad/s, stated with the anchors.
 const FUNDAMENTAL_TOLERANCE: f64 = 3e-4;
 
-/// What R² may differ by: stated with the anchors.
+/// Tolerance of R², stated with the anchors.
 const R_SQUARED_TOLERANCE: f64 = 2e-5;
 
 fn record(rudder_deg: f64, heading_deg: f64, begin: Begin) -> Trial {
     Case { rudder_deg, heading_deg, begin, ..Case::default() }.trial(0)
 }
 
-/// The checks: fundamentals and R² of the free-w fit, and K and T by regression.
+/// Checks of fundamentals and R² of the free-w fit, and K and T by regression.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     for (rudder, heading, begin, global, w, r_squared) in FITS {

@@ -53,15 +53,15 @@ const TANKER_TURNS: [(f64, f64); 8] = [
 ];
 const S175_TURNS: [(f64, f64); 4] = [(5., 0.315), (10., 0.428), (20., 0.538), (-35., -0.595)];
 
-/// Time after which a turn is steady to far below the last digit, s.
+/// Time, s, after which a turn is steady to well within the last digit.
 const STEADY: f64 = 3000.0;
 
-/// Half of the last published digit, with a hundredth of it for numbers on the edge.
+/// Half of the last published digit, plus a hundredth of it for numbers at the limit.
 fn half_digit(decimals: i32) -> Tolerance {
     Tolerance::Absolute(0.51 * 10f64.powi(-decimals))
 }
 
-/// The checks: linear indices, revolutions, steady turns.
+/// Checks of linear indices, revolutions and steady turns.
 pub fn section() -> Section {
     let mut checks = linear_indices();
     checks.extend(straight_approach());
@@ -158,7 +158,7 @@ fn steady_rate(ship: &Ship, rudder_deg: f64) -> f64 {
     to_deg(*truth.yaw_rate.last().expect("a record has rows"))
 }
 
-/// The registered ship with this identifier.
+/// Ship of the registry with this identifier.
 pub(super) fn registered(id: &str) -> Ship {
     ships::find(id).expect("a ship of the registry")
 }

@@ -1,4 +1,4 @@
-//! What a record can tell at best (Cramér and Rao), and how near the efficient methods come to it.
+//! Cramér–Rao bound of a record, and the efficiency of methods relative to it.
 
 use identify::estimate::Covariance;
 use identify::{Identifier, IdentifierSettings, integral_least_squares, maximum_likelihood, output_error};
@@ -12,7 +12,8 @@ use trial::noise_model::NoiseModel;
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::{Begin, Case};
 
-/// Rudder and heading (deg), sd of K and T (%) and of δ_r (deg), correlation of K and T, for 0.1 deg of noise.
+/// Rudder and heading (deg), bound on the sd of K and T (%) and of δ_r (deg), correlation of K and T, for 0.1 deg of
+/// noise.
 const TABLE: [(f64, f64, f64, f64, f64, f64); 6] = [
     (5., 5., 0.156, 0.241, 0.0010, 0.69),
     (10., 5., 0.113, 0.156, 0.0010, 0.75),
@@ -22,7 +23,7 @@ const TABLE: [(f64, f64, f64, f64, f64, f64); 6] = [
     (20., 20., 0.029, 0.048, 0.0010, 0.61),
 ];
 
-/// The bound for one record, as sd of K and T (%), of δ_r (deg) and the correlation of K and T.
+/// Cramér–Rao bound for one record: sd of K and T (%), of δ_r (deg) and the correlation of K and T.
 struct Bound {
     k_percent: f64,
     t_percent: f64,
@@ -56,7 +57,7 @@ fn correlation(covariance: &Covariance, ship: &FirstOrder) -> f64 {
     product(of_k, of_t) / (product(of_k, of_k) * product(of_t, of_t)).sqrt()
 }
 
-/// The checks of the bound.
+/// Checks of the bound.
 pub fn bound() -> Section {
     let mut checks = Vec::new();
     let mut push = |name: &str, found: &Bound, published: [f64; 4], decimals: [usize; 4], slack: f64| {
@@ -101,15 +102,15 @@ pub fn bound() -> Section {
     }
 }
 
-/// Trials of one cell: with 5000 the sd of a sample is itself uncertain by 1.0 %, so that 5 % is five of its own
-/// standard deviations; with 500 it would be 3.2 %.
+/// Number of trials of one cell: with 5000 the standard error of a sample sd is 1.0 %, so that 5 % is five standard
+/// errors; with 500 it would be 3.2 %.
 const TRIALS: u64 = 5000;
 
 /// Sample statistics of one method in one cell.
 struct Sample {
-    /// sd of K and T, %.
+    /// Standard deviation of K and T, %.
     sd_percent: [f64; 2],
-    /// Share of the quoted 95 % intervals of K and T that hold the truth, %.
+    /// Share of the stated 95 % intervals of K and T that contain the truth, %.
     coverage_percent: [f64; 2],
 }
 
@@ -135,7 +136,7 @@ fn sample(method: &dyn Identifier, case: &Case) -> Sample {
     Sample { sd_percent: [k.0, t.0], coverage_percent: [k.1, t.1] }
 }
 
-/// The checks of efficiency and coverage.
+/// Checks of efficiency and coverage.
 pub fn efficiency() -> Section {
     let methods = [
         (IdentifierSettings::OutputError(output_error::Settings::default()), 0.05),

@@ -1,4 +1,4 @@
-//! The likelihood under process noise, and what the method that maximises it reaches.
+//! Likelihood under process noise, and the accuracy of the method that maximises it.
 
 use identify::likelihood::log_likelihood;
 use identify::{Identifier, maximum_likelihood, output_error};
@@ -13,7 +13,7 @@ use trial::{Channel, Columns, Origin, Trial};
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::Case;
 
-/// The record of the independent values: uneven rows, a clipped sine of the rudder, a sine of the heading.
+/// Record of the independent values: uneven rows, a clipped sine of the rudder, a sine of the heading.
 fn uneven() -> Trial {
     let mut time = vec![0.0];
     for row in 1..60 {
@@ -28,10 +28,11 @@ fn uneven() -> Trial {
     Trial::new("uneven", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 
-/// Trials of one cell.
+/// Number of trials of one cell.
 const TRIALS: u64 = 400;
 
-/// Rms errors of K and T, %, of two methods, the bound, and the share of intervals of the first that hold, %.
+/// Rms errors of K and T, %, of two methods, the bound, and the share of intervals of the first method that contain the
+/// truth, %.
 struct Sample {
     own: [f64; 2],
     other: [f64; 2],
@@ -66,7 +67,7 @@ fn sample(simulation: &Simulation, truth: &FirstOrder, noise: &NoiseModel) -> Sa
     Sample { own: rms(0), other: rms(1), bound: rms(2), coverage: [0, 1].map(|symbol| 100.0 * mean(symbol, 3)) }
 }
 
-/// The checks.
+/// Checks of the likelihood and of the errors.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     let trial = uneven();

@@ -1,8 +1,8 @@
-//! Validation as data: every published or independently computed number, ours beside it, and how far they may differ.
+//! Validation as data: every published or independently computed number, with our number and a tolerance.
 //!
 //! A [`Check`] is a value; [`sections`] computes all of them by real simulation and identification, [`pages`] writes
-//! VALIDATION.md and docs/validation.csv from them, and a test asserts that every one holds. Sources are named
-//! by author and year; "independent computation" is a program in Python (numpy and scipy) written for the project's
+//! VALIDATION.md and docs/validation.csv from them, and a test asserts that every check holds. Sources are named by
+//! author and year; "independent computation" is a program in Python (numpy and scipy) written for the project's
 //! technical reference, which shares no code with this workspace.
 
 pub mod characteristic_points;
@@ -18,49 +18,49 @@ pub mod residuals;
 pub mod table_1;
 pub mod zig_zags_of_hulls;
 
-/// How far our number may lie from the published one.
+/// Tolerance between our number and the published number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tolerance {
-    /// In the unit of the number.
+    /// Absolute, in the unit of the number.
     Absolute(f64),
-    /// As a share of the published number.
+    /// Relative to the published number.
     Relative(f64),
-    /// The published number is a lower limit.
+    /// Lower limit: the published number is a minimum.
     AtLeast,
 }
 
-/// One published number and ours.
+/// Check of our number against a published number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
     /// Identifier, unique among all checks.
     pub id: String,
-    /// What is compared, in words.
+    /// Compared quantity, in words.
     pub what: String,
-    /// Who published the number.
+    /// Source of the published number.
     pub source: &'static str,
-    /// The number as published.
+    /// Number as published.
     pub published: f64,
-    /// Digits after the point it was published with.
+    /// Number of decimals of the published number.
     pub decimals: usize,
     /// Our number.
     pub ours: f64,
-    /// How far they may differ.
+    /// Tolerance between both numbers.
     pub tolerance: Tolerance,
-    /// Unit of both.
+    /// Unit of both numbers.
     pub unit: &'static str,
 }
 
 /// Source of numbers that were computed for this project by other means.
 pub const INDEPENDENT: &str = "independent computation";
 
-/// Source of numbers that no unbiased method can go below.
+/// Source of numbers that are lower bounds for unbiased methods.
 pub const BOUND: &str = "Cramér-Rao bound";
 
-/// Source of numbers that hold by what they mean.
+/// Source of numbers that follow from a definition.
 pub const DEFINITION: &str = "definition";
 
 impl Check {
-    /// A number that was computed independently, with its decimals, and ours.
+    /// Check against an independently computed number, with its decimals.
     pub fn new(
         id: impl Into<String>,
         what: impl Into<String>,
@@ -72,17 +72,17 @@ impl Check {
         Self { id: id.into(), what: what.into(), source: INDEPENDENT, published, decimals, ours, tolerance, unit }
     }
 
-    /// The same, published by somebody.
+    /// Check against a number from a published source.
     pub fn from(self, source: &'static str) -> Self {
         Self { source, ..self }
     }
 
-    /// Ours less the published number.
+    /// Our number minus the published number.
     pub fn difference(&self) -> f64 {
         self.ours - self.published
     }
 
-    /// `true` if our number agrees; one that is not finite never does.
+    /// `true` if our number agrees within the tolerance; `false` if it is not finite.
     pub fn holds(&self) -> bool {
         match self.tolerance {
             Tolerance::Absolute(most) => self.difference().abs() <= most,
@@ -107,13 +107,13 @@ impl Check {
 pub struct Section {
     /// Heading.
     pub title: &'static str,
-    /// How the numbers were made, and where tolerances come from.
+    /// Method of computation, and origin of the tolerances.
     pub method: &'static str,
-    /// The checks.
+    /// Checks of the section.
     pub checks: Vec<Check>,
 }
 
-/// Every section, computed now.
+/// All sections, computed when called.
 pub fn sections() -> Vec<Section> {
     vec![
         published::limits(),

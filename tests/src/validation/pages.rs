@@ -1,4 +1,4 @@
-//! The documents made from the checks: VALIDATION.md, a row a section, and docs/validation.csv, a row a check.
+//! Documents made from the checks: VALIDATION.md, one row per section, and docs/validation.csv, one row per check.
 
 use std::path::Path;
 
@@ -20,10 +20,10 @@ from. A reference number has the digits it was given with, ours has one more.";
 const SUMMARY: &str = "\
 *Largest share* is the largest difference over its tolerance: 1 would be at the limit. *At* is the number that has it.";
 
-/// A kind of reference: heading, what the numbers are, and whether a source is of it.
+/// Kind of reference: heading, description of the numbers, and a test of a source for this kind.
 type Part = (&'static str, &'static str, fn(&str) -> bool);
 
-/// The kinds, of which every number has one.
+/// All kinds of reference; every number has one kind.
 const PARTS: [Part; 3] = [
     ("published by others", "numbers that stand in print or in published code", is_published),
     ("by theory", "numbers of a closed form, a bound or a definition", is_theory),
@@ -43,7 +43,7 @@ fn is_published(source: &str) -> bool {
     source != INDEPENDENT && !is_theory(source)
 }
 
-/// The cells of a check: reference, ours, difference, tolerance; numbers with their unit where `unit` is given.
+/// Cells of a check: reference, our number, difference, tolerance; numbers with their unit if `unit` is not empty.
 fn cells(check: &Check, unit: &str) -> [String; 4] {
     let Check { published, decimals, ours, .. } = *check;
     let with_unit = |text: String| format!("{text}{}{unit}", if unit.is_empty() { "" } else { " " });
@@ -59,7 +59,7 @@ fn cells(check: &Check, unit: &str) -> [String; 4] {
     [with_unit(written(published, decimals)), with_unit(written(ours, decimals + 1)), difference, tolerance]
 }
 
-/// A number with fixed decimals, or in powers of ten where those would be many; never "-0.00".
+/// Number with fixed decimals, or in powers of ten if these would be too many; never "-0.00".
 fn written(value: f64, decimals: usize) -> String {
     if value != 0.0 && value.abs() >= 1e5 {
         return format!("{value:.0e}");
@@ -68,28 +68,29 @@ fn written(value: f64, decimals: usize) -> String {
     if text.starts_with('-') && text[1..].chars().all(|c| c == '0' || c == '.') { text[1..].to_owned() } else { text }
 }
 
-/// A difference with its sign; none for one that is zero to its last digit.
+/// Difference with its sign; no sign if it is zero to its last digit.
 fn signed(value: f64, decimals: usize) -> String {
     let text = written(value, decimals);
     let is_zero = text.chars().all(|c| c == '0' || c == '.');
     if value > 0.0 && !is_zero { format!("+{text}") } else { text }
 }
 
-/// A tolerance in at most three digits.
+/// Tolerance in at most three digits.
 fn shortest(value: f64) -> String {
     let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A check as a row of VALIDATION.md.
+/// Row of a check in VALIDATION.md.
 fn row(check: &Check) -> String {
     let [published, ours, difference, tolerance] = cells(check, check.unit);
     let verdict = if check.holds() { "agrees" } else { "**differs**" };
     format!("| {} | {} | {published} | {ours} | {difference} | {tolerance} | {verdict} |", check.what, check.source)
 }
 
-/// Count, agreeing count, largest share of a tolerance and what has it, as cells of a table.
+/// Cells of a summary: number of checks, number that agree, maximum share of a tolerance, and the quantity with this
+/// maximum.
 fn summary(checks: &[&Check]) -> String {
     let agreeing = checks.iter().filter(|check| check.holds()).count();
     let shares = checks.iter().filter_map(|check| Some((check.share_of_tolerance()?, check.what.as_str())));
@@ -110,7 +111,7 @@ pub fn write() -> std::io::Result<()> {
     std::fs::write(root.join("docs/validation.csv"), table(&sections))
 }
 
-/// VALIDATION.md.
+/// Text of VALIDATION.md.
 pub fn markdown(sections: &[Section]) -> String {
     let mut lines = vec![format!("# Validation\n\n{PREFACE}\n\n{MADE}\n\n{SUMMARY}\n")];
     lines.push("| reference | what it is | numbers | agree | largest share | at |".to_owned());
@@ -145,7 +146,7 @@ pub fn markdown(sections: &[Section]) -> String {
     lines.join("\n") + "\n"
 }
 
-/// docs/validation.csv.
+/// Text of docs/validation.csv.
 pub fn table(sections: &[Section]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut write = |cells: &[&str]| writer.write_record(cells).expect("memory takes every row");

@@ -8,7 +8,7 @@ use trial::imo;
 
 use super::{Check, Section, Tolerance};
 
-/// A tolerance of so many standard deviations of the prior.
+/// Tolerance, in standard deviations of the prior.
 const DEVIATIONS: f64 = 2.0;
 
 /// KVLCC2 at full scale. Source: Yasukawa and Yoshimura (2015).
@@ -26,10 +26,10 @@ const KVLCC2: HullParticulars = HullParticulars {
     x_g: Some(11.2),
 };
 
-/// Decimals that the coefficients of Yasukawa and Yoshimura (2015) are printed with.
+/// Number of printed decimals of the coefficients of Yasukawa and Yoshimura (2015).
 const DECIMALS: usize = 3;
 
-/// The check of the limits of MSC.137(76).
+/// Checks of the limits of MSC.137(76).
 pub fn limits() -> Section {
     let at = |seconds: f64| Particulars { length: seconds, speed: 1.0 };
     let mut checks = Vec::new();
@@ -55,12 +55,12 @@ pub fn limits() -> Section {
     }
 }
 
-/// The check of the priors of a hull: what particulars alone say of KVLCC2 against her published coefficients.
+/// Checks of the priors of a hull: priors of KVLCC2 from its particulars alone against its published coefficients.
 pub fn hull_coefficients() -> Section {
     let prior = priors(&KVLCC2).expect("KVLCC2 is a ship");
     let mut published = kvlcc2::FULL_SCALE;
     let mut checks = Vec::new();
-    // Values that were taken from KVLCC2 herself would agree by construction.
+    // Values taken from KVLCC2 itself would agree by construction.
     for coefficient in prior.coefficients.iter().filter(|coefficient| !coefficient.formula.source.contains("KVLCC2")) {
         let Some(&mut value) = published.named(coefficient.formula.key) else { continue };
         let what = format!("KVLCC2 from her particulars: {}", coefficient.formula.symbol);

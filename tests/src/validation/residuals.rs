@@ -1,5 +1,5 @@
-//! What a first-order fit leaves when an effect is missing, and what is found when it is added: against an independent
-//! computation of the same trials.
+//! Residual of a first-order fit if an effect is missing, and estimates after the effect is added, against an
+//! independent computation of the same trials.
 #![expect(clippy::approx_constant, reason = "6.28 s is a published T₃ and not 2π")]
 
 use std::sync::Arc;
@@ -21,18 +21,18 @@ use trace::{EffectId, Selection};
 use super::{Check, Section, Tolerance};
 use crate::records::zig_zag;
 
-/// One line of the independent table.
+/// Line of the independent table.
 struct Line {
     name: &'static str,
     effect: Arc<dyn Effect>,
-    /// Parameters in SI; and T₁ where the base has another time constant than 16.3 s.
+    /// Parameters in SI; and T₁ if the base has a time constant other than 16.3 s.
     truth: Vec<f64>,
     time: f64,
     /// Root mean square residual of the base, deg.
     rms: f64,
-    /// Bias of K and T of the base against 0.1 1/s and 16.3 s, per cent.
+    /// Bias of K and T of the base against 0.1 1/s and 16.3 s, %.
     bias: [f64; 2],
-    /// Place, unit in SI and value of the parameter that was found when the effect was added.
+    /// Index, unit in SI and estimate of the parameter after the effect is added.
     found: (usize, f64, f64),
 }
 
@@ -118,10 +118,10 @@ fn lines() -> Vec<Line> {
 /// Heading noise, deg, of the trials.
 const NOISE: f64 = 0.01;
 
-/// Fits go to the end.
+/// Effort of fits that run to convergence.
 const EFFORT: Effort = Effort { steps: 60, negligible: 1e-4 };
 
-/// Residual of the base (deg), K (1/s), T (s), residual (deg) and own parameters with the effect added.
+/// Residual of the base (deg), K (1/s), T (s); residual (deg) and parameters of the effect after it is added.
 fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let mut parameters = vec![1.0 / line.time, 0.1 / line.time, 0.0];
     parameters.extend(&line.truth);
@@ -154,7 +154,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     (to_deg(replay.rms()), base.K(), base.T(), rms, structure.physical(&best.theta)[own.base_count()..].to_vec())
 }
 
-/// The section.
+/// Section of the checks.
 pub fn section() -> Section {
     let lines = lines();
     let checks = lines

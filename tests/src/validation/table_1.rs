@@ -1,7 +1,9 @@
-//! Which trial the paper's Table 1 was: its six visible rows against zig-zags of every reading, the best ship of each.
+//! Identity of the trial in the paper's Table 1: its six visible rows against zig-zags of every reading, with the best
+//! ship of each.
 //!
 //! The rows are (t, ψ, δ): (0, 20.4, 7), (1, 21.6, −1), (3, 22.6, −3), (268, −17.0, 10), (269, −16.4, 10), (270, −16.0,
-//! 10), in s and deg. The first six facts that are physically smooth are held against a grid over K, T and rudder rate.
+//! 10), in s and deg. The first six facts that are physically smooth are compared with a grid over K, T and rudder
+//! rate.
 
 use rayon::prelude::*;
 use ship::FirstOrder;
@@ -11,23 +13,23 @@ use simulate::StreamKey;
 use super::{Check, Section, Tolerance};
 use crate::records::Case;
 
-/// Headings of Table 1 that a ship can have: time, s, and heading, deg.
+/// Physically possible headings of Table 1: time, s, and heading, deg.
 const HEADINGS: [(usize, f64); 4] = [(0, 20.4), (268, -17.0), (269, -16.4), (270, -16.0)];
 
-/// Rudder angles of Table 1 while it is held: time, s, and angle, deg.
+/// Rudder angles of Table 1 while the rudder is held: time, s, and angle, deg.
 const RUDDERS: [(usize, f64); 2] = [(268, 10.0), (270, 10.0)];
 
 /// Rudder angle in the first row, deg.
 const FIRST_RUDDER: f64 = 7.0;
 
-/// What a row is good to, deg: the unit of misfits.
+/// Accuracy of a row, deg: the unit of misfits.
 const ROW: f64 = 0.5;
 
 /// Readings of the trial with the misfit of an independent grid search, in squares of [`ROW`].
 const READINGS: [(f64, f64, f64); 4] =
     [(10.0, 20.0, 4.0), (15.0, 20.0, 212.0), (10.0, 10.0, 335.0), (20.0, 20.0, 835.0)];
 
-/// The best ship of one reading.
+/// Best ship of one reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Best {
     /// Sum of squared misfits, in squares of [`ROW`].
@@ -40,7 +42,8 @@ struct Best {
     rate: f64,
 }
 
-/// What one ship has in place of [`HEADINGS`] and [`RUDDERS`], deg; `None` if it does not make so long a trial.
+/// Headings and rudder angles of one ship at the rows of [`HEADINGS`] and [`RUDDERS`], deg; `None` if its trial is too
+/// short.
 fn facts(rudder: f64, heading: f64, gain: f64, time: f64, rate: f64) -> Option<Vec<f64>> {
     let ship = FirstOrder::from_indices(gain, time, 0.0);
     let case =
@@ -58,7 +61,7 @@ fn facts(rudder: f64, heading: f64, gain: f64, time: f64, rate: f64) -> Option<V
     Some(headings.into_iter().chain(rudders).collect())
 }
 
-/// Misfit of such facts, in squares of [`ROW`].
+/// Misfit of [`facts`], in squares of [`ROW`].
 fn score(facts: &[f64]) -> f64 {
     let printed = HEADINGS.iter().chain(&RUDDERS);
     facts.iter().zip(printed).map(|(ours, (_, printed))| ((ours - printed) / ROW).powi(2)).sum()
@@ -76,7 +79,7 @@ fn best(rudder: f64, heading: f64) -> Option<Best> {
         .min_by(|one, other| one.score.total_cmp(&other.score))
 }
 
-/// The printed rows against those of the best 10/20.
+/// Printed rows against the rows of the best 10/20.
 fn printed_rows(best: Best) -> Vec<Check> {
     let ours = facts(10.0, 20.0, best.gain, best.time, best.rate).expect("the best has made the trial");
     let printed =
@@ -89,7 +92,7 @@ fn printed_rows(best: Best) -> Vec<Check> {
     printed.zip(ours).map(check).collect()
 }
 
-/// The section.
+/// Section of the checks.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     for (rudder, heading, published) in READINGS {

@@ -1,9 +1,9 @@
 //! Zig-zags of the hulls with three degrees of freedom, and the first-order response that output error fits to them,
 //! against an independent simulation.
 //!
-//! That program steps by 0.05 s and reverses the rudder at the first step beyond the heading requested; its fits take 1
-//! s data from the first execute to the sixth (10/20 of the SEIUN-like ship: to the fifth), the one reading with which
-//! its numbers agree to their last digit.
+//! The independent program has steps of 0.05 s and reverses the rudder at the first step beyond the requested heading.
+//! Its fits use 1 s data from the first execute to the sixth (10/20 of the SEIUN-like ship: to the fifth), the only
+//! reading with which its numbers agree to their last digit.
 
 use std::sync::Arc;
 
@@ -19,11 +19,11 @@ use super::hulls::registered;
 use super::{Check, Section, Tolerance};
 use crate::records::zig_zag;
 
-/// What output error finds.
+/// Estimates of output error.
 struct Fit {
     /// Execute at which the fitted record ends, from 1.
     until: usize,
-    /// K (1/s) and its decimals.
+    /// K, 1/s, and its number of decimals.
     k: (f64, usize),
     /// T, s.
     t: f64,
@@ -33,7 +33,7 @@ struct Fit {
     rms_deg: f64,
 }
 
-/// One row of the table.
+/// Row of the table.
 struct Anchor {
     ship: &'static str,
     rudder_deg: f64,
@@ -44,7 +44,7 @@ struct Anchor {
     turning_time: f64,
     overshoots_deg: &'static [f64],
     period: f64,
-    /// Least speed over approach speed.
+    /// Minimum speed relative to the approach speed.
     least_speed: f64,
     fit: Fit,
 }
@@ -89,10 +89,10 @@ const ANCHORS: [Anchor; 11] = [
 /// Step of the independent program, s.
 const STEP: f64 = 0.05;
 
-/// Draught of the model L7 in the independent program, m; the published one is 0.46 m.
+/// Draught of the model L7 in the independent program, m; the published draught is 0.46 m.
 const OTHER_DRAUGHT: f64 = 0.455;
 
-/// How a run is made.
+/// Method of simulation of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     /// Executes exactly on the heading, the ship of the registry.
@@ -131,7 +131,7 @@ impl Anchor {
     }
 }
 
-/// The checks: every row as the simulator runs it, and once more as the independent program does.
+/// Checks of every row by the simulator, exactly and with the steps of the independent program.
 pub fn section() -> Section {
     let mut checks = Vec::new();
     for anchor in &ANCHORS {
@@ -183,7 +183,7 @@ fn characteristics(anchor: &Anchor, way: Way, checks: &mut Vec<Check>) {
         push(&id, &what, published, 2, ours, Tolerance::Absolute(overshoot), "deg");
     }
     if way == Way::Exact && model {
-        // Speed and period depend on the draught as well and are held against the stepped run.
+        // Speed and period depend on the draught as well and are compared with the stepped run.
         return;
     }
     let last = made.len() - 1;

@@ -1,7 +1,7 @@
-//! Leaderboards: scores of all methods on one task, for the records of one study. A failed answer ranks below any
-//! other.
+//! Leaderboards: scores of all methods on one task, for the records of one study. A failed estimate ranks below any
+//! other estimate.
 //!
-//! Mean ranks follow Friedman (1937), intervals of shares Wilson (1927).
+//! Source: Friedman (1937) for mean ranks, Wilson (1927) for intervals of shares.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,42 +11,42 @@ use crate::statistics::{Statistic, grouped, resampled, share};
 
 pub use crate::benchmark::statistics::ScoreFigure;
 
-/// All methods on one task.
+/// Leaderboard: all methods on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Board {
-    /// The task.
+    /// Task.
     pub task: BenchTask,
-    /// The field of its records.
+    /// Study of the records.
     pub field: String,
     /// Number of cases.
     pub cases: usize,
     /// Number of trials or scored records that the bootstrap resamples; cases of one cluster are not independent.
     pub clusters: usize,
-    /// The methods, smallest median first.
+    /// Methods, in the order of increasing median.
     pub standings: Vec<LeaderboardRow>,
 }
 
-/// A method on one task.
+/// Line of a leaderboard: one method on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LeaderboardRow {
-    /// Its label.
+    /// Label of the method.
     pub method: String,
-    /// Cases in which it had no answer.
+    /// Number of cases in which it failed.
     pub failed: usize,
     /// Median of the score.
     pub median: ScoreFigure,
     /// 90 % quantile of the score.
     pub high: ScoreFigure,
-    /// Median ratio of the score to that of the reference in the same case; none for the reference itself, and where it
+    /// Median ratio of the score to that of the reference in the same case; `null` for the reference itself, and if it
     /// takes no part.
     pub ratio: Option<ScoreFigure>,
     /// Share of cases in which the score is smaller than that of the reference; ties count half.
     pub better: Option<ScoreFigure>,
     /// Mean rank among all methods.
     pub rank: f64,
-    /// Coverage of the 95 % intervals of K and of T; none without intervals.
+    /// Coverage of the 95 % intervals of K and of T; `null` without intervals.
     pub holds: Option<[WilsonShare; 2]>,
 }
 
@@ -58,12 +58,12 @@ pub struct WilsonShare {
     pub count: usize,
     /// Number of cases.
     pub of: usize,
-    /// The interval.
+    /// 95 % interval.
     pub ci95: [f64; 2],
 }
 
 impl WilsonShare {
-    /// Share of `count` in `of`; `None` without cases.
+    /// Share of `count` in `of`; `None` for no cases.
     pub fn new(count: usize, of: usize) -> Option<Self> {
         let Statistic { ci95, .. } = share(count as u64, of as u64)?;
         Some(Self { count, of, ci95: ci95? })
@@ -88,7 +88,7 @@ pub(super) fn by_field(
 pub(super) struct Scores {
     /// Clusters of the bootstrap, as case indices.
     pub clusters: Vec<Vec<usize>>,
-    /// Methods with an answer to every case, and their scores by case.
+    /// Methods with a result in every case, failed ones included, and their scores by case.
     pub methods: Vec<(String, Vec<f64>)>,
     /// Ranks of these methods, by case.
     pub ranks: Vec<Vec<f64>>,
@@ -156,16 +156,16 @@ fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     Some([coverage(0)?, coverage(1)?])
 }
 
-/// The scores of one set.
+/// Scores of one set, as one line of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SetLine {
-    /// The task.
+    /// Task.
     pub task: BenchTask,
     /// Name of the set.
     pub set: String,
     /// Number of cases.
     pub cases: usize,
-    /// Median and failures of every method; none for a method that takes no part.
+    /// Median and number of failures of every method; `None` for a method that takes no part.
     pub methods: Vec<Option<(f64, usize)>>,
 }
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_failed_answer_is_worse_than_any() {
-        // b is twice as good wherever it answers, and fails in four of ten.
+        // b is twice as good unless it fails, which it does in four of ten.
         let cases: Vec<BenchCase> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
         let methods = ["a", "b", "c"].map(str::to_owned);
         let boards = boards(&cases, &methods, "a");
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!((b.ratio.and_then(|ratio| ratio.value), b.better.and_then(|b| b.value)), (Some(0.5), Some(0.6)));
         assert_eq!((a.median, a.ratio), (ScoreFigure { value: Some(2.0), ci95: Some([Some(2.0); 2]) }, None));
         assert_eq!((a.rank, b.rank), (1.6, 1.4));
-        // Half of the draws have five failures or more: the interval of the median has no upper end.
+        // Half of the resamples have five failures or more: the interval of the median has no upper end.
         assert_eq!(b.median.ci95, Some([Some(1.0), None]));
     }
 

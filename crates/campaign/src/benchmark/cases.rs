@@ -1,10 +1,10 @@
-//! Cases of the benchmark: one per task and trial, with the answers of all methods.
+//! Cases of the benchmark: one per task and trial, with the results of all methods.
 
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::statistics::ratio;
 
-/// A task.
+/// Task of the benchmark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BenchTask {
@@ -12,13 +12,13 @@ pub enum BenchTask {
     Identify,
     /// Identify K and T of a first-order ship.
     Indices,
-    /// Fit a zig-zag to one side first, replay one to the other.
+    /// Fit a zig-zag to one side first, replay one to the opposite side.
     OtherSide,
     /// Fit a zig-zag, replay one of another rudder or heading angle.
     OtherAmplitude,
     /// Fit zig-zags, replay a turning circle.
     Circle,
-    /// Name the effect that a first-order ship lacks.
+    /// Name the effect missing from a first-order ship's model.
     Name,
 }
 
@@ -27,7 +27,7 @@ impl BenchTask {
     pub const ALL: [Self; 6] =
         [Self::Identify, Self::Indices, Self::OtherSide, Self::OtherAmplitude, Self::Circle, Self::Name];
 
-    /// The word used in files and on the command line.
+    /// Word used in files and on the command line.
     pub fn id(self) -> &'static str {
         match self {
             Self::Identify => "identify",
@@ -51,7 +51,7 @@ impl BenchTask {
         }
     }
 
-    /// Name and unit of the score; `None` if an answer is right or wrong.
+    /// Name and unit of the score; `None` if a result is right or wrong.
     pub fn score(self) -> Option<&'static str> {
         match self {
             Self::Indices => Some("larger error of K and T [%]"),
@@ -61,13 +61,13 @@ impl BenchTask {
     }
 }
 
-/// One task on one trial, with the answers of all methods.
+/// One task on one trial, with the results of all methods.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchCase {
-    /// The task.
+    /// Task.
     pub task: BenchTask,
-    /// The study that the case is counted with.
+    /// Study under which the case is counted.
     pub field: String,
     /// Name of the set.
     pub set: String,
@@ -76,30 +76,30 @@ pub struct BenchCase {
     pub trial: Option<u64>,
     /// Names of the records that were fitted together.
     pub fitted: Vec<String>,
-    /// Name of the scored record; none for tasks about the ship itself.
+    /// Name of the scored record; `null` for tasks about the ship itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scored: Option<String>,
-    /// The effect to be named; none if the first-order model lacks nothing.
+    /// Effect to be named; `null` if the first-order model is complete.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<String>,
-    /// The answers, in the order of methods.
+    /// Results of the methods, in their order.
     pub answers: Vec<CaseAnswer>,
 }
 
-/// The answer of one method.
+/// Result of one method.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CaseAnswer {
     /// Label of the method.
     pub method: String,
-    /// Heading error, deg, or the larger error of K and T, %; none for a failed answer, and where an answer is right or
-    /// wrong.
+    /// Heading error, deg, or the larger relative error of K and T, %; `null` for a failed estimate, and if a result is
+    /// right or wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub score: Option<f64>,
     /// Relative errors of K and T, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors_percent: Option<[f64; 2]>,
-    /// `true` if the 95 % intervals contain K and T, where there are intervals.
+    /// `true` if the 95 % intervals contain K and T; `null` without intervals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub holds: Option<[bool; 2]>,
     /// Correctness of the effects named.
@@ -108,24 +108,24 @@ pub struct CaseAnswer {
     /// Effects named, each followed by its aliases: effects that the records cannot distinguish from it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub named: Vec<Vec<String>>,
-    /// Kind of failure of a missing answer.
+    /// Kind of failure, if the method failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
-/// A set of trials: one cell of a study.
+/// Set of trials: one cell of a study.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchSet {
     /// Name of the set.
     pub name: String,
-    /// Number of its trials.
+    /// Number of trials.
     pub trials: u64,
-    /// Its records.
+    /// Records of the set.
     pub records: Vec<BenchRecord>,
 }
 
-/// A record of a set.
+/// Record of a set.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchRecord {
@@ -133,11 +133,11 @@ pub struct BenchRecord {
     pub name: String,
     /// Manoeuvre and angles.
     pub manoeuvre: String,
-    /// SHA-256 of its file; none of a simulated record.
+    /// SHA-256 of the file; `null` for a simulated record.
     pub sha256: Option<String>,
 }
 
-/// A record that was not used.
+/// Record that was not used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Skipped {
@@ -145,19 +145,19 @@ pub struct Skipped {
     pub set: String,
     /// Name of the record.
     pub record: String,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
-/// Correctness of the effects that a method named, against the one effect that is missing or none.
+/// Correctness of the effects that a method named, compared with the one missing effect, or with none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Naming {
-    /// The missing effect alone; nothing if nothing is missing.
+    /// Missing effect alone; no effect if none is missing.
     Right,
-    /// One group whose aliases contain the missing effect.
+    /// One group whose aliases include the missing effect.
     Alias,
-    /// The missing effect or its group, and further effects.
+    /// Missing effect or its group, and further effects.
     More,
     /// Other effects only.
     Wrong,
@@ -180,7 +180,7 @@ impl Naming {
         }
     }
 
-    /// Correctness of the groups named where `missing` is the one missing effect, or none.
+    /// Correctness of the named groups, if `missing` is the one missing effect, or none.
     pub fn of(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
         let holder = named.iter().find(|group| group.iter().any(|id| id == missing));
@@ -195,7 +195,7 @@ impl Naming {
 }
 
 impl BenchCase {
-    /// Cluster of the bootstrap: all cases of one simulated trial, or all in which one measured record is scored.
+    /// Cluster of the bootstrap: all cases of one simulated trial, or all cases in which one measured record is scored.
     pub fn cluster(&self) -> (&str, String) {
         let unit = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
         (&self.set, unit)
@@ -206,14 +206,14 @@ impl BenchCase {
         Some(ratio(self.score_of(method)?, self.score_of(reference)?))
     }
 
-    /// Score of a method: infinite for a failed answer, `None` if it takes no part.
+    /// Score of a method: infinite if it failed, `None` if it takes no part.
     pub fn score_of(&self, method: &str) -> Option<f64> {
         let answer = self.answers.iter().find(|answer| answer.method == method)?;
         Some(answer.score.unwrap_or(f64::INFINITY))
     }
 }
 
-/// A number as stored, with six digits. Leaderboards are computed from stored numbers, so that anybody can repeat them.
+/// Number as stored, with six digits. Leaderboards are computed from stored numbers, so that they can be repeated.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("it was written as a number")
 }

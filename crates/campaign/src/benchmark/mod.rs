@@ -1,12 +1,12 @@
-//! A benchmark of methods that identify ships from zig-zag trials.
+//! Benchmark of methods that identify ships from zig-zag trials.
 //!
 //! It consists of a few studies, [`shipped`] with the program: simulated ships, and measured records identified by
-//! their SHA-256. The rows of these studies are scored, and methods are compared case by case.
+//! their SHA-256. Their rows are scored, and methods are compared case by case.
 //!
 //! | to learn about | read |
 //! |---|---|
 //! | the studies of the program | [`shipped`] |
-//! | tasks and answers | `questions`, [`cases`] |
+//! | tasks and results | `questions`, [`cases`] |
 //! | leaderboards | [`board`], [`naming`], [`overall`], `statistics` |
 //! | the whole result, as it is stored | [`results`] |
 

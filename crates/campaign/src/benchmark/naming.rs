@@ -6,7 +6,7 @@ use crate::benchmark::board::WilsonShare;
 use crate::benchmark::cases::{BenchCase, BenchTask, Naming};
 use crate::statistics::grouped;
 
-/// Counts of the names that a method gave in one set.
+/// Counts of the effects that a method named in one set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NamingLine {
@@ -14,13 +14,13 @@ pub struct NamingLine {
     pub method: String,
     /// Name of the set.
     pub set: String,
-    /// The missing effect; none if nothing is missing.
+    /// Missing effect; `null` if no effect is missing.
     pub missing: Option<String>,
-    /// Number of answers by correctness, in the order of [`Naming::ALL`].
+    /// Number of results by correctness, in the order of [`Naming::ALL`].
     pub counts: [usize; Naming::ALL.len()],
-    /// Trials without an answer.
+    /// Number of failed trials.
     pub failed: usize,
-    /// Share of trials whose one named group contains the missing effect, or in which rightly nothing is named.
+    /// Share of trials whose one named group contains the missing effect, or in which correctly no effect is named.
     pub named: WilsonShare,
 }
 

@@ -1,5 +1,5 @@
 //! Overall ranking: mean over the leaderboards of predictions of the mean rank of each method (Friedman 1937). It does
-//! not show by how much a method is better, on which ships or at which task.
+//! not determine by how much a method is better, on which ships or at which task.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,17 +8,17 @@ use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::statistics::mean;
 use crate::statistics::{grouped, resampled_by_set};
 
-/// The ranking.
+/// Overall ranking of the methods.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OverallRanking {
-    /// The leaderboards it averages, with equal weights.
+    /// Leaderboards in the mean, with equal weights.
     pub boards: Vec<(BenchTask, String)>,
-    /// Mean ranks, best first. Intervals by resampling sets and clusters within them.
+    /// Mean ranks, best first, with intervals by resampling sets and clusters within them.
     pub standings: Vec<(String, ScoreFigure)>,
 }
 
-/// Ranking over the tasks that predict a record outside the fit; `None` without such a task.
+/// Ranking over the tasks that predict a record outside the fit; `None` if there is no such task.
 pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
     let fields = by_field(cases, is_prediction);
@@ -38,7 +38,7 @@ pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking
     Some(OverallRanking { boards, standings })
 }
 
-/// Mean ranks of all methods on one leaderboard: of all cases, and of every resample of its sets.
+/// Mean ranks of all methods on one leaderboard: for all cases, and for every resample of the sets.
 struct MeanRanks {
     methods: Vec<String>,
     clusters: usize,

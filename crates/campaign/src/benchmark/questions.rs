@@ -1,7 +1,7 @@
-//! Cases from the rows of a study: one for every task of every trial.
+//! Cases from the rows of a study: one per task and trial.
 //!
-//! The manoeuvres determine the tasks. A record that was fitted alone is replayed. A zig-zag as validation record is of
-//! the other side or of another amplitude; any other validation record is a turn. K and T are scored for first-order
+//! The manoeuvres determine the tasks. A record that was fitted alone is replayed. A zig-zag as validation record is to
+//! the opposite side or of another amplitude; any other validation record is a turn. K and T are scored for first-order
 //! ships. In a study in which ships lack listed effects, the only task is to name them.
 
 use std::collections::HashSet;
@@ -17,17 +17,17 @@ use crate::scenario::records::RecordSet;
 use crate::scenario::{DesignCell, HULL, Method, Procedure, Scenario};
 use crate::statistics::distinct;
 
-/// Cases of a study, its sets, and what was skipped.
+/// Cases of a study, its sets, and the skipped records and trials.
 pub(super) struct StudyCases {
     pub cases: Vec<BenchCase>,
     pub sets: Vec<BenchSet>,
     pub skipped: Vec<Skipped>,
 }
 
-/// A record with the steering that decides its task.
+/// Record with the steering that determines its task.
 struct SteeredRecord {
     record: BenchRecord,
-    /// For a zig-zag: nominal rudder and heading angle, deg, where known, and the side of the first execute.
+    /// Nominal rudder and heading angle of a zig-zag, deg, if known, and the side of the first execute.
     zig_zag: Option<(Option<[f64; 2]>, Side)>,
 }
 
@@ -69,7 +69,7 @@ impl SteeredRecord {
     }
 }
 
-/// Task of predicting a record from others; `None` if it repeats one of them, or where turns are fitted.
+/// Task of predicting a record from others; `None` if it repeats a fitted record, or if turns are fitted.
 fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchTask> {
     let fitted: Vec<_> = fitted.iter().map(|record| record.zig_zag).collect::<Option<_>>()?;
     let Some((angles, first)) = judge.zig_zag else { return Some(BenchTask::Circle) };
@@ -82,14 +82,14 @@ fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchT
 /// Tasks of one cell.
 struct CellQuestions {
     set: String,
-    /// Records of the set; for simulated trials the fitted ones and then the validation record.
+    /// Records of the set; for simulated trials the fitted records and then the validation record.
     records: Vec<SteeredRecord>,
     /// Number of fitted records of a simulated trial.
     fitted: usize,
     is_simulated: bool,
     /// `true` if K and T are known.
     has_indices: bool,
-    /// The missing effect or none, where it is to be named.
+    /// Missing effect, or none; `None` if it is not a task to name it.
     missing: Option<Option<String>>,
 }
 
@@ -125,7 +125,7 @@ impl CellQuestions {
         }
     }
 
-    /// The tasks of a trial, with the record that is scored.
+    /// Tasks of a trial, with the scored record of each.
     fn tasks(&self, fitted: &[&SteeredRecord], judge: Option<&SteeredRecord>) -> Vec<(BenchTask, Option<String>)> {
         if self.missing.is_some() {
             return vec![(BenchTask::Name, None)];
@@ -138,7 +138,7 @@ impl CellQuestions {
     }
 }
 
-/// Cases of a study with these rows, which are in order.
+/// Cases of a study with these rows, in the order of the design.
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     let lacks = |cell: &DesignCell| cell.missing().iter().any(|id| id != HULL);
     let is_of_names = scenario.cells.iter().any(lacks);
@@ -193,7 +193,7 @@ fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
     distinct(sets.flat_map(of_set))
 }
 
-/// The sets of a study with their records.
+/// Sets of a study with their records.
 fn bench_sets(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
@@ -210,7 +210,7 @@ fn bench_sets(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<BenchSet> {
     sets
 }
 
-/// Answer of a row to a task; `None` if its method takes no part.
+/// Result of a row in a task; `None` if its method takes no part.
 fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str>) -> Option<CaseAnswer> {
     let takes_part = match task {
         BenchTask::Indices => !matches!(method.procedure, Procedure::StraightOn),

@@ -14,54 +14,54 @@ use crate::statistics::distinct;
 /// Version of the file.
 pub const SCHEMA: &str = "bench/2";
 
-/// The whole result.
+/// Result of a benchmark.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchDocument {
     /// Version of the file.
     pub schema: String,
-    /// The studies of the benchmark.
+    /// Studies of the benchmark.
     pub studies: Vec<StudyFacts>,
     /// Version of the program.
     pub program: String,
-    /// The reference method: the first one.
+    /// Reference method: the first one.
     pub reference: String,
     /// All methods, in order.
     pub methods: Vec<String>,
     /// One-line summary of each method.
     pub summaries: Vec<String>,
-    /// The sets.
+    /// Sets.
     pub sets: Vec<BenchSet>,
-    /// Absent records, and trials that could not be simulated.
+    /// Absent records, and trials with a failed simulation.
     pub skipped: Vec<Skipped>,
     /// Leaderboards.
     pub boards: Vec<Board>,
     /// Counts of correct and wrong effect names.
     pub naming: Vec<NamingLine>,
-    /// The ranking over all predictions.
+    /// Ranking over all predictions.
     pub overall: Option<OverallRanking>,
-    /// Every case with every answer.
+    /// Cases with their results.
     pub cases: Vec<BenchCase>,
 }
 
-/// A study of the benchmark.
+/// Study of the benchmark.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudyFacts {
-    /// Name of its scenario.
+    /// Name of the scenario.
     pub name: String,
-    /// Its question.
+    /// Question of the study.
     pub question: String,
-    /// Its description of the records.
+    /// Description of the records.
     pub analysis: String,
-    /// SHA-256 of its design and of the measured records that are present.
+    /// SHA-256 of the design and of the measured records that are present.
     pub design_sha256: String,
-    /// Key of every random draw.
+    /// Key of every random number.
     pub seed: u64,
 }
 
 impl BenchDocument {
-    /// Result of studies with all their rows, in order; `tasks` selects tasks, and an empty list all of them.
+    /// Result of studies with all their rows, in order; `tasks` selects tasks, all of them if it is empty.
     pub fn of(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
         let facts = |(scenario, _): &(Scenario, Vec<StudyRow>)| StudyFacts {
             name: scenario.name.clone(),
@@ -81,7 +81,7 @@ impl BenchDocument {
             sets.extend(study.sets);
             skipped.extend(study.skipped);
         }
-        // By task, as they are read; within a task in the order of the studies.
+        // Sorted by task; within a task in the order of the studies.
         cases.sort_by_key(|case| case.task);
         let reference = labels.first().cloned().unwrap_or_default();
         Self {

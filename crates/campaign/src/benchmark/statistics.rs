@@ -1,4 +1,4 @@
-//! Quantiles and ranks of scores, where failed answers count as infinite, with bootstrap intervals (Efron 1979).
+//! Quantiles and ranks of scores, with infinite scores for failed estimates and bootstrap intervals (Efron 1979).
 
 use std::cmp::Ordering;
 
@@ -7,24 +7,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::statistics::{Moments, interval};
 
-/// A figure with its 95 % interval.
+/// Statistic of scores with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreFigure {
-    /// The figure; none if it falls on a failed answer.
+    /// Value; `null` if it falls on a failed estimate.
     pub value: Option<f64>,
-    /// Its interval, from six clusters on; an end is none if it falls on a failed answer.
+    /// 95 % interval, for six clusters or more; an end is `null` if it falls on a failed estimate.
     pub ci95: Option<[Option<f64>; 2]>,
 }
 
 impl ScoreFigure {
-    /// A figure with the interval of its resampled values, in any order.
+    /// Statistic with the interval of its resampled values, in any order.
     pub fn new(value: f64, clusters: usize, resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         Self { value: finite(value), ci95: interval(clusters, resampled).map(|ends| ends.map(finite)) }
     }
 
-    /// Order by value; a figure that falls on a failed answer comes last.
+    /// Order by value; a statistic that falls on a failed estimate comes last.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         let [value, other] = [self, other].map(|figure| figure.value.unwrap_or(f64::INFINITY));
         value.total_cmp(&other)
@@ -44,12 +44,12 @@ pub fn median_and_p90(mut scores: Vec<f64>) -> [f64; 2] {
     [0.5, 0.9].map(|p| quantile(&scores, p))
 }
 
-/// Ratio of a score to that of the reference in the same case: 1 where both failed, infinite where only the first did.
+/// Ratio of a score to that of the reference in the same case: 1 if both failed, infinite if only the method failed.
 pub fn ratio(score: f64, reference: f64) -> f64 {
     if score == reference { 1.0 } else { score / reference }
 }
 
-/// Ranks of scores from 1, smallest first; ties share their mean rank.
+/// Ranks of scores from 1, in increasing order; ties share their mean rank.
 pub fn ranks(scores: &[f64]) -> Vec<f64> {
     let rank = |score: &f64| {
         let smaller = scores.iter().filter(|other| *other < score).count();
@@ -86,8 +86,8 @@ mod tests {
         );
     }
 
-    /// Intervals of the median of exponential numbers, whose median is ln 2: they repeat and cover 95 % within the
-    /// error of 300 samples; pairs that are the same count as one.
+    /// Intervals of the median of exponential random numbers, whose median is ln 2: they repeat and cover 95 % within
+    /// the error of 300 samples; equal pairs count as one.
     #[test]
     fn intervals_cover_what_they_say() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);

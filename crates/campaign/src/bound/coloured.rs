@@ -16,7 +16,7 @@ pub struct CompassError {
     pub coloured: GaussMarkov,
 }
 
-/// Cramér–Rao bound of (1/T, K/T, K δ_r/T) for one trial of known truth, the initial state unknown as well: (JᵀΣ⁻¹J)⁻¹
+/// Cramér–Rao bound of (1/T, K/T, K δ_r/T) for one trial of known truth, with unknown initial state: (JᵀΣ⁻¹J)⁻¹
 /// with the sensitivities J of the heading and the covariance of its errors.
 ///
 /// Σ_jk = σ² δ_jk + σ_w² exp(−|t_j − t_k|/τ)
@@ -38,7 +38,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
     let times: Vec<f64> = track.observed.iter().map(|&row| track.time[row]).collect();
     whiten(&times, error, &mut sensitivities);
     let product = |i: usize, j: usize| sensitivities[i].iter().zip(&sensitivities[j]).map(|(x, y)| x * y).sum::<f64>();
-    // In units in which every parameter alone would have a standard deviation of 1.
+    // In units for which every parameter alone would have a standard deviation of 1.
     let unit: [f64; 5] = std::array::from_fn(|k| product(k, k).sqrt());
     let information = Matrix5::from_fn(|i, j| product(i, j) / (unit[i] * unit[j]));
     let covariance = information.cholesky()?.inverse();
@@ -49,7 +49,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
 fn whiten(times: &[f64], error: &CompassError, columns: &mut [Vec<f64>; 5]) {
     let CompassError { white, coloured } = *error;
     let (white, stationary) = (white * white, coloured.sd * coloured.sd);
-    // Of the coloured error, given the readings so far: conditional variance, and one estimate per column.
+    // Conditional variance of the coloured error given the readings so far, and one estimate per column.
     let (mut variance, mut estimates) = (stationary, [0.0; 5]);
     for (row, &t) in times.iter().enumerate() {
         if row > 0 {
@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// Products of whitened columns equal those by the inverse of the full covariance.
+    /// Products of whitened columns equal products with the inverse of the full covariance.
     #[test]
     fn white_columns_have_the_products_of_the_whole_covariance() {
         let times = [0.0, 1.0, 1.5, 4.0, 10.0, 11.0];

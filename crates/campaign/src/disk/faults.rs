@@ -1,4 +1,4 @@
-//! Disk faults for tests: below one folder, the operations in a range of numbers fail.
+//! Disk faults for tests: below one folder, a range of numbered operations fails.
 
 use std::io;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Root folder, numbers of the failing operations, and operations so far.
+/// Root folder, numbers of the failing operations, and number of operations so far.
 struct DiskFault {
     root: PathBuf,
     failing: Range<u64>,
@@ -30,7 +30,7 @@ pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
 }
 
 impl Armed {
-    /// Operations so far.
+    /// Number of operations so far.
     pub fn seen(&self) -> u64 {
         let faults = FAULTS.lock().unwrap_or_else(PoisonError::into_inner);
         faults.iter().find(|fault| fault.root == self.0).map_or(0, |fault| fault.seen)

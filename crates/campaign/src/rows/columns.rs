@@ -10,7 +10,7 @@ use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
 use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
 
-/// A fixed column of a file of rows.
+/// Fixed column of a file of rows.
 pub struct RowColumn {
     /// Name in the file, ending in the unit.
     pub name: &'static str,
@@ -28,7 +28,7 @@ pub(super) enum Access {
     Method,
 }
 
-/// Columns with their access to a row: a count, a number, one number of an array, a number of a trace, or functions for
+/// Columns with their access to a row: a count, a number, one number of an array, a number of a trace, or functions of
 /// a text.
 macro_rules! columns {
     ($($name:literal, $meaning:literal => $kind:ident $field:tt;)*) => {
@@ -61,7 +61,7 @@ macro_rules! access {
 }
 
 /// Columns of every file of rows, in order. They are followed by one column `axis.NAME` per axis of the design, a
-/// number or the label of the point, and one `draw.KEY` per drawn value, in the unit of the key.
+/// number or the label of the point, and one `draw.KEY` per sampled value, in the unit of the key.
 pub const COLUMNS: [RowColumn; 22] = columns! {
     "cell", "index of the cell in the design, from 0" => count(cell);
     "replicate", "index of the trial in its cell, from 0; every method sees the same trial" => count(replicate);
@@ -131,7 +131,7 @@ pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
         => text(sizes, set_sizes);
 };
 
-/// Further columns of a study whose ships state the missing physics.
+/// Further columns of a study whose scenario states the missing physics.
 pub const LOCATED_COLUMNS: [RowColumn; 2] = columns! {
     "trace_times", "when the effects named act, s, joined by +; – for one that is no matter of time"
         => text(times, set_times);
@@ -168,7 +168,7 @@ fn set_stop(row: &mut StudyRow, word: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Trace answer of a row, created with the first of its columns that is read.
+/// Trace result of a row, created with its first column.
 fn answer(row: &mut StudyRow) -> &mut TraceAnswer {
     row.traced.get_or_insert_default()
 }
@@ -178,13 +178,13 @@ fn joined<T>(all: &[T], write: impl Fn(&T) -> String) -> Cow<'static, str> {
     all.iter().map(write).collect::<Vec<_>>().join("+").into()
 }
 
-/// List from a text; fails if an entry is invalid, and names it as `what`.
+/// List from a text. Fails if an entry is invalid, which the message calls `what`.
 fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
     let parts = text.split('+').filter(|part| !part.is_empty());
     parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))
 }
 
-/// Effects named.
+/// Named effects.
 fn named(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| effect.id.to_string()))
 }
@@ -194,13 +194,13 @@ fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Effects named, each with its aliases.
+/// Named effects, each with its aliases.
 fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
     let group = |effect: &NamedEffect| [std::slice::from_ref(&effect.id), effect.aliases.as_slice()].concat().join("|");
     Some(joined(&row.traced.as_ref()?.named, group))
 }
 
-/// Aliases of the effects, which an earlier column has named.
+/// Aliases of the effects, which are named in an earlier column.
 fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let group = |part: &str| {
         let mut ids = part.split('|').filter(|id| !id.is_empty()).map(Box::from);
@@ -215,7 +215,7 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Parameters of the effects named.
+/// Parameters of the named effects.
 fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     let size = |EffectSize { symbol, value, sd }: &EffectSize| {
         format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))
@@ -224,7 +224,7 @@ fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, effect))
 }
 
-/// For effects that an earlier column has named.
+/// For effects named in an earlier column.
 fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let size = |part: &str| {
         let (symbol, number) = part.split_once('=')?;
@@ -261,7 +261,7 @@ fn times(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| time(effect.time_s)))
 }
 
-/// For effects that an earlier column has named.
+/// For effects named in an earlier column.
 fn set_times(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let times = list(text, "times of effects", read_time)?;
     let named = &mut answer(row).named;

@@ -1,5 +1,5 @@
-//! A block of rows as a Parquet file of one row group. Its metadata name study, program and block, and hold the SHA-256
-//! of the values, so that a reader can verify a file wherever it was copied.
+//! Block of rows as a Parquet file of one row group. Its metadata state study, program and block, and the SHA-256
+//! of the values, so that a reader can verify a file in any folder.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::block::Block;
 use crate::parquet_table::{self, Values};
 use crate::scenario::hex;
 
-/// Metadata keys of the label and of its SHA-256.
+/// Metadata keys of the label and its SHA-256.
 const LABEL: &str = "kempf.block";
 const LABEL_SHA256: &str = "kempf.block-sha256";
 
@@ -32,7 +32,7 @@ const MAX_TEXT_BYTES: usize = 4096;
 /// Maximum size of an uncompressed column of a block, bytes.
 const MAX_COLUMN_BYTES: i64 = 1 << 28;
 
-/// Maximum size of an uncompressed page, bytes, and largest number of values in a page.
+/// Maximum size of an uncompressed page, bytes, and maximum number of values in a page.
 const MAX_PAGE_BYTES: u64 = 1 << 24;
 const MAX_PAGE_VALUES: u64 = 1 << 20;
 
@@ -48,7 +48,7 @@ pub struct BlockLabel {
     pub design: String,
     /// Seed of the study.
     pub seed: u64,
-    /// The program that computed it.
+    /// Program that computed it.
     pub program: String,
     /// Index of the cell.
     pub cell: usize,
@@ -57,13 +57,13 @@ pub struct BlockLabel {
 }
 
 impl BlockLabel {
-    /// The block.
+    /// Block.
     pub fn block(&self) -> Block {
         Block { cell: self.cell, number: self.block }
     }
 }
 
-/// Label with row count and SHA-256 of the values of its file.
+/// Label with row count and SHA-256 of the values of the file.
 #[derive(Serialize, Deserialize)]
 struct SealedLabel {
     #[serde(flatten)]
@@ -75,9 +75,9 @@ struct SealedLabel {
 /// Reason why a file is not the expected block.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Damage {
-    /// Damaged or altered; the text says how.
+    /// Damaged or altered; the text describes how.
     Changed(String),
-    /// A valid block of another study, program or position.
+    /// Valid block of another study, program or position.
     Foreign(BlockLabel),
 }
 
@@ -208,7 +208,7 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
         }
         read += rows;
     }
-    // A column that has a value in every row has no levels.
+    // A column with a value in every row has no levels.
     present.resize(length, 1);
     let mut values = values.into_iter();
     Ok(present.into_iter().map(|level| if level > 0 { values.next() } else { None }).collect())

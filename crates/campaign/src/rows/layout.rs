@@ -1,4 +1,4 @@
-//! Row layout of one study: its fixed columns, axes and draws, and the conversion between rows and columns.
+//! Row layout of one study: its fixed columns, axes and sampled values, and the conversion between rows and columns.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -14,13 +14,13 @@ use crate::design::{Design, JudgedRecord};
 use crate::parquet_table::{self, Values};
 use crate::scenario::TRACE;
 
-/// Row layout of one study: fixed columns, axes, draws and records.
+/// Row layout of one study: fixed columns, axes, sampled values and records.
 pub struct RowLayout {
     methods: Vec<String>,
     fixed: Vec<&'static RowColumn>,
     /// Names of the axes, each with the points of the cells.
     axes: Vec<(String, Values)>,
-    /// In a study of measured records: the records of every trial, by cell.
+    /// Records of every trial, by cell, in a study of measured records.
     records: Option<Vec<Vec<JudgedRecord>>>,
     draws: Vec<String>,
 }
@@ -34,7 +34,7 @@ enum ColumnSource<'a> {
 }
 
 impl RowLayout {
-    /// The layout of a design.
+    /// Layout of a design.
     pub fn of(design: &Design) -> Self {
         let axis = |(index, name): (usize, &String)| {
             let numbers: Vec<Option<f64>> = design.cells.iter().map(|cell| cell.values[index]).collect();
@@ -102,7 +102,7 @@ impl RowLayout {
         parquet_table::schema(fields.collect())
     }
 
-    /// `true` if the values of a column repeat often enough for dictionary encoding; estimates do not.
+    /// `true` if the values of a column repeat often enough for dictionary encoding; those of estimates do not.
     pub(super) fn repeats(name: &str) -> bool {
         let text = [
             "method",
@@ -164,7 +164,7 @@ impl RowLayout {
                 (ColumnSource::Draw(index), Values::Numbers(values)) => {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
-                // Axes and records follow from cell and replicate; others belong to another design.
+                // Axes and records follow from cell and replicate; other values belong to another design.
                 (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
                 (ColumnSource::Record(of, records), values) if record_names(of, records, &rows) == values => {}
                 (ColumnSource::Record(..), _) => return Err("a row names other records than its trial has".to_owned()),
@@ -213,7 +213,7 @@ impl Values {
         }
     }
 
-    /// Values by row, from values by cell; none for a missing cell.
+    /// Values by row, from values by cell; `None` for a missing cell.
     fn of_cells(&self, rows: &[StudyRow]) -> Self {
         fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {
             rows.iter().map(|row| values.get(row.cell as usize)?.clone()).collect()

@@ -10,22 +10,22 @@ use document::trace::{Dependence, EffectEntry, ParameterEntry};
 pub struct NamedEffect {
     /// Identifier of the effect.
     pub id: Box<str>,
-    /// Identifiers of its aliases, which the trial cannot distinguish from it.
+    /// Identifiers of the aliases, which the trial cannot distinguish from the effect.
     pub aliases: Vec<Box<str>>,
     /// Time of a time-dependent effect, s: the centre of a transient, the onset of a lasting moment.
     pub time_s: Option<f64>,
-    /// Its parameters, in a study of measured records.
+    /// Parameters of the effect, in a study of measured records.
     pub sizes: Vec<EffectSize>,
 }
 
-/// Parameter of an effect, nondimensional where length and speed of the ship are known.
+/// Parameter of an effect, nondimensional if length and speed of the ship are known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectSize {
     /// Symbol, with a prime if nondimensional.
     pub symbol: Box<str>,
     /// Value, otherwise in SI units and radians.
     pub value: f64,
-    /// Standard deviation; `None` of a parameter that is not fitted.
+    /// Standard deviation; `None` for a parameter that is not fitted.
     pub sd: Option<f64>,
 }
 
@@ -60,7 +60,7 @@ impl NamedEffect {
 /// Moment located by a trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocatedMoment {
-    /// Quantity it depends on.
+    /// Variable that determines the moment.
     pub depends_on: Dependence,
     /// Description of the moment.
     pub form: Box<str>,
@@ -68,20 +68,20 @@ pub struct LocatedMoment {
     pub from_s: Option<f64>,
     /// End, s; `None` for a moment that lasts to the end of the record.
     pub until_s: Option<f64>,
-    /// Identifiers of listed effects that the trial cannot distinguish from it.
+    /// Identifiers of listed effects that the trial cannot distinguish from the moment.
     pub alternatives: Vec<Box<str>>,
 }
 
-/// Predicted figure of a manoeuvre, with that of the true ship.
+/// Predicted characteristic of a manoeuvre, with that of the true ship.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictedFigure {
-    /// Manoeuvre and figure, with the unit: `zig-zag 20/20 first_overshoot_deg`.
+    /// Manoeuvre and characteristic, with the unit: `zig-zag 20/20 first_overshoot_deg`.
     pub name: Box<str>,
-    /// True figure.
+    /// True value.
     pub truth: f64,
     /// Median of the prediction.
     pub median: f64,
-    /// Its 90 % interval.
+    /// 90 % interval.
     pub ci90: [f64; 2],
 }
 
@@ -97,7 +97,7 @@ impl PredictedFigure {
 pub struct TraceAnswer {
     /// Verdict.
     pub verdict: Verdict,
-    /// The effects named, in the order of discovery.
+    /// Named effects, in the order of discovery.
     pub named: Vec<NamedEffect>,
     /// Located moments outside the list of effects, clearest first.
     pub located: Vec<LocatedMoment>,
@@ -105,15 +105,15 @@ pub struct TraceAnswer {
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Gain in BIC of the one missing effect over the best other one.
     pub margin: Option<f64>,
-    /// Likelihood ratio of the truth against the nearest first-order response, on average.
+    /// Expected likelihood ratio of the truth against the nearest first-order response.
     pub expected: Option<f64>,
     /// Share of the headings of the trial inside the 95 % band of the traced model.
     pub band_fitted: Option<f64>,
-    /// The same on the validation manoeuvre.
+    /// Share inside the 95 % band on the validation manoeuvre.
     pub band_held_out: Option<f64>,
 }
 
-/// The result of one method on one trial. Units are in the names; `None` is "not defined".
+/// Result of one method on one trial. Units are in the names; `None` is "undefined".
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StudyRow {
     /// Index of the cell in the design.
@@ -122,16 +122,16 @@ pub struct StudyRow {
     pub replicate: u64,
     /// Index of the method in the scenario.
     pub method: usize,
-    /// Why the method failed; `None` if it did not.
+    /// Reason of a failure; `None` if the method did not fail.
     pub failure: Option<Box<str>>,
-    /// K of the first-order response nearest to the undisturbed trial, 1/s; the ship's own K where it is first order.
-    /// It is the true value for methods that fit such a response.
+    /// K of the first-order response nearest to the undisturbed trial, 1/s; the ship's own K if it is first order.
+    /// True value for methods that fit such a response.
     pub true_k_per_s: Option<f64>,
-    /// T of that response, s.
+    /// T of the nearest first-order response, s.
     pub true_t_s: Option<f64>,
     /// K of the first-order base of a ship with effects, 1/s: the true value for a trace.
     pub base_k_per_s: Option<f64>,
-    /// T of that base, s.
+    /// T of the first-order base, s.
     pub base_t_s: Option<f64>,
     /// Cramér–Rao bounds on the standard deviations of K (1/s), T (s) and K/T (1/s²) of this trial.
     pub bound: Option<[f64; 3]>,
@@ -149,19 +149,20 @@ pub struct StudyRow {
     pub rudder_bias_ci95_deg: Option<[f64; 2]>,
     /// Root mean square error of the replayed heading on the trial itself, deg.
     pub heading_rmse_deg: Option<f64>,
-    /// The same on the validation manoeuvre, which the method has not seen, deg.
+    /// Root mean square error of the replayed heading on the validation manoeuvre, which is not fitted, deg.
     pub validation_rmse_deg: Option<f64>,
-    /// The same restarted every 60 s, deg; in a study of measured records.
+    /// Root mean square error on the validation manoeuvre with restarts every 60 s, deg; in a study of measured
+    /// records.
     pub validation_windows_deg: Option<f64>,
-    /// Model evaluations of the method.
+    /// Number of model evaluations.
     pub evaluations: Option<f64>,
-    /// Why the method stopped.
+    /// Reason of termination.
     pub stop: Option<&'static str>,
     /// Result of a trace.
     pub traced: Option<Box<TraceAnswer>>,
-    /// Predicted figures of manoeuvres, empty without a covariance; `None` if nothing is predicted.
+    /// Predicted characteristics of manoeuvres, empty without a covariance; `None` for a study without predictions.
     pub predicted: Option<Box<[PredictedFigure]>>,
-    /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
+    /// Sampled values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }
 

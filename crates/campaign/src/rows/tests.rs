@@ -70,7 +70,7 @@ fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
     encode(rows, &label(), layout).expect("plain values")
 }
 
-/// Parameters of effects are read as they were written, and belong to the effects named.
+/// Parameters of effects are read as written, and belong to the named effects.
 #[test]
 fn sizes_of_effects_belong_to_the_effects_named() {
     let size = |symbol: &str, value, sd| EffectSize { symbol: symbol.into(), value, sd };
@@ -96,7 +96,7 @@ fn sizes_of_effects_belong_to_the_effects_named() {
     }
 }
 
-/// What a trace said, and figures that were predicted from an answer, are read as they were written.
+/// Results of a trace and predicted characteristics are read as written.
 #[test]
 fn traces_and_predictions_have_columns_of_their_own() {
     let mut design = Design { predicts: true, ..design() };
@@ -133,7 +133,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
     let rows = vec![predicts, answer(Verdict::Traced, named), good(257), none];
     assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
     assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
-    // Of a study that states nothing no column holds what was located.
+    // Without stated physics no column contains located moments.
     design.cells[1].physics = None;
     assert_eq!(RowLayout::of(&design).names().count(), layout.names().count() - LOCATED_COLUMNS.len());
 }
@@ -175,7 +175,7 @@ fn blocks_of_something_else_are_told_from_damaged_ones() {
     }
 }
 
-/// Any byte, changed or cut, is found; or it is one that says nothing.
+/// Any changed or missing byte is found, unless it carries no content.
 #[test]
 fn a_damaged_block_never_gives_other_rows() {
     let layout = RowLayout::of(&design());

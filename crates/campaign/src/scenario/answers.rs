@@ -1,4 +1,4 @@
-//! Answers of an outside estimator to the trials of a scenario, as a further method.
+//! Estimates of an outside estimator for the trials of a scenario, as a further method.
 
 use std::collections::HashMap;
 
@@ -7,10 +7,10 @@ use identify::{Estimate, IdentifyError, OutsideFit};
 /// Cell and replicate of a trial.
 pub type TrialNumber = (u64, u64);
 
-/// Id of a method whose answers are read from a table.
+/// Id of a method whose estimates are read from a table.
 pub const ID: &str = "external";
 
-/// Answers by trial. A trial without an answer counts as failed.
+/// Outside estimates by trial. A trial without an estimate counts as failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
     answers: HashMap<TrialNumber, Result<OutsideFit, String>>,
@@ -18,7 +18,7 @@ pub struct Answers {
 }
 
 impl Answers {
-    /// Answers, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
+    /// Outside estimates, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
     pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }
@@ -28,7 +28,7 @@ impl Answers {
         &self.sha256
     }
 
-    /// Estimate for a trial; fails with the reason of a missing answer.
+    /// Estimate for a trial. Fails with the reason of a missing estimate.
     pub fn to(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),

@@ -1,4 +1,4 @@
-//! Cells of a design: the specification of their trials, drawn values included, and their methods.
+//! Cells of a design: the specification of their trials, sampled values included, and their methods.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -19,13 +19,13 @@ use crate::scenario::{limits, reader, resolve, sweep};
 
 /// One cell of the design: the distribution of its trials is fixed.
 pub struct DesignCell {
-    /// Labels of its points, one per axis.
+    /// Labels of the points, one per axis.
     pub labels: Vec<String>,
-    /// Values of its points, for numeric axes.
+    /// Values of the points; `null` for an axis of labels.
     pub values: Vec<Option<f64>>,
-    /// The methods, all on the same trial.
+    /// Methods, all on the same trial.
     pub methods: Vec<Method>,
-    /// Source of its trials.
+    /// Source of the trials.
     pub(crate) source: TrialSource,
 }
 
@@ -33,33 +33,34 @@ pub struct DesignCell {
 pub(crate) enum TrialSource {
     /// Simulation.
     Simulated {
-        /// Specification of a trial, with drawn values at the middle of their distributions.
+        /// Specification of a trial, with random values at the middle of their distributions.
         specification: Box<Specification>,
-        /// Template for trials with drawn values.
+        /// Template for trials with sampled values.
         drawn: Option<DrawnSettings>,
     },
     /// Measured records.
     Measured(RecordSet),
 }
 
-/// Template of trials with drawn values.
+/// Template of trials with sampled values.
 pub(crate) struct DrawnSettings {
     draws: Vec<RandomKey>,
-    /// The part of the document that specifies a trial.
+    /// Part of the document that specifies a trial.
     document: Table,
     name: String,
     folder: PathBuf,
 }
 
-/// Specification of one trial, with its drawn values.
+/// Specification of one trial, with its sampled values.
 pub struct TrialSpecification<'a> {
     /// Complete specification.
     pub specification: Cow<'a, Specification>,
-    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::scenario::Scenario::draws).
+    /// Sampled values in the units of their keys, in the order of
+    /// [`Scenario::draws`](crate::scenario::Scenario::draws).
     pub drawn: Vec<f64>,
 }
 
-/// Refusal of drawn values for which no trial can be specified.
+/// Refusal of sampled values that specify no trial.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct Refusal(String);
@@ -103,7 +104,7 @@ impl DesignCell {
         std::iter::once(simulation).chain(also).chain(validation).map(|made| &made.manoeuvre).collect()
     }
 
-    /// Identifiers of the effects that a first-order base lacks in its trials.
+    /// Identifiers of the effects missing from a first-order base in its trials.
     pub fn missing(&self) -> Vec<String> {
         self.specification().map_or_else(Vec::new, |spec| spec.missing.clone())
     }
@@ -113,7 +114,7 @@ impl DesignCell {
         self.specification().is_some_and(|spec| spec.stated.is_some())
     }
 
-    /// Physics that a first-order base lacks in its trials: as stated by the ship, or from its listed effects.
+    /// Physics that a first-order base lacks in its trials: as stated in the scenario, or from its listed effects.
     pub(crate) fn physics(&self) -> Option<MissingPhysics> {
         let Specification { stated, missing, simulation, .. } = self.specification()?;
         let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
@@ -130,7 +131,7 @@ impl DesignCell {
         self.specification().is_some_and(|spec| spec.truth.is_none())
     }
 
-    /// Length and approach speed of the ship, where known; for drawn values at the middle of their distributions.
+    /// Length and approach speed of the ship, if known; for random values at the middle of their distributions.
     pub fn particulars(&self) -> Option<Particulars> {
         match &self.source {
             TrialSource::Simulated { specification, .. } => specification.simulation.vessel.particulars(),
@@ -143,7 +144,7 @@ impl DesignCell {
         self.specification().is_some_and(|spec| assumption.holds(&spec.simulation))
     }
 
-    /// Labels of its points joined by commas; empty without axes.
+    /// Labels of the points joined by commas; empty without axes.
     pub fn title(&self) -> String {
         self.labels.join(", ")
     }
@@ -155,7 +156,8 @@ impl DesignCell {
 
     /// Specification of the trial of `key`.
     ///
-    /// Fails for measured records, and for drawn values that specify no trial, which needs an unbounded distribution.
+    /// Fails for measured records, and for sampled values that specify no trial, possible for unbounded distributions
+    /// only.
     pub fn trial_spec(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
         let TrialSource::Simulated { specification, drawn } = &self.source else {
             return Err(Refusal("the trials are measured records, and nothing is simulated".to_owned()));
@@ -201,7 +203,7 @@ impl DrawnSettings {
         Ok(Some((drawn, specification)))
     }
 
-    /// Specification with drawn values.
+    /// Specification with sampled values.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
@@ -251,7 +253,7 @@ fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Me
     ))
 }
 
-/// One cell of simulated trials: the document with the settings of its points, resolved like any scenario.
+/// One cell of simulated trials: the document with the settings of its points, resolved as a scenario.
 pub(crate) fn swept(
     document: &Table,
     points: &[&sweep::SweepPoint],
@@ -293,7 +295,7 @@ pub(crate) fn swept(
 
 /// One cell of measured records: the document with the settings of its points.
 ///
-/// Fails at the faulty point; the document without the points need not be complete.
+/// Fails at the faulty point; the document without the points may be incomplete.
 pub(crate) fn measured(
     document: &Table,
     points: &[&sweep::SweepPoint],

@@ -1,4 +1,4 @@
-//! The checked scenario: reading, resolving and extending it.
+//! Checked scenario: reading, resolution and extension.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,11 +28,11 @@ use crate::scenario::{checks, locate, name, reader, resolve, resolved};
 /// Key of a study of measured records, in place of ship, manoeuvre and instruments.
 const RECORDS: &str = "records";
 
-/// A scenario, checked in every cell.
+/// Scenario, checked in every cell.
 pub struct Scenario {
     /// Stem of the file.
     pub name: String,
-    /// Key of every random draw.
+    /// Key of every random number.
     pub seed: u64,
     /// Maximum number of trials per cell.
     pub replicates: u64,
@@ -40,11 +40,11 @@ pub struct Scenario {
     pub axes: Vec<SweepAxis>,
     /// Cells of the design, the first axis slowest.
     pub cells: Vec<DesignCell>,
-    /// Values of other authors.
+    /// Published values of other authors.
     pub published: Published,
-    /// Its prose and presentation.
+    /// Prose and presentation.
     pub prose: Prose,
-    /// Keys that are drawn anew in every trial.
+    /// Keys that are sampled anew in every trial.
     pub draws: Vec<String>,
     /// Stopping rule of the cells.
     pub stop: Option<StopRule>,
@@ -56,7 +56,7 @@ pub struct Scenario {
     pub text: String,
     /// SHA-256 of the file, hexadecimal.
     pub sha256: String,
-    /// Keys of `[output]` in a manifest of another version, which are left out.
+    /// Keys of `[output]` in a manifest of another version, which are omitted.
     pub unknown_output: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ fn table_of(path: &Path, text: &str) -> Result<Table, Failure> {
     text.parse().map_err(|error| not_toml(path, text, &error))
 }
 
-/// The part of a manifest from which its scenario is read.
+/// Part of a manifest from which its scenario is read.
 #[derive(Deserialize)]
 struct ManifestScenario {
     name: String,
@@ -137,7 +137,7 @@ impl Scenario {
             output: wire.output.clone(),
         };
         prose.check()?;
-        // The document must be valid without sweeps and draws, which change it but do not complete it.
+        // The document must be valid without sweeps and draws, which change but do not complete it.
         resolve::specification(&wire, name, folder)?;
         let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
@@ -178,13 +178,13 @@ impl Scenario {
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.splits.len() as u64);
         let replicates = counts.max().unwrap_or(0);
-        // Without any record there is no trial, which is reported when the study runs.
+        // Without any record there is no trial, which is reported in the run.
         checks::size(replicates.max(1), cells.len(), methods.len())?;
         let design = Self::of_design(name, prose, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
 
-    /// Scenario of cells and methods alone; the caller sets trials, seed, identity, text and optional parts.
+    /// Scenario of cells and methods; the caller sets trials, seed, identity, text and optional parts.
     ///
     /// Fails if the presentation names cells, axes or methods that do not exist.
     fn of_design(
@@ -225,7 +225,7 @@ impl Scenario {
         (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
     }
 
-    /// The scenario with the methods of these labels, or all for an empty list; `None` without any.
+    /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.
     pub fn with_methods(mut self, labels: &[String]) -> Option<Self> {
         if !labels.is_empty() {
             for cell in &mut self.cells {
@@ -236,23 +236,23 @@ impl Scenario {
         (!self.cells[0].methods.is_empty()).then_some(self)
     }
 
-    /// The scenario with a method of the caller after its methods, on the same trials.
+    /// Scenario with a method of the caller after its methods, on the same trials.
     ///
-    /// Fails for an invalid label, and for that of another method.
+    /// Fails for an invalid label, and for one already in use.
     pub fn with_identifier(self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
         let id = identifier.id();
         self.with(label, Procedure::Identify { settings: None, identifier }, id)
     }
 
-    /// The scenario with answers of an outside estimator after its methods.
+    /// Scenario with a further method: the estimates of an outside estimator.
     ///
-    /// Fails for an invalid label, and for that of another method.
+    /// Fails for an invalid label, and for one already in use.
     pub fn with_answers(self, label: &str, answers: Answers) -> Result<Self, Failure> {
         let content = format!("answers {}", answers.sha256());
         self.with(label, Procedure::Answers(Arc::new(answers)), &content)
     }
 
-    /// The scenario with a further method; `identity_text` enters the SHA-256 of the design.
+    /// Scenario with a further method; `identity_text` enters the SHA-256 of the design.
     fn with(mut self, label: &str, procedure: Procedure, identity_text: &str) -> Result<Self, Failure> {
         name::label(label)
             .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
@@ -266,7 +266,7 @@ impl Scenario {
         Ok(self)
     }
 
-    /// The scenario as TOML with all defaults written out and marked.
+    /// Scenario as TOML with all defaults written out and marked.
     pub fn resolved(&self) -> String {
         let document: Table = self.text.parse().expect("it has been read");
         if document.contains_key(RECORDS) {
@@ -323,7 +323,7 @@ fn folder_of(path: &Path) -> PathBuf {
     path.parent().map(PathBuf::from).unwrap_or_default()
 }
 
-/// Limits of a scenario, alone or in a manifest; the longest published one has a hundredth of this.
+/// Limits of a scenario, alone or in a manifest; the longest published scenario has a hundredth of this size.
 const SCENARIO: Kind = Kind { name: "a scenario", max_bytes: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {

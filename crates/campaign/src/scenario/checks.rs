@@ -11,7 +11,7 @@ use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
 use crate::scenario::prose::{Highlight, MarkedValue};
 use crate::scenario::sweep::SweepAxis;
 
-/// Maximum number of trials of a study; more is a typing error.
+/// Maximum number of trials of a study; a larger one is a typing error.
 const MAX_TRIALS: u64 = 1_000_000_000;
 
 /// Checks the number of trials and of methods times cells.
@@ -44,7 +44,7 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFaul
     Ok(())
 }
 
-/// Checks the length of cell titles, after which files are named.
+/// Checks the length of cell titles, which are parts of file names.
 pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let longest = |axis: &SweepAxis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
     let characters = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();

@@ -1,5 +1,5 @@
-//! Values drawn for every trial: `[[draw]]`. Each draw has its own random stream, keyed by the replicate and its index
-//! in the list but not by the cell. So a replicate has the same drawn ship in every cell, and further draws do not
+//! Random values of every trial: `[[draw]]`. Each draw has its own random stream, keyed by the replicate and its index
+//! in the list but not by the cell. So a replicate has the same sampled ship in every cell, and further draws do not
 //! change it.
 
 use rand::rngs::ChaCha8Rng;
@@ -13,11 +13,11 @@ use crate::scenario::limits;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath};
 
-/// A draw as written in the file.
+/// Draw as written in the file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DrawWire {
-    /// Dotted key that is drawn.
+    /// Dotted key of the random value.
     key: String,
     /// Normal distribution.
     normal: Option<NormalWire>,
@@ -27,7 +27,7 @@ pub struct DrawWire {
     uniform: Option<RangeWire>,
     /// Distribution whose logarithm is uniform.
     log_uniform: Option<RangeWire>,
-    /// Values outside are drawn again.
+    /// Range; values outside are sampled again.
     between: Option<[f64; 2]>,
 }
 
@@ -58,26 +58,26 @@ struct RangeWire {
     to: f64,
 }
 
-/// A drawn key with its distribution.
+/// Random key with its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RandomKey {
-    /// The key.
+    /// Key.
     pub key: KeyPath,
     index: u32,
     shape: DrawnDistribution,
     between: [f64; 2],
 }
 
-/// Distribution of a value or of its natural logarithm.
+/// Distribution of a value or its natural logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct DrawnDistribution {
-    /// Its key in the file.
+    /// Key in the file.
     name: &'static str,
     of_logarithm: bool,
     law: Distribution,
 }
 
-/// A distribution with checked parameters.
+/// Distribution with checked parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Distribution {
     Normal {
@@ -96,7 +96,7 @@ enum Distribution {
 const MIN_PROBABILITY: f64 = 1e-3;
 
 impl DrawWire {
-    /// The drawn key, dotted.
+    /// Random key, dotted.
     pub fn key(&self) -> &str {
         &self.key
     }
@@ -132,7 +132,7 @@ impl DrawWire {
         Ok(draw)
     }
 
-    /// The distribution.
+    /// Distribution.
     fn shape(&self, place: &KeyPath) -> Result<DrawnDistribution, KeyFault> {
         let (name, numbers) = match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
             (Some(wire), None, None, None) => ("normal", [("mean", wire.mean), ("sd", wire.sd)]),
@@ -173,7 +173,7 @@ impl DrawWire {
 }
 
 impl RandomKey {
-    /// Value for one trial, in the unit of its key.
+    /// Sample for one trial, in the unit of the key.
     pub fn value(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
         let [low, high] = self.between;
@@ -191,13 +191,13 @@ impl RandomKey {
         self.shape.middle().clamp(low, high)
     }
 
-    /// Finite ends of its range.
+    /// Finite ends of the range.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
     }
 
-    /// Fault of a drawn trial, attributed to the key of the draw or to its distribution; `cell` names the cell if there
-    /// are several.
+    /// Fault of a sampled trial, attributed to the key of the draw or to its distribution; `cell` names the cell if
+    /// there are several.
     pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match fault.mark {
@@ -278,7 +278,7 @@ mod tests {
         (0..20_000).map(|replicate| draw.value(&StreamKey { seed: 4, cell: 9, replicate })).collect()
     }
 
-    /// Mean and standard deviation against the closed forms, within four standard errors of 20,000 draws.
+    /// Mean and standard deviation against the closed forms, within four standard errors of 20,000 samples.
     fn moments(values: &[f64], mean: f64, sd: f64) {
         let n = values.len() as f64;
         let sample_mean = values.iter().sum::<f64>() / n;

@@ -58,7 +58,7 @@ fn forms_of(id: &str) -> Vec<&'static EffectForm> {
     FORMS.iter().filter(|form| form.effect.id() == id).collect()
 }
 
-/// Writes the defaults of effects out.
+/// Adds the defaults to effects.
 pub fn complete(entries: &mut [EffectWire]) {
     for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.0) {
         let keys = forms_of(id).into_iter().flat_map(|form| &form.keys);
@@ -119,9 +119,9 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
     Ok((formula, values))
 }
 
-/// Missing physics that the only formula of a ship states; `None` without such keys.
+/// Missing physics stated with the only formula of a ship; `None` without such keys.
 ///
-/// Fails for inconsistent keys, and beside another effect.
+/// Fails for inconsistent keys, and for a further effect.
 pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
     for (index, EffectWire(entry)) in entries.iter().enumerate() {
         let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
@@ -150,7 +150,7 @@ pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     })
 }
 
-/// Refuses a formula of a channel that the trials lack, since its moment would be zero.
+/// Refuses a formula of a channel absent from the trials, since its moment would be zero.
 fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Result<(), KeyFault> {
     let Some(channel) = lacking.iter().find(|channel| formula.is_inactive_without(**channel)) else { return Ok(()) };
     let (signal, advice) = match channel {
@@ -205,7 +205,7 @@ pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Resul
                 let key = key.child(setting.key);
                 let mut ends =
                     [description.lowest, description.highest].map(|end| ShortNumber::rounded(end / setting.unit, 4));
-                // Divided by the T of a course-unstable ship, the lower end becomes the upper.
+                // For negative T, of a course-unstable ship, the ends swap after the division.
                 ends.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let expected = format!("expected a number from {} to {}", ends[0], ends[1]);
                 let advice = format!("change the value; the effect is {}", effect.equation());
@@ -231,7 +231,7 @@ struct EffectParameter {
     value: f64,
     /// Key below the effect.
     key: &'static str,
-    /// The number as written.
+    /// Number as written.
     written: f64,
     /// Unit of that number in SI.
     unit: f64,

@@ -1,4 +1,4 @@
-//! Identity of a study: its design, the document without prose and presentation. Equal designs give equal rows;
+//! Identity of a study: its design, that is the document without prose and presentation. Equal designs give equal rows;
 //! differences are reported by key.
 
 use std::path::Path;
@@ -22,7 +22,7 @@ pub fn design_of(document: &Table) -> Table {
         .collect()
 }
 
-/// SHA-256 of a design and of the records it replays, each with the sidecar beside it, if any.
+/// SHA-256 of a design and of the records it replays, each with its sidecar, if any.
 ///
 /// Fails if an existing record cannot be read to its end.
 pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
@@ -38,7 +38,7 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
                     for path in iter::once(record).chain(sidecar) {
                         match file::open(&path, RECORD) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
-                            // Refused elsewhere, or overridden in every cell.
+                            // Refused by another check, or overridden in every cell.
                             Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
                             Err(error) => return Err(error).on("read", &path),
                         }

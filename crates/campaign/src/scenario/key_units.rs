@@ -1,6 +1,6 @@
 //! Units in the names of keys, and axis titles from keys.
 
-/// Endings of keys and the units they stand for, the longest first.
+/// Endings of keys and their units, in decreasing length.
 const UNITS: [(&str, &str); 20] = [
     ("-deg-per-root-s", "deg/√s"),
     ("-s2-per-deg2", "s²/deg²"),

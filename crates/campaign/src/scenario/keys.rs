@@ -1,31 +1,31 @@
-//! List of the keys of a scenario, generated from the schema and so from the types that read the file.
+//! List of the keys of a scenario, generated from the schema, thus from the types that read the file.
 
 use serde_json::{Map, Value};
 
 use crate::scenario::key_units::unit_of;
 use crate::scenario::schema::of_simulated;
 
-/// A key of a scenario with unit, default and meaning.
+/// Key of a scenario with unit, default and meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioKey {
     /// Dotted path from the root; `[]` marks an entry of a list.
     pub key: String,
     /// Unit of a number, or type of another value.
     pub unit: String,
-    /// Value when the key is left out.
+    /// Value of an omitted key.
     pub default: KeyDefault,
     /// Meaning, from the documentation of the field.
     pub meaning: String,
 }
 
-/// Value of a key that is left out.
+/// Value of an omitted key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum KeyDefault {
-    /// Not allowed: the key is required wherever its table is given.
+    /// Not allowed: the key is required in its table.
     Required,
-    /// As the meaning of the key says.
+    /// No value, with the effect stated in the meaning of the key.
     Nothing,
-    /// A default, as TOML writes it.
+    /// Default, as TOML text.
     Value(String),
 }
 
@@ -47,7 +47,7 @@ pub fn keys() -> Vec<ScenarioKey> {
     keys
 }
 
-/// Tables with the keys of `manoeuvre` or `recording`, which are listed once.
+/// Tables with the keys of `manoeuvre` or `recording`, which are listed only once.
 const AS_BEFORE: [&str; 4] = ["also[].manoeuvre", "also[].recording", "validation.manoeuvre", "validation.recording"];
 
 /// Traversal of the schema with its definitions.

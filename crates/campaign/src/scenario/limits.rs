@@ -1,5 +1,5 @@
-//! Limits on the size of one scenario, so that any file is read and checked at once. A person writes a few entries of
-//! each kind; more is an error, or several studies. [`simulate::cost`] limits the cost of one trial.
+//! Limits on the size of one scenario, so that any file is read and checked quickly. A person writes a few entries of
+//! each kind; more indicate an error, or several studies. [`simulate::cost`] limits the cost of one trial.
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 
@@ -34,7 +34,7 @@ pub fn entries(list: &str, count: usize, most: usize) -> Result<(), KeyFault> {
     ))
 }
 
-/// Refuses a key with too many names, at the `place` where it is written.
+/// Refuses a key with too many names, at its `place` in the file.
 pub fn check_depth(key: &KeyPath, place: &KeyPath) -> Result<(), KeyFault> {
     let names = key.parts().len();
     if names <= MAX_NAMES {

@@ -6,8 +6,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::scenario::problem::{AtFault, KeyPath};
 
-/// Byte range of the name or value at a path; of the nearest existing key above it otherwise; of the first line with
-/// content without any.
+/// Byte range of the name or value at a path; otherwise of the nearest existing key above it; otherwise of the first
+/// line with content.
 ///
 /// A table or list is located by its name, since its range may be pages long.
 pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
@@ -43,7 +43,7 @@ pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
     place
 }
 
-/// Range of the character after `at` characters of a quoted text; the whole text where it contains escapes.
+/// Range of the character after `at` characters of a quoted text; the whole text if it contains escapes.
 fn within(text: &str, quoted: Range<usize>, content: &str, at: usize) -> Range<usize> {
     let Some(start) = text[quoted.clone()].find(content) else { return quoted };
     let from = quoted.start + start + content.chars().take(at).map(char::len_utf8).sum::<usize>();

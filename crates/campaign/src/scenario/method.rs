@@ -15,12 +15,12 @@ use crate::scenario::answers::{self, Answers};
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 use crate::scenario::{effect, limits, name};
 
-/// A method as a scenario names it.
+/// Method as named in a scenario.
 #[derive(Clone)]
 pub struct Method {
-    /// Label in tables and figures; unique in the scenario.
+    /// Label in tables and plots; unique in the scenario.
     pub label: String,
-    /// Its procedure.
+    /// Procedure.
     pub procedure: Procedure,
 }
 
@@ -29,14 +29,14 @@ pub struct Method {
 pub enum Procedure {
     /// Identifies a first-order response.
     Identify {
-        /// Settings of the method; `None` for one that comes from outside the registry.
+        /// Settings of the method; `None` for a method outside the registry.
         settings: Option<IdentifierSettings>,
-        /// The method with its settings.
+        /// Method with its settings.
         identifier: Arc<dyn Identifier>,
     },
-    /// Traces what a first-order response lacks.
+    /// Finds what a first-order response lacks.
     Trace(::trace::Settings),
-    /// Looks up answers of an outside estimator.
+    /// Looks up the estimates of an outside estimator.
     Answers(Arc<Answers>),
     /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
@@ -95,22 +95,22 @@ pub const STRAIGHT_ON: &str = "straight-on";
 /// Label and id of a method.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodName {
-    /// Label in tables and figures.
+    /// Label in tables and plots.
     pub label: String,
     /// Id of the method.
     pub id: String,
 }
 
-/// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks; or
-/// the floor of all errors.
+/// Method with its settings: one key in addition to the label, the id of the method; or a trace of what the base
+/// lacks; or the floor of all errors.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct IdentifierWire {
-    /// What tables and figures call it; its id when left out.
+    /// Label in tables and plots; its id if omitted.
     pub label: Option<String>,
-    /// A method by its id, with its settings.
+    /// Method by its id, with its settings.
     pub method: Option<IdentifierSettings>,
-    /// In place of a method: a trace of what the first-order response lacks.
+    /// In place of a method: a trace of the effects missing from the first-order response.
     pub trace: Option<TraceWire>,
     /// In place of a method: a ship that keeps her heading, the floor of all errors.
     pub straight_on: Option<StraightOnWire>,
@@ -125,15 +125,15 @@ pub(crate) struct StraightOnWire {}
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
-    /// How structures are weighed.
+    /// Weighting rule of the structures.
     rule: Rule,
-    /// Probability from which an effect is named.
+    /// Minimum probability of a named effect.
     probability: f64,
-    /// Effects that may be missing; without the key all.
+    /// Effects that may be missing; all if omitted.
     menu: Option<Vec<String>>,
-    /// Monomials that stand among the candidates.
+    /// Number of monomials among the candidates.
     monomials: usize,
-    /// `true` if speed, sway, propeller and wind are left unread.
+    /// `true` if speed, sway, propeller and wind are not used.
     heading_alone: bool,
     /// Effects as lines of text, `bank = c * tanh(k * psi)`, candidates like those of the list.
     formulas: Vec<String>,
@@ -236,7 +236,7 @@ fn selection_from(menu: &[String]) -> Result<Selection, SettingsError> {
     Ok(Selection::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
 }
 
-/// The key of a method in a scenario.
+/// Key of a method in a scenario.
 fn registry_id(settings: &IdentifierSettings) -> String {
     let table = toml::Table::try_from(settings).unwrap_or_default();
     table.keys().next().cloned().unwrap_or_default()

@@ -9,9 +9,9 @@
 //! | faults and their position | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | measured records in place of simulated ships | [`records`] |
-//! | answers of outside estimators | [`answers`] |
+//! | estimates of outside estimators | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
-//! | which scenarios give the same rows | [`identity`] |
+//! | scenarios with equal rows | [`identity`] |
 //! | schema and keys for editors | [`schema`], [`keys`] |
 //! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 

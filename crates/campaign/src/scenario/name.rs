@@ -1,4 +1,4 @@
-//! Names and labels given by users: what may appear in a figure, a table, a page or a file name. They are checked on
+//! Names and labels given by users: characters allowed in a plot, a table, a page or a file name. They are checked on
 //! input, so that later code can rely on them.
 
 use std::path::Path;
@@ -15,7 +15,7 @@ pub const MAX_LABEL_CHARS: usize = 80;
 /// with a prefix and an extension, within the 255 bytes of a file system.
 pub const MAX_NAME_BYTES: usize = 180;
 
-/// Reason why a text cannot be used; displayed as what was expected instead.
+/// Reason why a text cannot be used; displayed as the expected text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Unfit {
     /// Empty or blank.
@@ -29,13 +29,13 @@ pub enum Unfit {
         /// Number of characters.
         length: usize,
     },
-    /// A character that cannot be printed.
+    /// Character that cannot be printed.
     #[error("expected characters that can be printed, this text holds {}", .0.escape_unicode())]
     Unprintable(char),
-    /// A character that is reserved in paths or on some file systems.
+    /// Character that is reserved in paths or on some file systems.
     #[error("expected the name of a file, which has no `{0}`")]
     OfPaths(char),
-    /// A first or last character that would hide the file or name a folder.
+    /// First or last character that would hide the file or name a folder.
     #[error("expected the name of a file, which does not begin with a dot or a blank and does not end with one")]
     Ends,
 }
@@ -89,7 +89,7 @@ pub fn of_file(path: &Path) -> Result<String, Failure> {
     }
 }
 
-/// A title as part of a file name: lower case, words joined by hyphens.
+/// Title as part of a file name: lower case, words joined by hyphens.
 pub fn slug(title: &str) -> String {
     let mut slug = String::new();
     for letter in title.chars() {
@@ -102,7 +102,7 @@ pub fn slug(title: &str) -> String {
     slug.trim_end_matches('-').to_owned()
 }
 
-/// Beginning of a text, in quotes, for messages.
+/// Beginning of a text in quotes, for messages.
 pub fn shown(text: &str) -> String {
     const SHOWN: usize = 40;
     match text.char_indices().nth(SHOWN) {

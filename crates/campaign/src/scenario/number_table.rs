@@ -1,4 +1,4 @@
-//! Tables of numbers, such as those of an effect or of a user's ship. Their keys are data, by which they are checked,
+//! Tables of numbers, such as those of an effect or of a user's ship. Their keys are data, with which they are checked,
 //! completed and described in the schema.
 
 use std::collections::BTreeMap;
@@ -8,13 +8,13 @@ use serde_json::{Map, Value, json};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::reader;
 
-/// A name with a table of numbers below it.
+/// Name with a table of numbers below it.
 pub type NamedNumbers = BTreeMap<String, BTreeMap<String, f64>>;
 
 /// Key of a number in such a table.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberKey {
-    /// The key, which ends in the unit.
+    /// Key, which ends in the unit.
     pub key: &'static str,
     /// Meaning, for documentation.
     pub meaning: &'static str,
@@ -36,7 +36,7 @@ impl NumberKey {
     }
 }
 
-/// The only name of a table, its key and its numbers. Fails for none or several; the message lists the `choices`.
+/// Single name of a table, its key and its numbers. Fails for none or several; the message lists the `choices`.
 pub fn only<'a>(
     named: &'a NamedNumbers,
     place: &KeyPath,
@@ -64,7 +64,7 @@ pub fn refuse_incomplete(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], ta
     missing.map_or(Ok(()), |number| Err(reader::missing(table, number.key)))
 }
 
-/// Writes the defaults of missing keys out.
+/// Adds the defaults of missing keys.
 pub fn complete(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
     for (number, default) in keys.iter().filter_map(|number| Some((number, number.default?))) {
         numbers.entry(number.key.to_owned()).or_insert(default);

@@ -1,4 +1,4 @@
-//! Parts of a scenario by its top-level keys, which decide the identity of a study and the keys open to sweeps and
+//! Parts of a scenario by its top-level keys, which determine the identity of a study and the keys open to sweeps and
 //! draws.
 
 /// Part of a scenario.

@@ -1,24 +1,25 @@
-//! Physics that a first-order base lacks in the trials of a cell: the reference against which a trace is scored.
+//! Physics that a first-order base lacks in the trials of a cell: the reference of the scores of a trace.
 
 use document::trace::Dependence;
 use serde::{Deserialize, Serialize};
 
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 
-/// Keys of [`PhysicsWire`], beside the constants of a formula.
+/// Keys of [`PhysicsWire`], except the constants of a formula.
 pub const KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
 
-/// What is right to say of a formula, as it is written in its entry.
+/// Correct findings for a formula, as written in its entry.
 #[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub struct PhysicsWire {
-    /// Effects of the list that are the same physics: a trace that names one of them is right.
+    /// Effects of the list with the same physics: a trace that names one of them is right.
     stands_for: Vec<String>,
-    /// What the moment depends on, where no effect of the list is the same physics: a trace that locates it is right.
+    /// Variable that determines the moment, if no effect of the list has the same physics: a trace that locates it is
+    /// right.
     depends_on: Option<Dependence>,
-    /// Instants at which a moment of time changes, or about which it passes.
+    /// Instants of change of a time-dependent moment, or centres of its pulses.
     changes_s: Vec<f64>,
-    /// Shortest and longest period of a moment of time.
+    /// Minimum and maximum period of a time-dependent moment.
     period_s: Option<[f64; 2]>,
 }
 
@@ -28,21 +29,21 @@ pub struct PhysicsWire {
 pub enum MissingPhysics {
     /// Effects of the list, or the same physics in another formula.
     Listed {
-        /// The effects: to name any of them is right.
+        /// Effects; any of them is right.
         effects: Vec<String>,
     },
-    /// A moment on no list.
+    /// Moment on no list.
     Unlisted {
-        /// What it depends on.
+        /// Variable that determines the moment.
         depends_on: Dependence,
-        /// Instants at which it changes, or about which it passes.
+        /// Instants of change, or centres of pulses.
         changes_s: Vec<f64>,
-        /// Its shortest and longest period.
+        /// Minimum and maximum period.
         period_s: Option<[f64; 2]>,
     },
-    /// Nothing.
+    /// No missing physics.
     Nothing {
-        /// `true` if chance turns the ship or her recorded rudder, so that a random moment is right as well.
+        /// `true` if a random moment acts on the ship or her recorded rudder, so that naming one is right as well.
         disturbed: bool,
     },
 }
@@ -96,7 +97,7 @@ impl PhysicsWire {
 }
 
 impl MissingPhysics {
-    /// Missing physics of a ship without a statement: one listed effect, or nothing; `None` for several effects and for
+    /// Missing physics of a ship without a statement: one listed effect, or none; `None` for several effects and for
     /// a name outside the list.
     pub fn of_effects(missing: &[String], disturbed: bool) -> Option<Self> {
         match missing {

@@ -6,13 +6,13 @@ use trial::manoeuvre::ManoeuvreParseError;
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 
-/// Manoeuvres that are predicted from every answer and held against the same ship making them.
+/// Manoeuvres predicted from every estimate and compared with those of the true ship.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct PredictWire {
-    /// Manoeuvres, as `study predict --manoeuvre` takes them.
+    /// Manoeuvres, as in `study predict --manoeuvre`.
     pub manoeuvres: Vec<String>,
-    /// Ships drawn for every prediction.
+    /// Number of ships sampled for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }
@@ -21,23 +21,23 @@ fn draws() -> u64 {
     200
 }
 
-/// Allowed numbers of draws: enough for an interval, few enough to finish.
+/// Allowed numbers of draws: sufficient for an interval, with an acceptable duration.
 const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 
 /// Manoeuvres to predict, and number of draws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predictions {
-    /// The manoeuvres.
+    /// Manoeuvres.
     pub kinds: Vec<Manoeuvre>,
-    /// Ships drawn for every prediction.
+    /// Number of ships sampled for every prediction.
     pub draws: usize,
 }
 
-/// Predictions of the records that judge.
+/// Settings of the predictions of validation records.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RecordPredictWire {
-    /// Ships drawn for every prediction.
+    /// Number of ships sampled for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }

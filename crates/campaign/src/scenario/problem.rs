@@ -1,5 +1,5 @@
-//! Faults of a scenario as data: the key, the problem, what was expected and what to do. `locate` finds the position of
-//! the key in the file; messages of parsers never reach the user.
+//! Faults of a scenario as data: the key, the problem, the expected value and the remedy. `locate` finds the position
+//! of the key in the file; messages of parsers never reach the user.
 
 use std::fmt;
 
@@ -22,12 +22,12 @@ impl KeyPath {
         Self(self.0.iter().cloned().chain([part.to_string()]).collect())
     }
 
-    /// The names from the root on.
+    /// Names from the root on.
     pub fn parts(&self) -> &[String] {
         &self.0
     }
 
-    /// The last name; empty at the root.
+    /// Last name; empty at the root.
     pub fn last(&self) -> &str {
         self.0.last().map_or("", String::as_str)
     }
@@ -52,26 +52,26 @@ impl fmt::Display for KeyPath {
 /// Underlined part of a faulty key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AtFault {
-    /// The name of the key.
+    /// Name of the key.
     Name,
-    /// Its value.
+    /// Value.
     Value,
-    /// Its text value, after so many characters.
+    /// Text value, after so many characters.
     Within(usize),
 }
 
-/// A fault of a scenario at a key.
+/// Fault of a scenario at a key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeyFault {
-    /// The faulty key.
+    /// Faulty key.
     pub key: KeyPath,
-    /// The underlined part.
+    /// Underlined part.
     pub mark: AtFault,
-    /// The problem, with key and value, in one sentence.
+    /// Problem, with key and value, in one sentence.
     pub problem: String,
-    /// What was expected, printed below the underlined part.
+    /// Expected text, printed below the underlined part.
     pub expected: String,
-    /// What to do.
+    /// Remedy.
     pub advice: String,
 }
 
@@ -128,7 +128,7 @@ impl From<SpecificationError> for KeyFault {
     }
 }
 
-/// Fault of a text that cannot be used.
+/// Fault of an unusable text.
 pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
     KeyFault::of(key, shown(text), unfit.to_string(), "change the text")
 }

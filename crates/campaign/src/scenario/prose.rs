@@ -1,4 +1,4 @@
-//! Prose and presentation of a scenario: question, analysis, finding, figures. They do not affect rows.
+//! Prose and presentation of a scenario: question, analysis, finding, plots. They do not affect rows.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use schemars::JsonSchema;
@@ -11,41 +11,42 @@ use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 /// Prose and presentation of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Prose {
-    /// The question.
+    /// Question.
     pub question: String,
     /// Analysis, in paragraphs.
     pub analysis: String,
-    /// The answer in one sentence.
+    /// Result in one sentence.
     pub finding: String,
-    /// Selection of figures, and the key figure.
+    /// Selection of plots, and the key plot.
     pub output: Presentation,
 }
 
-/// Which figures are made.
+/// Selection of plots.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Presentation {
-    /// Figures of the first replicate of every cell: trial, fit, derivatives, replays, intervals.
+    /// Plots of the first replicate of every cell: trial, fit, derivatives, replays, intervals.
     pub showcase: bool,
-    /// Stem of the figure that stands for the study on an overview.
+    /// Stem of the plot that represents the study on an overview.
     pub figure: Option<String>,
-    /// Title of that figure: what it shows, in a sentence.
+    /// Title of that plot: its result, in a sentence.
     pub title: Option<String>,
-    /// What that figure is about.
+    /// Subject of that plot.
     pub highlight: Highlight,
-    /// Stems of the figures that are made beside it; all there are when left out.
+    /// Stems of the further plots; all available plots if omitted.
     pub figures: Option<Vec<String>>,
     /// Values of an axis with a name of their own.
     pub marks: Vec<MarkedValue>,
-    /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
+    /// Cells, by the labels of their points joined by commas, whose errors are shown individually.
     pub detail: Vec<String>,
 }
 
 impl Presentation {
-    /// The keys of its table.
+    /// Keys of the table.
     const KEYS: [&str; 7] = ["showcase", "figure", "title", "highlight", "figures", "marks", "detail"];
 
-    /// Leaves keys of other versions out of `output` in the scenario of a manifest, which decides no row: their names.
+    /// Removes the keys of other versions, which determine no row, from `output` in the scenario of a manifest; their
+    /// names.
     pub(crate) fn without_unknown(document: &mut Table) -> Vec<String> {
         let Some(Value::Table(output)) = document.get_mut("output") else { return Vec::new() };
         let is_unknown = |key: &&String| !Self::KEYS.contains(&key.as_str());
@@ -55,36 +56,36 @@ impl Presentation {
     }
 }
 
-/// What a figure is about: everything else in it is pale.
+/// Subject of a plot: everything else in it is pale.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Highlight {
-    /// Labels of methods; all where left out. Of several traces the first of them is drawn.
+    /// Labels of methods; all if omitted. Of several traces the first one is plotted.
     pub series: Vec<String>,
-    /// Names of rows; all where left out. Their values are written beside them.
+    /// Names of rows; all if omitted. Their values are written next to them.
     pub rows: Vec<String>,
 }
 
-/// A value of an axis with a name, such as the limit of a rule.
+/// Named value of an axis, such as the limit of a rule.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MarkedValue {
     /// Name of the axis.
     pub axis: String,
-    /// The value.
+    /// Value.
     pub at: f64,
-    /// Its name.
+    /// Name of the value.
     pub label: String,
 }
 
-/// Values of other authors, shown beside the results and never used.
+/// Published values of other authors, shown next to the results and never used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Published {
-    /// K as published.
+    /// Published K.
     #[serde(rename = "K-per-s")]
     pub K_per_s: Option<f64>,
-    /// T as published.
+    /// Published T.
     #[serde(rename = "T-s")]
     pub T_s: Option<f64>,
 }
@@ -99,7 +100,7 @@ impl Prose {
         Self { question: text("question"), analysis: text("analysis"), finding: text("finding"), output }
     }
 
-    /// Checks that texts are printable and that figure names are valid file names.
+    /// Checks that texts are printable and that plot names are valid file names.
     pub(crate) fn check(&self) -> Result<(), KeyFault> {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
@@ -138,7 +139,7 @@ impl Published {
 mod tests {
     use super::*;
 
-    /// A manifest of another version is the same study, and its words are those that are still known.
+    /// A manifest of another version belongs to the same study; unknown keys of its prose are omitted.
     #[test]
     fn keys_of_other_versions_are_left_out() {
         let schema = schemars::schema_for!(Presentation);

@@ -1,5 +1,5 @@
-//! Reader of typed values from a TOML document in memory. Every fault names its key, the value and what was expected,
-//! so that a scenario as written and one changed by a sweep give the same messages.
+//! Reader of typed values from a TOML document in memory. Every fault names its key, the value and the expected one,
+//! so that a scenario as written and a scenario changed by a sweep give the same messages.
 
 use std::fmt::Display;
 
@@ -14,7 +14,7 @@ use crate::scenario::problem::{KeyFault, KeyPath, listed, suggestion};
 
 /// Value of a whole document.
 ///
-/// Fails with the key, the problem and what was expected.
+/// Fails with the key, the problem and the expected value.
 pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
     table(document, &KeyPath::default())
 }
@@ -42,12 +42,12 @@ pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Resu
     })
 }
 
-/// The entries of a table, each to be read on its own.
+/// Entries of a table, each read separately.
 fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Node<'_>)>, ReadFault> {
     MapDeserializer::new(table.iter().map(|(name, value)| (name.as_str(), Node(value))))
 }
 
-/// A value of a document. Unlike the deserialiser of `toml`, it does not accept a list as a table.
+/// Value of a document. Unlike the deserialiser of `toml`, it does not accept a list as a table.
 struct Node<'de>(&'de Value);
 
 impl<'de> IntoDeserializer<'de, ReadFault> for Node<'de> {
@@ -118,7 +118,7 @@ pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
     ReadFault::MissingKey(name).at(table.clone(), None)
 }
 
-/// Fault of a table with `names` where exactly one name is expected.
+/// Fault of a table with `names` if exactly one name is expected.
 pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, choices: &[&str]) -> KeyFault {
     let names: Vec<&String> = names.collect();
     let (problem, advice) = match names.len() {
@@ -128,7 +128,7 @@ pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>,
     KeyFault::name(table, problem, "expected exactly one name below it", advice)
 }
 
-/// A fault without its position.
+/// Fault without its position.
 #[derive(Debug, thiserror::Error)]
 #[error("{self:?}")]
 enum ReadFault {
@@ -171,7 +171,7 @@ impl de::Error for ReadFault {
 }
 
 impl ReadFault {
-    /// The fault at a key with its value; without a value that of the document.
+    /// Fault at a key with its value; without a value, that of the whole document.
     fn at(self, key: KeyPath, value: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.parts() {
             [] => "a scenario".to_owned(),
@@ -266,7 +266,7 @@ fn described(value: &Value) -> String {
     }
 }
 
-/// Kind of thing that the names at a key denote.
+/// Kind of object that the names at a key denote.
 fn kind_of(key: &KeyPath) -> &'static str {
     match key.parts() {
         [manoeuvre, _] if manoeuvre == "manoeuvre" => "manoeuvre",

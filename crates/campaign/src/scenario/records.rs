@@ -1,5 +1,5 @@
 //! Studies of measured records: `[records]` replaces ship, manoeuvre and instruments. Methods are fitted to some
-//! records of a ship and validated on others, which play no part in the fit (hold-out validation, Ljung 1999).
+//! records of a ship and validated on others outside the fit (hold-out validation, Ljung 1999).
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Display;
@@ -24,37 +24,37 @@ use crate::scenario::problem::{KeyFault, KeyPath, place_among};
 use crate::scenario::prose::Presentation;
 use crate::scenario::sweep::AxisWire;
 
-/// Environment variable for the folder of records that are not beside the scenario.
+/// Environment variable for the folder of records that are not next to the scenario.
 pub const DATA: &str = "KEMPF_DATA";
 
 /// Maximum number of records of a cell.
 const MAX_RECORDS: usize = 1000;
 
-/// A scenario of measured records.
+/// Scenario of measured records.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordStudyWire {
-    /// What the study asks, in one sentence.
+    /// Question of the study, in one sentence.
     pub question: String,
-    /// How to read its results, in paragraphs.
+    /// Interpretation of the results, in paragraphs.
     #[serde(default)]
     pub analysis: String,
-    /// The answer in one sentence.
+    /// Result in one sentence.
     #[serde(default)]
     pub finding: String,
-    /// Seed of methods and predictions that draw at random.
+    /// Seed of the methods and predictions that use random numbers.
     #[serde(default)]
     pub seed: u64,
-    /// The records, and how they are shared out.
+    /// Records and their split.
     pub records: RecordsWire,
-    /// What is predicted of every judging record.
+    /// Prediction of every validation record.
     pub(crate) predict: Option<RecordPredictWire>,
-    /// The methods, all on the same records.
+    /// Methods, all on the same records.
     pub(crate) identifier: Vec<IdentifierWire>,
     /// Axes of the design, such as one of several ships.
     #[serde(default)]
     pub(crate) sweep: Vec<AxisWire>,
-    /// Which figures are made.
+    /// Selection of plots.
     #[serde(default)]
     pub output: Presentation,
 }
@@ -63,13 +63,13 @@ pub struct RecordStudyWire {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordsWire {
-    /// Files, `*` standing for anything in a name; from the folder of the scenario, or else from that of KEMPF_DATA. Or
-    /// a table of files and their SHA-256: of these the ones that are not there are left out, and said.
+    /// Files, with `*` for any text in a name; from the folder of the scenario, or else from that of KEMPF_DATA. Or
+    /// a table of files and their SHA-256: absent files are omitted, with a warning.
     pub files: FilesWire,
-    /// Sidecar that describes the columns of all of them, or a list with one for each entry of `files`; a folder stands
-    /// for the NAME.trial.toml of each record in it. Left out, each has its own beside it, if any.
+    /// Sidecar that describes the columns of all of them, or a list with one for each entry of `files`; a folder means
+    /// the NAME.trial.toml of each record in it. If omitted, each record has its own sidecar next to it, if any.
     pub sidecar: Option<SidecarWire>,
-    /// Which records are fitted, and which judge.
+    /// Split into fitted records and validation records.
     #[serde(default)]
     pub judge: JudgeWire,
 }
@@ -78,33 +78,33 @@ pub struct RecordsWire {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(untagged, expecting = "a list of files, or a table with the SHA-256 of each")]
 pub enum FilesWire {
-    /// All of them have to be there.
+    /// Files that must all be present.
     Patterns(Vec<String>),
     /// Files and their SHA-256, hexadecimal.
     Checksummed(BTreeMap<String, String>),
 }
 
-/// What describes the columns of records.
+/// Description of the columns of records.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(untagged, expecting = "a sidecar or a folder of them, or a list with one for each entry of `files`")]
 pub enum SidecarWire {
-    /// Of all records.
+    /// Sidecar of all records.
     All(String),
-    /// Of the records of each entry of the files.
+    /// Sidecars of the records of each entry of the files.
     Each(Vec<String>),
 }
 
-/// Which records are fitted, and which judge.
+/// Split into fitted records and validation records.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(untagged, expecting = "\"others\", \"left-out\", \"none\", or a table with `fit` and `judge`")]
 pub enum JudgeWire {
-    /// By a rule.
+    /// Split by a rule.
     Rule(HoldOutRule),
-    /// By lists of names of records.
+    /// Split by lists of names of records.
     Lists {
-        /// Records that are fitted: together, or each alone.
+        /// Fitted records: together, or each alone.
         fit: Vec<String>,
-        /// Records that judge; where each is fitted alone, all but the fitted one.
+        /// Validation records; if each is fitted alone, all but the fitted one.
         judge: Vec<String>,
         /// `true` if each record is fitted alone.
         #[serde(default)]
@@ -112,15 +112,15 @@ pub enum JudgeWire {
     },
 }
 
-/// How records are shared out.
+/// Rule of the split.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HoldOutRule {
-    /// Each record is fitted alone and judged by all others.
+    /// Each record is fitted alone and validated on all others.
     Others,
-    /// All records but one are fitted together and judged by that one, each in turn.
+    /// All records but one are fitted together and validated on that one, in turn.
     LeftOut,
-    /// Each record is fitted alone, and nothing judges.
+    /// Each record is fitted alone, without validation.
     None,
 }
 
@@ -139,17 +139,17 @@ pub struct RecordSplit {
     pub judge: Option<usize>,
 }
 
-/// Records of a cell, with the splits of its trials.
+/// Records of a cell, with the splits of the trials.
 pub struct RecordSet {
-    /// The records, in the order of their names.
+    /// Records, in the order of their names.
     pub trials: Vec<Trial>,
     /// Splits of the trials; equal fits are adjacent.
     pub splits: Vec<RecordSplit>,
-    /// Absent files of those listed with a SHA-256, with the reason.
+    /// Absent files among those listed with a SHA-256, with the reason.
     pub absent: Vec<(String, String)>,
     /// Warnings of the reader, one line each.
     pub warnings: Vec<String>,
-    /// SHA-256 of every file and of the sidecar that describes it.
+    /// SHA-256 of every file and its sidecar.
     sha256: String,
     /// Cache of [`without_spikes`](Self::without_spikes).
     without_spikes: OnceLock<Vec<Trial>>,
@@ -161,14 +161,14 @@ impl RecordSet {
         self.trials[place].name()
     }
 
-    /// The records without heading spikes, which are excluded from all errors.
+    /// Records without heading spikes, which are excluded from all errors.
     pub(crate) fn without_spikes(&self) -> &[Trial] {
         self.without_spikes.get_or_init(|| without_spikes(&self.trials).0.into_owned())
     }
 
     /// Records of a `[records]` table.
     ///
-    /// Fails if a file is missing or is not a record, and when no split is left.
+    /// Fails if a file is missing or is not a record, and if no split is left.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::dotted("records");
         let ListedFiles { paths, absent } = files(wire, folder, &key)?;
@@ -211,7 +211,7 @@ impl RecordSet {
 /// Files of records, present and absent.
 #[derive(Default)]
 struct ListedFiles {
-    /// Present files, each with the sidecar that describes it.
+    /// Present files, each with its sidecar.
     paths: Vec<(PathBuf, Option<PathBuf>)>,
     /// Absent files, with the reason.
     absent: Vec<(String, String)>,
@@ -272,7 +272,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
     Ok(files)
 }
 
-/// Path of a file with this SHA-256; fails with the reason, without the path.
+/// Path of a file with this SHA-256. Fails with the reason, without the path.
 fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
     let bytes = disk::read(&path, RECORD.max_bytes).map_err(|error| format!("it cannot be read: {error}"))?;
@@ -283,7 +283,7 @@ fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, Str
     Err(format!("it is another file: its SHA-256 begins with {}, expected {}", &hash[..12], &sha256[..12]))
 }
 
-/// Splits of a cell, without those that need an absent record.
+/// Splits of a cell, without those that require an absent record.
 fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -> Result<Vec<RecordSplit>, KeyFault> {
     let all = 0..names.len();
     let without = |excluded: usize| all.clone().filter(|place| *place != excluded).collect::<Vec<usize>>();
@@ -343,7 +343,7 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
     Ok(splits)
 }
 
-/// Files that match a pattern, sorted: beside the scenario, otherwise in the folder of [`DATA`].
+/// Files that match a pattern, sorted: next to the scenario, otherwise in the folder of [`DATA`].
 fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let data = std::env::var_os(DATA).map(PathBuf::from);
     let below = |folder: &Path| -> Vec<PathBuf> {
@@ -363,7 +363,7 @@ fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     if files.is_empty() { data.map_or(files, |data| below(&data)) } else { files }
 }
 
-/// `true` if a name matches a pattern in which `*` stands for any text.
+/// `true` if a name matches a pattern with `*` for any text.
 fn fits(name: &str, pattern: &str) -> bool {
     let mut parts = pattern.split('*');
     let Some(mut tail) = parts.next().and_then(|first| name.strip_prefix(first)) else { return false };

@@ -14,7 +14,7 @@ use crate::scenario::specification::{HULL, Specification};
 use crate::scenario::wire::{FurtherWire, ScenarioWire};
 use crate::scenario::{effect, ship};
 
-/// Specification of a trial, which carries the name of its scenario.
+/// Specification of a trial, with the name of the scenario.
 pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
@@ -35,7 +35,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         further(entry, record, KeyPath::dotted("also").child(index), &context, folder)
     });
     let also = also.collect::<Result<_, _>>()?;
-    // A validation is in a calm and perfectly recorded, so that the error of a replay is that of the response.
+    // A validation is in a calm and without measurement error, so that the error of a replay is that of the response.
     let validation = wire.validation.as_ref().map(|entry| {
         let record = Simulation {
             recording: entry.recording.unwrap_or_else(|| of_validation(&wire.recording)),
@@ -54,7 +54,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     Ok(Specification { also, validation, truth, base, missing, stated, simulation })
 }
 
-/// Channels that the trials of a scenario lack.
+/// Channels absent from the trials of a scenario.
 fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
     let moves = wire.speed_and_sway.is_some();
     let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
@@ -63,7 +63,7 @@ fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
     has.into_iter().filter(|(_, is_there)| !is_there).map(|(channel, _)| channel).collect()
 }
 
-/// Vessel of the simulation: the ship, with speed and sway added to its yaw response where the scenario has them.
+/// Vessel of the simulation: the ship, with speed and sway added to its yaw response if the scenario has them.
 ///
 /// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
 fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
@@ -85,7 +85,7 @@ fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
     Ok(vessel.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
 }
 
-/// Identifiers of the effects that a first-order base lacks in a trial: those of the ship, and those equal to a
+/// Identifiers of the effects missing from a first-order base in a trial: those of the ship, and those equal to a
 /// disturbance.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
@@ -110,8 +110,8 @@ pub fn of_validation(trial: &Recording) -> Recording {
     Recording { duration: trial.duration, ..Recording::every(trial.period) }
 }
 
-/// Simulation of a further manoeuvre of the ship; `record` holds what it shares with the first one, which is checked
-/// already, so that any fault concerns this manoeuvre.
+/// Simulation of a further manoeuvre of the ship; `record` has the settings shared with the first one, which are
+/// checked already, so that any fault concerns this manoeuvre.
 fn further(
     wire: &FurtherWire,
     record: Simulation,
@@ -145,7 +145,7 @@ fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, KeyFault
     if path.exists() && !path.is_file() {
         return Err(refuse(format!("{}: this is a folder, a pipe or a device, not a file", path.display())));
     }
-    // The content is not shown: the user need not be the author of the scenario.
+    // The content is not shown: the author of the scenario may be another person than the user.
     let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
     Ok(Manoeuvre::Replay { file: file.clone(), rudder: Some(reading.trial.rudder_signal().clone()) })
 }

@@ -1,4 +1,4 @@
-//! Resolved text of a scenario: the keys as written, and all defaults, marked as such.
+//! Resolved text of a scenario: the keys as written, and all defaults with a mark.
 
 use toml::{Table, Value};
 
@@ -46,7 +46,7 @@ impl ResolvedText {
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
         if path.is_empty() {
-            // In the order in which a person reads them, which is that of the types.
+            // Entries in reading order, which is that of the types.
             entries.sort_by_key(|(name, _)| self.keys.iter().position(|entry| entry.key == **name));
         }
         let (tables, values): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(_, value)| is_of_tables(value));
@@ -105,7 +105,7 @@ fn is_of_tables(value: &Value) -> bool {
     }
 }
 
-/// A name as TOML writes it.
+/// Name in TOML notation.
 fn written(name: &str) -> String {
     let bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     if !name.is_empty() && name.chars().all(bare) {
@@ -167,7 +167,7 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
             let key = simulate::StreamKey { seed: 3, cell: 0, replicate: 0 };
             let [left, right] =
                 [left, right].map(|cell| cell.trial_spec(&key).expect("nothing is drawn").specification);
-            // A rate that is left out and one that is infinite move the rudder alike; only the first is warned of.
+            // An omitted rate and an infinite rate move the rudder alike; only the omitted one gives a warning.
             let same = |simulation: &Simulation| {
                 let mut simulation = simulation.clone();
                 simulation.gear.rate = Some(simulation.gear.largest_rate());

@@ -7,7 +7,7 @@ use schemars::generate::SchemaSettings;
 use crate::scenario::records::RecordStudyWire;
 use crate::scenario::wire::ScenarioWire;
 
-/// A scenario of either kind.
+/// Scenario of simulated ships or of measured records.
 #[derive(schemars::JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "it is described and never made")]

@@ -1,4 +1,4 @@
-//! Ship of a scenario: one of the registry, or a user's ship by its numbers.
+//! Ship of a scenario: a ship of the registry, or a user's ship by its numbers.
 
 #![expect(non_snake_case, reason = "K, T1, T2 and T3 are the symbols of the field")]
 
@@ -56,7 +56,7 @@ static HULL_NUMBERS: LazyLock<Vec<NumberKey>> = LazyLock::new(|| {
     PARTICULARS.iter().map(number).collect()
 });
 
-/// The ships of the registry.
+/// Ships of the registry.
 static REGISTRY: LazyLock<Vec<Ship>> = LazyLock::new(ships::all);
 
 /// Keys of a user's ship; empty for a ship of the registry.
@@ -69,7 +69,7 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
     }
 }
 
-/// Ship that `[ship]` names or describes.
+/// Ship named or described by `[ship]`.
 ///
 /// Fails with the invalid name or number.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
@@ -116,12 +116,12 @@ fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault>
     })
 }
 
-/// Writes the defaults of a user's ship out.
+/// Adds the defaults to the numbers of a user's ship.
 pub fn complete(named: &mut NamedNumbers) {
     named.iter_mut().for_each(|(id, numbers)| number_table::complete(numbers, numbers_of(id)));
 }
 
-/// A user's ship with its key and numbers.
+/// User's ship with its key and numbers.
 struct UserShip<'a> {
     key: KeyPath,
     numbers: &'a BTreeMap<String, f64>,

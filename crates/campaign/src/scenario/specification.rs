@@ -1,24 +1,24 @@
-//! Specification of a trial: everything but its random draws.
+//! Specification of a trial: everything but its random numbers.
 
 use ship::FirstOrder;
 use simulate::{Simulation, StreamKey};
 
 use crate::scenario::physics::MissingPhysics;
 
-/// Specification of a trial: everything but its random draws.
+/// Specification of a trial: everything but its random numbers.
 #[derive(Debug, Clone)]
 pub struct Specification {
     /// Simulation of the record.
     pub simulation: Simulation,
-    /// Further records of the same ship, which are identified together with the first.
+    /// Further records of the same ship, identified together with the first.
     pub also: Vec<Simulation>,
     /// Validation manoeuvre of the same ship, undisturbed and without measurement noise.
     pub validation: Option<Simulation>,
-    /// True response, where the ship is first order.
+    /// True response, if the ship is first order.
     pub truth: Option<FirstOrder>,
     /// First-order base of a response ship, with or without effects.
     pub base: Option<FirstOrder>,
-    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a hull.
+    /// Identifiers of the effects missing from a first-order base in a trial; [`HULL`] for a hull.
     pub missing: Vec<String>,
     /// Missing physics stated by its formula.
     pub stated: Option<MissingPhysics>,

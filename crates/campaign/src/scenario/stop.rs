@@ -1,4 +1,4 @@
-//! Stopping rule of a scenario: `[stop]`, a standard error at which a cell ends. [`crate::stopping`] evaluates it.
+//! Stopping rule of a scenario: `[stop]`, a standard error that ends a cell. [`crate::stopping`] evaluates it.
 
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
@@ -6,19 +6,19 @@ use ship::ShortNumber;
 use crate::scenario::method::Method;
 use crate::scenario::problem::{KeyFault, KeyPath, place_among};
 
-/// When a cell has had enough trials; `replicates` is then the most.
+/// Condition that ends a cell; `replicates` is then the maximum.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct StopRule {
-    /// What has to be known well enough.
+    /// Statistic whose standard error is limited.
     pub figure: StopFigure,
-    /// Label of a method; all of them when left out.
+    /// Label of a method; all of them if omitted.
     pub method: Option<String>,
-    /// Per cent of K or T; points of per cent for a coverage.
+    /// Standard error in per cent of K or T; in percentage points for a coverage.
     pub standard_error: f64,
 }
 
-/// An index of the response.
+/// Index of the response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Index {
     /// Gain K.
@@ -27,7 +27,7 @@ pub enum Index {
     T,
 }
 
-/// The figure a rule looks at: of the relative errors, per cent, or the coverage of the quoted intervals, per cent.
+/// Statistic of a rule: of the relative errors, per cent, or the coverage of the quoted intervals, per cent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 pub enum StopFigure {
     /// Mean error of K.
@@ -57,7 +57,7 @@ pub enum StopFigure {
 }
 
 impl StopFigure {
-    /// The index it is about.
+    /// Index of the statistic.
     pub fn index(self) -> Index {
         match self {
             Self::MeanK | Self::SdK | Self::RmsK | Self::CoverageK => Index::K,
@@ -67,7 +67,7 @@ impl StopFigure {
 }
 
 impl StopRule {
-    /// Checks the rule against the methods there are.
+    /// Checks the rule against the existing methods.
     pub(crate) fn check(&self, methods: &[Method]) -> Result<(), KeyFault> {
         let key = KeyPath::dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {

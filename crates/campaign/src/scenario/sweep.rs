@@ -1,7 +1,7 @@
 //! Design of a study: axes over keys of the scenario, and their product as cells (full factorial design).
 //!
-//! A point of an axis sets one or several keys. The changed document is resolved like any scenario, so swept values are
-//! checked as strictly as written ones.
+//! A point of an axis sets one or several keys. The changed document is resolved as a scenario, so swept values are
+//! checked as strictly as written values.
 
 use std::collections::HashSet;
 
@@ -15,29 +15,29 @@ use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{AtFault, KeyFault, KeyPath, of_text};
 
-/// Maximum number of cells; more is an error in a range.
+/// Maximum number of cells; a larger one is an error in a range.
 const MAX_CELLS: usize = 100_000;
 
-/// An axis as it is written: `[[sweep]]`.
+/// Axis as written: `[[sweep]]`.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct AxisWire {
-    /// Name on plots and in tables; the key when it is left out.
+    /// Name on plots and in tables; the key if omitted.
     name: Option<String>,
     /// Dotted key that is swept, with `values`, `linear` or `log`.
     key: Option<String>,
-    /// The values one by one.
+    /// List of values.
     #[schemars(with = "Option<Vec<serde_json::Value>>")]
     values: Option<Vec<Value>>,
-    /// Evenly spaced values.
+    /// Range of evenly spaced values.
     linear: Option<RangeWire>,
-    /// Evenly spaced values of the logarithm.
+    /// Range of values with evenly spaced logarithms.
     log: Option<RangeWire>,
     /// Points that set several keys at once.
     points: Option<Vec<PointWire>>,
 }
 
-/// A range of numbers, both ends included.
+/// Range of numbers, both ends included.
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RangeWire {
@@ -45,17 +45,17 @@ struct RangeWire {
     from: f64,
     /// Last value.
     to: f64,
-    /// How many values.
+    /// Number of values.
     points: usize,
 }
 
-/// A point that sets several keys.
+/// Point that sets several keys.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PointWire {
-    /// What it is called.
+    /// Label of the point.
     label: String,
-    /// Where it lies on an axis of numbers; of an effect its size, which the label has, too (wind 0.7°).
+    /// Value on a numeric axis; for an effect its size, which the label also contains (wind 0.7°).
     value: Option<f64>,
     /// Dotted keys and their values.
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
@@ -67,7 +67,7 @@ struct PointWire {
 pub struct SweepAxis {
     /// Name on plots and in tables.
     pub name: String,
-    /// The points in order.
+    /// Points in order.
     pub points: Vec<SweepPoint>,
 }
 
@@ -76,22 +76,22 @@ pub struct SweepAxis {
 pub struct SweepPoint {
     /// Label of the point.
     pub label: String,
-    /// Its value, on a numeric axis.
+    /// Value on a numeric axis.
     pub value: Option<f64>,
-    /// The keys it sets.
+    /// Keys it sets.
     pub set: Vec<SweepSetting>,
 }
 
-/// A key that a point sets.
+/// Key that a point sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepSetting {
-    /// The key that is changed.
+    /// Key that is changed.
     pub key: KeyPath,
-    /// The value that is set.
+    /// Value that is set.
     pub value: Value,
     /// Path in the file that names the key.
     pub key_place: KeyPath,
-    /// Path in the file that holds the value.
+    /// Path in the file with the value.
     pub value_place: KeyPath,
 }
 
@@ -121,7 +121,7 @@ impl SweepSetting {
     /// Fault of a changed scenario, attributed to the sweep; `cell` names the cell if there are several axes.
     pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
         let (place, mark) = match fault.mark {
-            // Where the point itself names the key, its name is underlined.
+            // If the point itself names the key, its name is underlined.
             AtFault::Name if self.key_place == self.value_place => (self.key_place.clone(), AtFault::Name),
             AtFault::Name => (self.key_place.clone(), AtFault::Value),
             AtFault::Value => (self.value_place.clone(), AtFault::Value),
@@ -297,7 +297,7 @@ impl SweepPoint {
     }
 }
 
-/// Writes labels with all digits where four significant digits are not unique.
+/// Writes labels with all digits if four significant digits are not unique.
 fn distinguish(points: &mut [SweepPoint]) {
     let mut labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     labels.sort_unstable();
@@ -312,7 +312,7 @@ fn distinguish(points: &mut [SweepPoint]) {
     }
 }
 
-/// A value as TOML, with short notation for very large or small numbers.
+/// Value in TOML notation, short for very large or small numbers.
 pub fn written(value: &Value) -> String {
     match value {
         Value::Float(number) if !ShortNumber(*number).is_plain() => ShortNumber(*number).to_string(),
@@ -320,7 +320,7 @@ pub fn written(value: &Value) -> String {
     }
 }
 
-/// A number with four significant digits, at least all digits before the point, without trailing zeros.
+/// Number with four significant digits, at least all digits before the point, without trailing zeros.
 fn trim(number: f64) -> String {
     let rounded = ShortNumber::rounded(number, 4);
     if !rounded.is_plain() {
@@ -336,9 +336,9 @@ pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
     wires.iter().enumerate().map(|(index, axis)| axis.resolve(index)).collect()
 }
 
-/// All combinations of points, first axis slowest; one empty combination without axes.
+/// All combinations of points, first axis slowest; without axes one empty combination.
 ///
-/// Fails for too many combinations, and when two axes change the same key.
+/// Fails for too many combinations, and if two axes change the same key.
 pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
     limits::entries("sweep", axes.len(), limits::MAX_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);

@@ -1,5 +1,5 @@
-//! Bootstrap over batches (Efron 1979). The resamples are drawn once and used for all statistics, so that statistics of
-//! two methods are paired.
+//! Bootstrap over batches (Efron 1979). The resamples are sampled once and used for all statistics, so that statistics
+//! of two methods are paired.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use super::statistic::{MIN_INTERVAL_VALUES, Statistic};
 use super::sums::BatchSums;
 
-/// Number of resamples: enough for the 2.5 and 97.5 % points to two digits.
+/// Number of resamples, sufficient for the 2.5 and 97.5 % points to two digits.
 pub const RESAMPLES: usize = 1000;
 
 /// Fixed seed, so that equal rows give equal intervals.
@@ -74,7 +74,7 @@ impl Resamples {
         })
     }
 
-    /// Sums of every resample, accumulated batch by batch so that the inner loop vectorises over resamples.
+    /// Sums of every resample, accumulated batch by batch so that the inner loop is vectorised over resamples.
     fn totals(&self, batches: &[BatchSums]) -> impl Iterator<Item = BatchSums> {
         let [mut counts, mut firsts, mut seconds] = [const { [0.0; RESAMPLES] }; 3];
         for (batch, times) in batches.iter().zip(self.counts.chunks_exact(RESAMPLES)) {

@@ -11,7 +11,7 @@ pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) ->
     draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
 }
 
-/// Values of `compute` on resamples in two stages: sets, and clusters within each drawn set.
+/// Values of `compute` on resamples in two stages: sets, and clusters within each sampled set.
 pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
         (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));
@@ -45,7 +45,7 @@ fn draws<T>(draw: impl Fn(&mut ChaCha8Rng, &mut Vec<usize>), compute: impl Fn(&[
 mod tests {
     use super::*;
 
-    /// A drawn set contributes all its clusters, for sets of very different size.
+    /// A sampled set contributes all its clusters, for sets of very different size.
     #[test]
     fn sets_are_drawn_whole() {
         let sets = vec![vec![vec![0]; 30], vec![vec![1]; 2]];

@@ -1,6 +1,6 @@
 //! Grouping and deduplication that keep the order of first occurrence.
 
-/// Groups of items with equal keys, in the order of first members.
+/// Groups of items with equal keys, in the order of their first items.
 pub fn grouped<K: PartialEq, T>(all: impl IntoIterator<Item = T>, key: impl Fn(&T) -> K) -> Vec<(K, Vec<T>)> {
     let mut groups: Vec<(K, Vec<T>)> = Vec::new();
     for item in all {

@@ -1,13 +1,13 @@
-//! Detection size: the size at which an effect is detected in a given share of trials, by logistic regression on the
-//! logarithm of the size with a ridge on the slope (le Cessie and van Houwelingen 1992). The interval is that of the
+//! Detection size: the size of an effect that is detected in a given share of trials, by logistic regression on the
+//! logarithm of the size with a ridge on the slope (le Cessie and van Houwelingen 1992). The interval is from the
 //! profile likelihood (Venzon and Moolgavkar 1988).
 
 use super::statistic::Statistic;
 
-/// Detections among the trials of one size.
+/// Trials of one size, with the number of detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeTrials {
-    /// The size, above zero.
+    /// Size, above zero.
     pub size: f64,
     /// Number of trials.
     pub trials: u64,
@@ -15,14 +15,14 @@ pub struct SizeTrials {
     pub seen: u64,
 }
 
-/// Prior standard deviation of the slope per unit of the logarithm: the ridge, which keeps the slope finite where sizes
+/// Prior standard deviation of the slope per unit of the logarithm: the ridge, which keeps the slope finite if sizes
 /// separate detections from misses. A likelihood-ratio test near its threshold has a slope of 5 to 8.
 const SLOPE_SD: f64 = 10.0;
 
 /// Drop of the log likelihood at the ends of the interval: half the 95 % quantile of χ² with one degree of freedom.
 const LIKELIHOOD_DROP: f64 = 1.920_729_410_347_062;
 
-/// Range beyond the tried sizes in which the size is searched, as a logarithm.
+/// Maximum distance of the detection size from the tried sizes, as a logarithm.
 const SEARCH_RANGE: f64 = 7.0;
 
 /// Number of bisections of a range.
@@ -59,7 +59,7 @@ fn crossing(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     0.5 * (low + high)
 }
 
-/// Line of the logit over the logarithm of the size, through the logit of the requested share.
+/// Line of the logit against the logarithm of the size, through the logit of the requested share.
 struct ShareLine<'a> {
     tried: &'a [SizeTrials],
     logit: f64,
@@ -74,7 +74,8 @@ impl ShareLine<'_> {
         })
     }
 
-    /// Most likely slope of a line that reaches the share at a place: the zero of the derivative of the likelihood.
+    /// Maximum-likelihood slope of a line that reaches the share at a place: the zero of the derivative of the
+    /// likelihood.
     fn slope(&self, place: f64) -> f64 {
         let falls = |slope: f64| {
             let derivative = |[after, trials, seen, logit]: [f64; 4]| after * (seen - trials * chance(logit));
@@ -83,7 +84,7 @@ impl ShareLine<'_> {
         crossing(0.0, 1000.0, falls)
     }
 
-    /// Detections less their expectation: above zero where the share is reached at a smaller size.
+    /// Number of detections minus its expectation: above zero if the share is reached at a smaller size.
     fn surplus(&self, place: f64, slope: f64) -> f64 {
         self.points(place, slope).map(|[_, trials, seen, logit]| seen - trials * chance(logit)).sum()
     }
@@ -120,7 +121,7 @@ mod tests {
         [low, size.value, high]
     }
 
-    /// Shares with logit 2 + 3 ln size, which is ln 9 at e^((ln 9 − 2)/3). With many trials the interval is that of the
+    /// Shares with logit 2 + 3 ln size, which is ln 9 at e^((ln 9 − 2)/3). With many trials the interval is from the
     /// information matrix.
     #[test]
     fn shares_of_a_line_give_its_size() {
@@ -141,7 +142,7 @@ mod tests {
         assert!(((high / size).ln() / half - 1.0).abs() < 0.02 && ((size / low).ln() / half - 1.0).abs() < 0.02);
     }
 
-    /// Sizes that separate detections from misses: the size lies between them, in a slightly wider interval.
+    /// If sizes separate detections from misses, the detection size lies between them, in a slightly wider interval.
     #[test]
     fn parted_sizes_have_a_finite_answer() {
         let [low, size, high] = sizes([0, 0, 0, 20, 20], 20);
@@ -152,8 +153,8 @@ mod tests {
         assert!(lower > low && higher < high);
     }
 
-    /// Without detections the size is beyond the largest, with all detections below the smallest, with half of them
-    /// open.
+    /// Without detections the size is above the maximum tried, with all detections below the minimum, with half of them
+    /// undetermined.
     #[test]
     fn beyond_the_sizes_there_is_a_bound() {
         let [low, size, _] = sizes([0, 0, 0, 0, 0], 10);
@@ -162,7 +163,7 @@ mod tests {
         assert!(high < 0.5 && size < 0.25, "{size}, {high}");
         let [low, size, high] = sizes([5; 5], 10);
         assert!(low > 4.0 && size > 4.0 && high > 100.0, "{low}, {size}, {high}");
-        // A share that falls is no sign of a small size.
+        // A decreasing share does not indicate a small size.
         assert!(sizes([8, 8, 3, 0, 0], 10)[0] > 4.0);
         assert_eq!(size_of_share(&tried([0; 5], 10)[..1], 0.9), None);
         assert_eq!(size_of_share(&[], 0.9), None);

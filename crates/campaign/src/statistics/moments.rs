@@ -5,7 +5,7 @@
 pub struct Moments {
     /// Number of values.
     pub count: f64,
-    /// Their mean.
+    /// Mean.
     pub mean: f64,
     /// Σ (x − mean)².
     pub second: f64,
@@ -80,7 +80,7 @@ impl Moments {
 mod tests {
     use super::*;
 
-    /// Against the sums over all values themselves.
+    /// Comparison with the sums over all values.
     #[test]
     fn joined_parts_have_the_moments_of_the_whole() {
         let values = [3.0_f64, 5.0, 4.0, 10.0, 8.0];

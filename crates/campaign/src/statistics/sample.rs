@@ -11,17 +11,17 @@ const MAX_EXACT_VALUES: usize = 8192;
 /// Relative accuracy of a binned value.
 const ACCURACY: f64 = 1e-3;
 
-/// Size below which a value counts as zero.
+/// Absolute value below which a value counts as zero.
 const ZERO: f64 = 1e-12;
 
 /// Maximum extent of a density beyond the quartiles, in quartile distances.
 const TAILS: f64 = 3.0;
 
-/// Accumulating sample.
+/// Sample that accumulates values.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSample {
     exact: Vec<f64>,
-    /// Counts by bin, in the order of the values; empty while all are exact.
+    /// Counts by bin, in the order of the values; empty if all are exact.
     bins: BTreeMap<i32, u64>,
 }
 
@@ -40,7 +40,7 @@ impl ErrorSample {
         }
     }
 
-    /// The values in order.
+    /// Values in order.
     pub fn ordered(&self) -> OrderedSample {
         if self.bins.is_empty() {
             return OrderedSample::of(self.exact.iter().map(|&value| (value, 1)).collect());
@@ -49,7 +49,7 @@ impl ErrorSample {
     }
 }
 
-/// Bin 0 is zero, bin ±(1 + k + OFFSET) holds |x| in (γᵏ⁻¹, γᵏ].
+/// Bin 0 is zero, bin ±(1 + k + OFFSET) contains |x| in (γᵏ⁻¹, γᵏ].
 const OFFSET: i32 = 1 << 20;
 
 fn growth() -> f64 {
@@ -98,7 +98,7 @@ impl OrderedSample {
         self.up_to.last().copied().unwrap_or(0)
     }
 
-    /// `true` without values.
+    /// `true` if there are no values.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -108,7 +108,7 @@ impl OrderedSample {
         self.values.iter().copied().zip(self.up_to.iter().zip(before).map(|(up_to, before)| up_to - before))
     }
 
-    /// Value of a rank, from 0.
+    /// Value at a rank, from 0.
     fn at(&self, rank: u64) -> f64 {
         self.values[self.up_to.partition_point(|&up_to| up_to <= rank)]
     }
@@ -123,7 +123,7 @@ impl OrderedSample {
     }
 
     /// Quantile with the distribution-free interval of order statistics, in the normal approximation of the binomial
-    /// (Thompson 1936); no interval where the sample does not reach that far.
+    /// (Thompson 1936); no interval if the sample is too small for it.
     pub fn figure(&self, p: f64) -> Option<Statistic> {
         let value = self.quantile(p)?;
         let n = self.len() as f64;
@@ -144,8 +144,8 @@ impl OrderedSample {
         self.distances(self.quantile(0.5)?).figure(0.5)
     }
 
-    /// Gaussian kernel density at `points` places over the middle 98 %, at most three quartile distances beyond the
-    /// quartiles, so that heavy tails do not spread the places too far for the kernel. Bandwidth of Silverman (1986,
+    /// Gaussian kernel density at `points` abscissae over the middle 98 %, at most three quartile distances beyond the
+    /// quartiles, so that heavy tails do not spread the abscissae too far for the kernel. Bandwidth of Silverman (1986,
     /// eq. 3.31); empty for fewer than ten values and for constant values.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));

@@ -1,25 +1,25 @@
-//! Statistic over replicates with its interval, and shares with intervals.
+//! Statistic over replicates, and shares, with their intervals.
 
 use estimation::statistics::wilson;
 use serde::{Deserialize, Serialize};
 
-/// A statistic with its 95 % interval.
+/// Statistic with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
-    /// The value.
+    /// Value.
     pub value: f64,
-    /// Its 95 % interval, where the sample is large enough for one.
+    /// 95 % interval, if the sample is sufficiently large.
     pub ci95: Option<[f64; 2]>,
 }
 
 impl Statistic {
-    /// Value and ends of the interval, as far as they are defined.
+    /// Value and ends of the interval; `None` if undefined.
     pub fn flat(figure: Option<Self>) -> [Option<f64>; 3] {
         let ends = figure.and_then(|figure| figure.ci95);
         [figure.map(|figure| figure.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
     }
 
-    /// The statistic in another unit; `factor` is above zero.
+    /// Statistic in another unit; `factor` is above zero.
     pub fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, ci95: self.ci95.map(|ends| ends.map(|end| end * factor)) }
     }
@@ -28,7 +28,7 @@ impl Statistic {
 /// Two-sided 95 % quantile of the standard normal distribution.
 pub const Z95: f64 = 1.959_963_984_540_054;
 
-/// Minimum number of values with an interval: below it no pair of order statistics covers the median with 95 %.
+/// Minimum number of values for an interval: below it no pair of order statistics covers the median with 95 %.
 pub const MIN_INTERVAL_VALUES: u64 = 6;
 
 /// Minimum number of values that are summarised by a median and a range; fewer are shown individually.

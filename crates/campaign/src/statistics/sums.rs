@@ -11,7 +11,7 @@ pub const BATCHES: usize = 256;
 pub struct BatchSums {
     /// Number of values.
     pub count: f64,
-    /// Sum of values less the shift.
+    /// Sum of the values minus the shift.
     pub first: f64,
     /// Sum of squares of the same differences.
     pub second: f64,
@@ -58,7 +58,7 @@ impl ErrorSums {
         batch.second += x * x;
     }
 
-    /// The batches, up to the last that has a value.
+    /// Batches, up to the last one with a value.
     pub fn batches(&self) -> &[BatchSums] {
         &self.batches
     }
@@ -81,8 +81,8 @@ impl ErrorSums {
     }
 }
 
-/// Batch sums of squared errors of a method and of the reference, on trials with both: [`BatchSums::first`] is that of
-/// the method, [`BatchSums::second`] that of the reference.
+/// Batch sums of squared errors of a method and of the reference, on trials with both: [`BatchSums::first`] is the sum
+/// of the method, [`BatchSums::second`] the sum of the reference.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairSums {
     batches: Vec<BatchSums>,
@@ -104,7 +104,7 @@ impl PairSums {
         };
     }
 
-    /// The batches.
+    /// Batches.
     pub fn batches(&self) -> &[BatchSums] {
         &self.batches
     }
@@ -119,7 +119,7 @@ impl PairSums {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Ratio of the root mean square errors of a total; `None` if that of the reference is zero.
+    /// Ratio of the root mean square errors of a total; `None` if the error of the reference is zero.
     pub fn ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }

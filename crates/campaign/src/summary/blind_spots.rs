@@ -1,22 +1,22 @@
-//! Blind spots of a trace: the size from which a missing effect is named, in studies that vary the size.
+//! Blind spots of a trace: the minimum size at which a missing effect is named, in studies that vary the size.
 
 use super::tracing::TraceSummary;
 use crate::design::Design;
 use crate::statistics::{SizeTrials, Statistic, grouped, size_of_share};
 
-/// Share of the trials in which the effect has to be named.
+/// Minimum share of the trials that name the effect.
 pub const MIN_NAMED_SHARE: f64 = 0.9;
 
-/// Size from which a trace names an effect, under one set of conditions.
+/// Blind spot: the minimum size at which a trace names an effect, under one set of conditions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlindSpot {
     /// Name of the effect in the labels.
     pub effect: String,
-    /// Unit of its sizes.
+    /// Unit of the sizes.
     pub unit: String,
     /// Labels of the other axes.
     pub place: Vec<String>,
-    /// Index of the method that is the trace.
+    /// Index of the method, a trace.
     pub method: usize,
     /// Trials by size, with the number that name the effect.
     pub tried: Vec<SizeTrials>,
@@ -25,7 +25,7 @@ pub struct BlindSpot {
 }
 
 impl BlindSpot {
-    /// Minimum and largest tried size.
+    /// Minimum and maximum tried size.
     pub fn ends(&self) -> [f64; 2] {
         let sizes = || self.tried.iter().map(|level| level.size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(parts("wind 0.7°", None), None);
     }
 
-    /// Two effects on two ships: one is named from 1 on, the other never.
+    /// Two effects on two ships: one is named from size 1 on, the second never.
     #[test]
     fn every_effect_has_its_own_size() {
         let sizes = [0.25, 0.5, 1.0, 2.0];

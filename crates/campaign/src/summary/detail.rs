@@ -4,16 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::statistics::OrderedSample;
 
-/// Number of places of a density.
+/// Number of abscissae of a density.
 const PLACES: usize = 160;
 
 /// Maximum number of error pairs kept per cell.
 pub(super) const MAX_PAIRS: usize = 2000;
 
-/// Maximum number of error pairs drawn per cell.
+/// Maximum number of error pairs plotted per cell.
 const MAX_DRAWN_PAIRS: usize = 400;
 
-/// Limit of winsorising, in robust standard deviations: a few outliers would otherwise inflate the covariance (Huber
+/// Limit of winsorising, in robust standard deviations; without it a few outliers inflate the covariance (Huber
 /// 1981).
 const REACH: f64 = 4.0;
 
@@ -23,7 +23,7 @@ const SD_OVER_MAD: f64 = 1.482_602_2;
 /// Distribution of the errors of one index.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorDensity {
-    /// Places, %, and densities; empty for constant values.
+    /// Abscissae, %, and densities; empty for constant values.
     pub density: Vec<(f64, f64)>,
     /// Quantiles of 2.5, 25, 50, 75 and 97.5 %.
     pub quantiles: [f64; 5],
@@ -41,7 +41,7 @@ impl ErrorDensity {
 /// Joint distribution of the errors of K and T, %.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
-    /// The first pairs of errors.
+    /// First pairs of errors.
     pub points: Vec<(f64, f64)>,
     /// Mean of the winsorised errors.
     pub centre: (f64, f64),
@@ -94,6 +94,6 @@ pub struct MethodDetail {
 pub struct CellDetail {
     /// Index of the cell.
     pub cell: usize,
-    /// Per method.
+    /// Distributions of the methods.
     pub methods: Vec<MethodDetail>,
 }

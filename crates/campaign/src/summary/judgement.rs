@@ -1,4 +1,4 @@
-//! Judgement of a trace against the physics that a study states.
+//! Judgement of a trace against the physics stated in a study.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ pub const MAX_TIME_ERROR_S: f64 = 20.0;
 /// Relative tolerance of a located period.
 pub const MAX_PERIOD_ERROR: f64 = 0.15;
 
-/// Time-dependent effects, which are no property of the ship.
+/// Time-dependent effects, which are not properties of the ship.
 const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
 
 /// Judgement of a trace.
@@ -22,25 +22,25 @@ const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
 pub enum Judgement {
     /// Only correct effects were named.
     Right,
-    /// A moment with the correct dependence was located, at the correct time if any; or only time-dependent effects
-    /// were named, all near a change.
+    /// A moment with the correct dependence was located, at the correct time, if any; or only time-dependent
+    /// effects were named, all near a change.
     Located,
-    /// Verdict unexplained, with nothing named or located.
+    /// Verdict unexplained, without a named effect or located moment.
     Unexplained,
-    /// Verdict disturbed: a random moment only.
+    /// Verdict disturbed: only a random moment.
     Disturbed,
     /// Verdict clean.
     Clean,
-    /// A wrong effect or moment that the trace reports as an alias of the correct one.
+    /// Wrong effect or moment that the trace reports as an alias of the correct one.
     Alias,
     /// A wrong moment was located, or a wrong time-dependent effect named.
     Elsewhere,
-    /// A wrong effect was named, or anything where nothing is missing.
+    /// A wrong effect was named, or any effect although none is missing.
     Wrong,
 }
 
 impl Judgement {
-    /// All judgements, first those that may be correct.
+    /// All judgements, first those that can be correct.
     pub const ALL: [Self; 8] = [
         Self::Right,
         Self::Located,
@@ -77,7 +77,7 @@ impl Judgement {
         }
     }
 
-    /// Judgement where listed effects are correct.
+    /// Judgement if listed effects are correct.
     fn from_names(answer: &TraceAnswer, right: &[String]) -> Self {
         let is_right = |id: &str| right.iter().any(|effect| effect == id);
         let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.holds(id));
@@ -92,7 +92,7 @@ impl Judgement {
         }
     }
 
-    /// Judgement where a dependence is correct, and times if any.
+    /// Judgement if a dependence is correct, with times if it has any.
     fn from_moments(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
         let mut of_ship = answer.named.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
         if of_ship.peek().is_some() {
@@ -163,7 +163,7 @@ mod tests {
         LocatedMoment { depends_on, form: form.into(), from_s, until_s, alternatives: vec!["speed_loss".into()] }
     }
 
-    /// The judgement of names, each with an alias and a time, and of a located moment.
+    /// Judgement of named effects, each with an alias and a time, and of a located moment.
     fn judged(names: &[(&str, &str, f64)], located: Option<LocatedMoment>, physics: &MissingPhysics) -> Judgement {
         let effect = |&(id, alias, time_s): &(&str, &str, f64)| NamedEffect {
             id: id.into(),
@@ -203,7 +203,7 @@ mod tests {
         let physics = timed(&[100.0, 200.0], None);
         let [squall, wind] = ["transient_disturbance", "wind_moment"];
         let from = |from, until| Some(located(Time, "moment", Some(from), until));
-        // A lasting moment has no middle.
+        // A lasting moment has no centre.
         for (names, moment, judgement) in [
             (&[(squall, "", 119.0), (squall, "", 181.0)][..], None, Located),
             (&[(squall, "", 119.0), (squall, "", 150.0)], None, Elsewhere),

@@ -1,4 +1,4 @@
-//! Coverage of the intervals of predictions, by figure of merit.
+//! Coverage of the intervals of predictions, by characteristic of the manoeuvre.
 
 use predict::imo::limit_of;
 use serde::{Deserialize, Serialize};
@@ -6,26 +6,26 @@ use serde::{Deserialize, Serialize};
 use crate::rows::{PredictedFigure, StudyRow};
 use crate::statistics::{Statistic, share};
 
-/// Predictions of one figure of a manoeuvre by one method in one cell.
+/// Predictions of one characteristic of a manoeuvre by one method in one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PredictionSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
-    /// Manoeuvre and figure, with the unit.
+    /// Manoeuvre and characteristic, with the unit.
     pub name: Box<str>,
-    /// Trials with the figure.
+    /// Number of trials with the characteristic.
     pub trials: u64,
-    /// Trials whose 90 % interval contains the true figure.
+    /// Number of trials whose 90 % interval contains the true value.
     pub inside: u64,
-    /// IMO criterion of the figure, with the decisions on it.
+    /// IMO criterion of the characteristic, with the decisions on it.
     pub criterion: Option<CriterionTally>,
-    /// Sums over trials: error of the median, its square, width of the interval, true figure.
+    /// Sums over trials: error of the median, its square, width of the interval, true value.
     sums: [f64; 4],
 }
 
-/// Decisions on an IMO criterion: an interval of 90 % on one side of the limit decides with a probability of at least
+/// Decisions on an IMO criterion: a 90 % interval on one side of the limit is a decision with a probability of at least
 /// 95 %.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CriterionTally {
@@ -33,11 +33,11 @@ pub struct CriterionTally {
     pub name: Box<str>,
     /// Maximum allowed value.
     pub limit: f64,
-    /// Trials whose ship meets it.
+    /// Number of trials whose ship meets it.
     pub kept: u64,
-    /// Trials with a correct decision.
+    /// Number of trials with a correct decision.
     pub right: u64,
-    /// Trials with a wrong decision.
+    /// Number of trials with a wrong decision.
     pub wrong: u64,
 }
 
@@ -76,7 +76,7 @@ impl PredictionSummary {
         self.mean(2)
     }
 
-    /// Mean true figure.
+    /// Mean true value.
     pub fn truth(&self) -> f64 {
         self.mean(3)
     }

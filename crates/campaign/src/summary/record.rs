@@ -9,7 +9,7 @@ use super::predictions::PredictionSummary;
 use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
-/// Relative errors of one index over trials, in % except for shares.
+/// Relative errors of one index over trials, %, except for shares.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct IndexErrors {
     /// Mean estimate, SI units, with its normal interval.
@@ -40,10 +40,10 @@ pub struct IndexErrors {
     pub sd_over_bound: Option<Statistic>,
 }
 
-/// One method on a set of trials.
+/// Performance of one method on a set of trials.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Performance {
-    /// Trials run.
+    /// Number of trials run.
     pub trials: u64,
     /// Reasons for missing estimates, with counts, in order of first occurrence.
     pub failures: Vec<(String, u64)>,
@@ -72,21 +72,21 @@ impl Performance {
     }
 }
 
-/// One method in one cell.
+/// Performance of one method in one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
-    /// Its performance.
+    /// Performance of the method.
     pub record: Performance,
 }
 
-/// One index of one method against the reference, on trials where both gave an answer.
+/// Comparison of one index of one method with the reference, on trials with an estimate of both.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// Difference of the rms errors, per cent: negative where the method is better.
+    /// Difference of the rms errors, %; negative if the method is better.
     pub rms_difference: Option<Statistic>,
     /// Ratio of the rms errors.
     pub rms_ratio: Option<Statistic>,
@@ -94,14 +94,14 @@ pub struct Comparison {
     pub closer: Option<Statistic>,
 }
 
-/// One method against the reference in one cell.
+/// Comparison of one method with the reference in one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PairSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
-    /// Trials where both gave an answer.
+    /// Number of trials with an estimate of both.
     pub trials: u64,
     /// Errors of K.
     pub k: Comparison,
@@ -112,13 +112,13 @@ pub struct PairSummary {
 /// Summary of a study.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// Per cell and method, in the order of the rows.
+    /// Summaries per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
-    /// Per cell and method other than the reference.
+    /// Comparisons per cell and method other than the reference.
     pub pairs: Vec<PairSummary>,
     /// Index of the reference method.
     pub reference: usize,
-    /// Per method, over all cells.
+    /// Performance per method, over all cells.
     pub overall: Vec<Performance>,
     /// Error distributions of the cells shown in detail.
     pub details: Vec<CellDetail>,

@@ -1,7 +1,7 @@
 //! Summary of a study of measured records: replay errors on fitted records and on validation records.
 //!
 //! Trials that share a fit or a validation record are not independent. Intervals of medians are percentile bootstraps
-//! over fits (Efron 1979), or over validation records where there is only one fit.
+//! over fits (Efron 1979), or over validation records if there is only one fit.
 
 use std::collections::BTreeMap;
 
@@ -27,9 +27,9 @@ pub struct RecordSummary {
     pub fitted_deg: Option<Statistic>,
     /// Median over trials of the heading error on the validation record, deg.
     pub judged_deg: Option<Statistic>,
-    /// Median over trials of the ratio of that error to the one of the first method; none for the first method.
+    /// Median over trials of the ratio of that error to the error of the first method; `None` for the first method.
     pub ratio: Option<Statistic>,
-    /// The same ratio with replays restarted every 60 s.
+    /// Median over trials of that ratio with replays restarted every 60 s.
     pub window_ratio: Option<Statistic>,
     /// Number of fits that named each effect.
     pub named: BTreeMap<String, usize>,
@@ -86,7 +86,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
     }
 }
 
-/// Median of all values, with an interval from six groups on.
+/// Median of all values, with an interval for six groups or more.
 fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
     let values = groups.concat();
     let median_of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());

@@ -13,7 +13,7 @@ use crate::rows::StudyRow;
 use crate::scenario::MethodName;
 use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
-/// Reference method, where a study has it; otherwise the first.
+/// Reference method, if a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
 
 /// Tally of rows, which are added in order, cell by cell.
@@ -30,7 +30,7 @@ pub struct Tally<'a> {
     summary: Summary,
 }
 
-/// Maximum number of rows of cells that wait to be summarised in parallel: enough to be efficient, few enough to bound
+/// Maximum number of rows in cells that wait for parallel summaries: large for efficiency, small for bounded
 /// memory.
 const MAX_WAITING_ROWS: u64 = 1 << 15;
 
@@ -198,7 +198,7 @@ struct MethodTally {
     predictions: Vec<PredictionSummary>,
 }
 
-/// Maximum number of distinct reasons; a reason may contain numbers of its trial.
+/// Maximum number of distinct reasons; a reason may contain numbers from its trial.
 const MAX_REASONS: usize = 50;
 
 impl MethodTally {
@@ -212,7 +212,7 @@ impl MethodTally {
         let truths = [k, t, k.zip(t).map(|(k, t)| k / t)];
         let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
         let answers = [row.k_per_s, row.t_s, None];
-        // The Cramér–Rao bound is not defined for a base with effects.
+        // The Cramér–Rao bound is undefined for a base with effects.
         let bound = row.bound.filter(|_| row.traced.is_none() || row.base_k_per_s.is_none());
         for (place, index) in self.indices.iter_mut().enumerate() {
             let truth = truths[place];
@@ -227,7 +227,7 @@ impl MethodTally {
         self.latest = [errors[0], errors[1]];
     }
 
-    /// Adds what is not summed over all cells.
+    /// Adds the values that are not summed over all cells.
     fn add_details(&mut self, row: &StudyRow, cell: &CellFacts, detailed: bool) {
         if let Some(answer) = &row.traced {
             self.trace.get_or_insert_with(|| TraceTally::new(row, cell)).add(answer);
@@ -323,7 +323,7 @@ impl IndexSums {
         }
     }
 
-    /// Mean estimate; with an interval from two estimates on.
+    /// Mean estimate; with an interval for two estimates or more.
     fn answer(&self) -> Option<Statistic> {
         let (first, [sum, square]) = self.answers?;
         let count = self.answered as f64;

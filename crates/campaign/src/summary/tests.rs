@@ -46,7 +46,7 @@ fn near(figure: Option<Statistic>, value: f64) {
     assert!((computed - value).abs() < 1e-9 * value.abs().max(1.0), "{computed}, {value} expected");
 }
 
-/// Errors of −3, −2, … 3 % of K and a tenth of that of T.
+/// Errors of −3, −2, … 3 % of K, and of T a tenth of that.
 fn ladder() -> Vec<StudyRow> {
     (0..7).map(|r| answer(0, r, 0, r as f64 - 3.0, 0.1 * (r as f64 - 3.0))).collect()
 }
@@ -63,7 +63,7 @@ fn figures_are_those_of_the_errors() {
     near(record.k.mad, 2.0);
     near(record.k.quantiles[1], -1.5);
     near(record.k.median_size, 2.0);
-    // Five of seven intervals of ± 2 % hold the truth; the ends of two just do, or just do not.
+    // Five of seven intervals of ± 2 % contain the truth; two have an end close to it, on either side.
     let coverage = record.k.coverage.expect("quoted").value * 7.0;
     assert!((3.0..=5.0).contains(&coverage.round()), "{coverage}");
     near(record.t.coverage, 1.0);
@@ -97,7 +97,7 @@ fn methods_are_compared_on_the_same_trials() {
     let mut rows = Vec::new();
     for r in 0..40u64 {
         let error = if r % 2 == 0 { 1.0 } else { -1.0 };
-        // The second method fails on some trials, and only those of both count.
+        // The second method fails in some trials; only trials with both estimates count.
         rows.push(match r % 4 {
             3 => StudyRow { replicate: r, method: 0, failure: Some("singular".into()), ..StudyRow::default() },
             _ => answer(0, r, 0, 3.0 * error, 0.5 * error),

@@ -1,4 +1,4 @@
-//! Summary of traces by cell: missing effects that were named, and effects named wrongly.
+//! Summary of traces by cell: missing effects that were named, and wrongly named effects.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
@@ -13,7 +13,7 @@ use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::scenario::{HULL, MissingPhysics};
 use crate::statistics::{Statistic, share};
 
-/// Margin in log evidence above which the missing effect has to be named; below it a rival explains the trial nearly as
+/// Minimum margin in log evidence of a missing effect that must be named; below it a rival explains the trial nearly as
 /// well.
 pub const MIN_CLEAR_MARGIN: f64 = 10.0;
 
@@ -22,31 +22,31 @@ pub const MIN_CLEAR_MARGIN: f64 = 10.0;
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
-    /// Index of the method that is the trace.
+    /// Index of the method, a trace.
     pub method: usize,
     /// Identifiers of the missing effects.
     pub missing: Vec<String>,
-    /// Trials by judgement, in a study that states the missing physics.
+    /// Number of trials by judgement, in a study that states the missing physics.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub judged: BTreeMap<Judgement, u64>,
     /// Number of trials.
     pub trials: u64,
-    /// Trials by verdict.
+    /// Number of trials by verdict.
     pub verdicts: [u64; Verdict::ALL.len()],
-    /// Trials by effect named.
+    /// Number of trials by named effect.
     pub named: BTreeMap<String, u64>,
-    /// Trials by effect named as an alias of a missing one.
+    /// Number of trials by effect named as an alias of a missing one.
     pub aliases: BTreeMap<String, u64>,
-    /// Trials without any named effect.
+    /// Number of trials without any named effect.
     pub silent: u64,
-    /// Trials whose named groups contain every missing effect.
+    /// Number of trials whose named groups contain every missing effect.
     pub complete: u64,
-    /// Trials with a named group that contains no missing effect; for a hull, whose missing effects are not defined, a
-    /// group of weather effects alone.
+    /// Number of trials with a named group that contains no missing effect; for a hull, whose missing effects are not
+    /// defined, a group of weather effects alone.
     pub wrong: u64,
-    /// Trials in which exactly the missing effects were named, or rightly none.
+    /// Number of trials in which exactly the missing effects were named, or correctly none.
     pub exact: u64,
-    /// Trials with a clear margin for the one missing effect, and those of them that name it.
+    /// Number of trials with a clear margin for the one missing effect, and number of those that name it.
     pub clear: [u64; 2],
     /// Mean expected likelihood ratio.
     pub expected: Option<f64>,
@@ -62,9 +62,9 @@ pub const CALIBRATION: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1
 /// Bin of a calibration table.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct CalibrationBin {
-    /// Number of effects times trials in the bin.
+    /// Number of pairs of effect and trial in the bin.
     pub effects: u64,
-    /// Number of them with the effect present.
+    /// Number of these pairs with the effect present.
     pub present: u64,
     /// Sum of the probabilities.
     pub sum: f64,
@@ -91,7 +91,7 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 }
 
 impl TraceSummary {
-    /// Share of trials in which all missing effects were named; `None` if nothing is missing, and for a hull.
+    /// Share of trials in which all missing effects were named; `None` without a missing effect, and for a hull.
     pub fn complete_share(&self) -> Option<Statistic> {
         if self.missing.is_empty() { None } else { self.share_of(self.complete) }
     }
@@ -163,7 +163,7 @@ impl TraceTally {
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let missing = &summary.missing;
-        // A formula that stands for listed effects is matched by them.
+        // A formula with the physics of listed effects is matched by them.
         let accepted = match physics {
             Some(MissingPhysics::Listed { effects }) => effects,
             _ => missing,
@@ -210,7 +210,7 @@ impl TraceTally {
 mod tests {
     use super::*;
 
-    /// Summary of traces that name groups of effects where `missing` are missing.
+    /// Summary of traces that name groups of effects if `missing` are missing.
     fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
         let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
         let mut tally = TraceTally::new(&StudyRow::default(), &CellFacts { missing, ..CellFacts::default() });
@@ -254,7 +254,7 @@ mod tests {
         assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), absent + 1);
     }
 
-    /// The missing effects of a hull are not defined, but in a calm a weather effect is wrong.
+    /// The missing effects of a hull are not defined, but a weather effect is wrong in a calm.
     #[test]
     fn weather_is_wrong_of_a_hull_in_a_calm() {
         let trials: [&[&[&str]]; 4] =

@@ -1,5 +1,5 @@
-//! Entries of a trace: parameters, random moment and shapes beside the named effects, records with their missing
-//! moments.
+//! Entries of a trace: parameters, random moment and shapes in addition to the named effects, records with their
+//! missing moments.
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -18,7 +18,7 @@ pub struct Indices {
     pub T_s: Quantity,
     /// δ_r, deg.
     pub delta_r_deg: Quantity,
-    /// K' and T', where length and speed of the ship are known.
+    /// K' and T', if length and speed of the ship are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeIndices>,
 }
@@ -40,7 +40,7 @@ impl PrimeIndices {
     }
 }
 
-/// Parameter, averaged over the structures that have it.
+/// Parameter, averaged over the structures that contain it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ParameterEntry {
     /// Key.
@@ -52,12 +52,12 @@ pub struct ParameterEntry {
     pub quantity: Quantity,
     /// Unit.
     pub unit: String,
-    /// Dimensionless value, where length and speed of the ship are known and the parameter has a dimension.
+    /// Dimensionless value, if length and speed of the ship are known and the parameter has a dimension.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prime: Option<PrimeEntry>,
     /// Record to which it belongs; `null` for all.
     pub only: Option<String>,
-    /// `true` if it lies at its bound; left out where it does not.
+    /// `true` if the parameter lies at its bound; otherwise omitted.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_bound: bool,
 }
@@ -72,7 +72,7 @@ pub struct PrimeEntry {
     pub unit: String,
 }
 
-/// Dependence of a moment.
+/// Variable that determines a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Dependence {
@@ -80,7 +80,7 @@ pub enum Dependence {
     Time,
     /// Heading.
     Heading,
-    /// Way to one side of the initial course.
+    /// Distance to one side of the initial course.
     #[serde(rename = "way to one side")]
     Way,
     /// Yaw rate.
@@ -98,31 +98,32 @@ pub enum Dependence {
 pub struct UnexplainedEntry {
     /// `true` if the residual is neither random nor of a shape that was searched for.
     pub present: bool,
-    /// Location of the residual, where it is more than noise.
+    /// Location of the residual, if larger than noise.
     pub signature: Option<String>,
 }
 
-/// Random moment beside named effects and shapes.
+/// Random moment in addition to named effects and shapes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct DisturbanceEntry {
-    /// Root mean square over the longest record, as a rudder angle.
+    /// Root mean square over the record of maximum duration, as a rudder angle.
     pub rudder_deg: f64,
     /// Share of the squared heading error that it explains.
     pub heading_error_share: f64,
 }
 
-/// Located moment that is no listed effect.
+/// Located moment that belongs to no listed effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct LocatedEntry {
-    /// Dependence: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the rudder`.
+    /// Variable of the moment: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the
+    /// rudder`.
     pub depends_on: Dependence,
     /// Description of the moment.
     pub form: String,
     /// Record in which it acts; `null` for all.
     pub only: Option<String>,
-    /// Start of its action, for a moment with instants.
+    /// Start of the action, for a moment with instants.
     pub from_s: Option<f64>,
-    /// End of its action.
+    /// End of the action.
     pub until_s: Option<f64>,
     /// Decrease of the log evidence without it, under the best random law.
     pub nats: f64,
@@ -130,7 +131,7 @@ pub struct LocatedEntry {
     pub rudder_deg: f64,
     /// Equivalent explanations: other moments, and listed effects.
     pub alternatives: Vec<String>,
-    /// Formula for `--effect`, where there is one.
+    /// Formula for `--effect`, if there is one.
     pub formula: Option<String>,
 }
 
@@ -148,14 +149,14 @@ pub struct RecordEntry {
     pub held_out: bool,
     /// File of the record and its replays.
     pub curves: String,
-    /// File of its innovations, where it was fitted.
+    /// File of the innovations, if the record was fitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub innovations: Option<String>,
-    /// Length of the ship, where it is known, m.
+    /// Length of the ship, if known, m.
     pub length_m: Option<f64>,
-    /// Approach speed of the ship, where it is known, m/s.
+    /// Approach speed of the ship, if known, m/s.
     pub speed_m_s: Option<f64>,
-    /// Ship, day and draughts, where something is known of them.
+    /// Ship, day and draughts, if declared.
     #[serde(default, skip_serializing_if = "TrialParticularsEntry::is_empty")]
     pub trial_particulars: TrialParticularsEntry,
 }

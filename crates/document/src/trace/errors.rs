@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 /// Replay errors on all records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorEntry {
-    /// Reason to keep the replay of the base, where the structures do not improve it on the fitted records.
+    /// Reason to keep the replay of the base, if the structures do not improve it on the fitted records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_base: Option<String>,
     /// Fitted records.
     pub identification: Vec<BeforeAfter>,
     /// Held-out records; no fit depends on them.
     pub validation: Vec<BeforeAfter>,
-    /// Records left out in turn, where several are fitted and none is held out.
+    /// Records omitted in turn, if several are fitted and none is held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub leave_one_out: Vec<BeforeAfter>,
 }
@@ -49,7 +49,7 @@ pub struct HorizonEntry {
 pub struct ErrorsEntry {
     /// Root mean square heading error of the full replay.
     pub heading_rmse_deg: f64,
-    /// Root mean square yaw-rate error of the full replay, where the yaw rate was measured.
+    /// Root mean square yaw-rate error of the full replay, if the yaw rate was measured.
     pub yaw_rate_rmse_deg_s: Option<f64>,
     /// Mean absolute error of the overshoot angles.
     pub overshoot_error_deg: Option<f64>,

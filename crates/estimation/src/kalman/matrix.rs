@@ -1,6 +1,6 @@
 //! Small square matrices of a fixed size.
 
-/// The unit matrix.
+/// Unit matrix.
 pub fn identity<const N: usize>() -> [[f64; N]; N] {
     std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))))
 }
@@ -10,7 +10,8 @@ pub fn sum<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64
     std::array::from_fn(|i| std::array::from_fn(|j| left[i][j] + right[i][j]))
 }
 
-/// Product of two matrices; zeros of the first are skipped, because a disturbance drives the ship and not the reverse.
+/// Product of two matrices; zeros of the first matrix are skipped; they are frequent, because a disturbance acts on the
+/// ship but not the ship on the disturbance.
 pub fn product<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64; N]; N] {
     let mut result = [[0.0; N]; N];
     for (result, left) in result.iter_mut().zip(left) {

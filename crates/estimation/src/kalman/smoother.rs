@@ -47,14 +47,14 @@ impl<const N: usize> Smoother<N> {
         self.run(column, forced).iter().enumerate().map(|(row, (_, innovation))| innovation * weight(row)).collect()
     }
 
-    /// Smoothed state at every reading, x = x⁻ + P⁻ s with the score s of this and all later innovations.
+    /// Smoothed state at every reading, x = x⁻ + P⁻ s with s the score of this and all later innovations.
     pub fn smoothed(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
         let mut states = self.run(column, forced);
         let mut score = [0.0; N];
         for (row, (state, innovation)) in states.iter_mut().enumerate().rev() {
             let index = self.filter.gain_of[row] as usize;
             let (gain, Reading { step, sensor }) = (&self.filter.gains[index], self.filter.system.readings[row]);
-            // Back through the correction by the reading.
+            // Backwards through the correction by the reading.
             let through = *innovation / gain.variance - (0..N).map(|i| gain.gain[i] * score[i]).sum::<f64>();
             let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
             [Some(first), beside].into_iter().flatten().for_each(|index| score[index] += through);
@@ -68,7 +68,7 @@ impl<const N: usize> Smoother<N> {
         states.into_iter().map(|(state, _)| state).collect()
     }
 
-    /// Smoothed variance of one state at every reading, V = P⁻ − P⁻ N P⁻ with the variance N of the score.
+    /// Smoothed variance of one state at every reading, V = P⁻ − P⁻ N P⁻ with N the variance of the score.
     pub fn variances(&self, state: usize) -> Vec<f64> {
         let mut information = [[0.0; N]; N];
         let mut variances = vec![0.0; self.filter.gain_of.len()];

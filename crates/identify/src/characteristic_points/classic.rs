@@ -1,5 +1,5 @@
-//! The traditional solution: K and δ_r between instants with r = 0, then T from such an instant to a passage of the
-//! base course. Source: Nomoto (1960), see the module above.
+//! Traditional solution: K and δ_r between instants with r = 0, then T from such an instant to a passage of the base
+//! course. Source: Nomoto (1960), see the parent module.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
@@ -9,7 +9,7 @@ use crate::error::IdentifyError;
 use estimation::column::extremes;
 use estimation::least_squares::LeastSquares;
 
-/// The points of one trial that enter the solution.
+/// Points of one trial that enter the solution.
 struct SelectedPoints<'a> {
     still: &'a [Point],
     crossings: Vec<Point>,
@@ -21,7 +21,7 @@ struct Interval {
     duration: f64,
     rudder: f64,
     heading: f64,
-    /// r at the end, rad/s.
+    /// Yaw rate r at the end, rad/s.
     rate: f64,
 }
 
@@ -51,7 +51,7 @@ struct GainFit {
     condition: f64,
 }
 
-/// The traditional method on all points, or on the first three peaks of every trial.
+/// Traditional method on all points, or on the first three peaks of every trial.
 pub(super) fn identify(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
@@ -76,7 +76,7 @@ pub(super) fn identify(
     if rises.is_empty() {
         return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, count: 0 });
     }
-    // The ratio of sums has less variance than the mean of ratios: it weighs by r².
+    // The ratio of sums has less variance than the mean of ratios, because it weighs by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
     Ok(PointsFit {
         parameters: [gain.gain, gain.gain_bias, time],
@@ -100,7 +100,8 @@ fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyErro
     Ok(SelectedPoints { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
 }
 
-/// Interval from the last instant with r = 0 before a passage, or from the first after it if there is none before.
+/// Interval from the last instant with r = 0 before a passage, or from the first instant after it if there is none
+/// before.
 fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
     let after = still.partition_point(|point| point.time < crossing.time);
     let from = still.get(after.saturating_sub(1))?;
@@ -194,7 +195,7 @@ fn covariance(
     Ok((matrix, gain_freedom.min(time_freedom)))
 }
 
-/// Diagnostics: K and T by side, K without the first swing and the range of T; undefined figures are omitted.
+/// Diagnostics: K and T by side, K without the first swing and the range of T; undefined values are omitted.
 fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &GainFit) -> Vec<(&'static str, f64)> {
     let gain_of = |swings: &[Interval], chosen: &dyn Fn(&Interval) -> bool| {
         let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();

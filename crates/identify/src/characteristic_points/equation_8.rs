@@ -1,4 +1,4 @@
-//! The once-integrated equation at chosen instants: T [r(t) − r(0)] + ψ(t) − ψ(0) = K [δ_r t + ∫δ].
+//! Once-integrated equation of motion at selected instants: T [r(t) − r(0)] + ψ(t) − ψ(0) = K [δ_r t + ∫δ].
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, equation (8), with
 //! the sign of r(0) corrected.
@@ -18,7 +18,7 @@ struct Equations {
     rudder: Vec<f64>,
     duration: Vec<f64>,
     heading: Vec<f64>,
-    /// Where each trial ends.
+    /// Index after the last equation of each trial.
     ends: Vec<usize>,
 }
 
@@ -28,15 +28,15 @@ fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2
     let reach = trial.points.half_width * (1.0 + 1e-9);
     let time = &trial.samples.time;
     let rows = time.partition_point(|t| *t < centre - reach)..time.partition_point(|t| *t <= centre + reach);
-    // More rows than coefficients, or the fit smooths nothing.
+    // There must be more rows than coefficients, or the fit does not smooth.
     if rows.len() < 5 {
         return None;
     }
     local_polynomial(&time[rows.clone()], &trial.samples.heading[rows], instant, 3).map(|fit| [fit[0], fit[1]])
 }
 
-/// The equation at instants one window apart, so that no row serves two of them. ψ(0) + T r(0) is an unknown of every
-/// trial, which spares the one-sided slope at the first row.
+/// Solution at instants one window apart, so that no row serves two instants. ψ(0) + T r(0) is an unknown of every
+/// trial, which avoids the one-sided slope at the first row.
 pub(super) fn identify_spread(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
@@ -45,7 +45,7 @@ pub(super) fn identify_spread(
     let mut equations = Equations::default();
     for trial in trials {
         let (width, last) = (trial.points.half_width, trial.samples.time[trial.samples.len() - 1]);
-        // Windows must not touch: a row at the end of one would belong to the next as well.
+        // Windows must not touch: a row at the end of one window would belong to the next as well.
         let step = 2.0 * width + last / (trial.samples.len() - 1) as f64;
         let mut time = width;
         while time + width <= last {
@@ -60,7 +60,7 @@ pub(super) fn identify_spread(
     equations.solve(&origins, bias, condition_limit)
 }
 
-/// The equation as printed, at the heading extrema: r(t) = 0, so that T stands with r(0) alone.
+/// Solution of the equation as printed, at the heading extrema: r(t) = 0, so that T multiplies only r(0).
 pub(super) fn identify_at_vertices(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
@@ -96,7 +96,7 @@ impl Equations {
         self.heading.push(heading);
     }
 
-    /// The column that is one in the rows of a trial.
+    /// Column that is one in the rows of a trial.
     fn origin(&self, trial: usize) -> Vec<f64> {
         let start = if trial == 0 { 0 } else { self.ends[trial - 1] };
         (0..self.heading.len()).map(|row| if (start..self.ends[trial]).contains(&row) { 1.0 } else { 0.0 }).collect()
@@ -112,7 +112,7 @@ impl Equations {
         let (gain, time) = (solution.parameters[0], solution.parameters[1]);
         let gain_bias = bias.map_or_else(|| solution.parameters[2], |bias| bias * gain);
         let covariance = solution.variance().ok_or("no more equations than unknowns").map(|variance| {
-            // Order (K, K δ_r, T); a given δ_r makes K δ_r follow K.
+            // Order (K, K δ_r, T); with a given δ_r, K δ_r follows from K.
             let entry = |i: usize, j: usize| {
                 let column = |index: usize| match (index, bias) {
                     (0, _) => (0, 1.0),

@@ -1,6 +1,6 @@
-//! The characteristic points of a zig-zag record: instants with r = 0 (heading extrema and a start at rest) and
-//! instants at which the heading passes the base course, both as the zig-zag analysis of [`trial::zigzag`] finds them,
-//! with the rudder integral up to them and the base course they refer to.
+//! Characteristic points of a zig-zag record: instants with r = 0 (heading extrema and a start at rest) and instants at
+//! which the heading passes the base course, both as the zig-zag analysis of [`trial::zigzag`] finds them, with the
+//! rudder integral up to each point and the base course.
 
 use std::ops::Range;
 
@@ -10,31 +10,31 @@ use trial::zigzag::points;
 use crate::samples::Samples;
 use crate::savitzky_golay::local_polynomial;
 
-/// Rudder within this share of its largest angle is amidships; heading within this share of its largest departure is
-/// on course. In a zig-zag the rudder passes amidships only near the reversals, where the heading is far off: both
-/// together are the approach.
+/// Maximum rudder amidships, as a share of the maximum rudder angle, and maximum departure of a heading on course, as a
+/// share of the maximum departure. In a zig-zag the rudder passes amidships only near the reversals, where the heading
+/// is far off course: both conditions together identify the approach.
 const APPROACH_SHARE: f64 = 0.2;
 
-/// Window moves after which an extremum that does not settle keeps its first position.
+/// Maximum number of window moves; an extremum that has not settled then keeps its first position.
 const MAX_WINDOW_MOVES: usize = 10;
 
-/// Sampling intervals that half a window holds at least.
+/// Minimum number of sampling intervals in half a window.
 const MIN_INTERVALS: f64 = 3.0;
 
 /// Origin of the base course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BaseHeadingOrigin {
-    /// The settings.
+    /// Given in the settings.
     Given,
-    /// The mean heading before the first execute.
+    /// Mean heading before the first execute.
     Approach,
-    /// No approach: heading 0 was taken.
+    /// No approach: heading 0 is used.
     Zero,
-    /// No approach, and 0 is outside the swings: the middle of the headings was taken.
+    /// No approach, and 0 is outside the swings: the middle of the headings is used.
     Middle,
 }
 
-/// A point of the record. Heading is relative to the base course.
+/// Characteristic point of a record; the heading is relative to the base course.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Time, s.
@@ -47,10 +47,10 @@ pub struct Point {
     pub rudder_integral: f64,
 }
 
-/// The characteristic points of one trial.
+/// Characteristic points of one trial.
 #[derive(Debug, Clone)]
 pub struct Points {
-    /// Points with r = 0 in order of time; a start at rest is the first of them.
+    /// Points with r = 0 in order of time; a start at rest is the first point.
     pub still: Vec<Point>,
     /// Passages of the base course in order of time.
     pub crossings: Vec<Point>,
@@ -65,7 +65,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// The heading extrema, without a start at rest.
+    /// Heading extrema, without a start at rest.
     pub fn extrema(&self) -> &[Point] {
         &self.still[usize::from(self.from_rest)..]
     }
@@ -77,7 +77,7 @@ impl Points {
         }
     }
 
-    /// Finds the points of a record. `base` (rad) and `half_width` (s) are found in the record when not given, the
+    /// Finds the points of a record. `base` (rad) and `half_width` (s) are estimated from the record if not given, the
     /// half width as the share `width_share` of half a period.
     pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
@@ -87,7 +87,7 @@ impl Points {
         let (base, base_from) = match (base, &approach) {
             (Some(base), _) => (base, BaseHeadingOrigin::Given),
             (None, Some(rows)) => (mean(rows.clone()), BaseHeadingOrigin::Approach),
-            // Zero between the quarter points of the headings may well be the base course.
+            // A zero between the quarter points of the headings may be the base course.
             (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseHeadingOrigin::Zero),
             (None, None) => (0.5 * (lo + hi), BaseHeadingOrigin::Middle),
         };
@@ -111,7 +111,8 @@ impl Points {
             let heading = mean(recent.min().unwrap_or(last)..rows.end) - base;
             still.insert(0, point(time[last], heading, 0.0));
         }
-        // A window about a passage is not centred on a row: half an interval more gives it as many rows as if it were.
+        // A window about a passage is not centred on a row: half an interval more gives it as many rows as a centred
+        // window.
         let crossings = points::zero_crossings(time, &off_course, half_width + 0.5 * interval)
             .into_iter()
             .map(|[time, yaw_rate]| point(time, 0.0, yaw_rate))
@@ -134,7 +135,7 @@ fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<
 }
 
 /// Half a period, s: the mean time between alternate departures from the base course that count as a swing. The
-/// duration of the record with fewer than two of them.
+/// duration of the record for fewer than two departures.
 fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
     let departures = points::departures(time, off_course);
     match departures[..] {
@@ -144,15 +145,15 @@ fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
     }
 }
 
-/// Vertex (s, rad) of the parabola through the rows within `half_width` of itself.
+/// Vertex (s, rad) of the parabola through the rows within `half_width` of the vertex.
 ///
-/// An extremum is first looked for around the largest heading, which noise picks: a window there holds high values on
-/// purpose. Moving the window to its own vertex until it stays there removes this bias. `None` if the window leaves
-/// the neighbourhood of the start.
+/// The search starts at the maximum heading, which noise selects: a window there contains too many high values. Moving
+/// the window to its own vertex until it stays there removes this bias. `None` if the window leaves the neighbourhood
+/// of the start.
 fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option<(f64, f64)> {
     let mut vertex = start;
     for _ in 0..MAX_WINDOW_MOVES {
-        // Centred on a row, so that the window does not lose one side of an even record.
+        // The window is centred on a row, so that it does not lose one side of an even record.
         let next = time.partition_point(|t| *t < vertex).clamp(1, time.len() - 1);
         let centre = if vertex - time[next - 1] < time[next] - vertex { time[next - 1] } else { time[next] };
         let reach = half_width * (1.0 + 1e-9);
@@ -170,7 +171,8 @@ fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option
     None
 }
 
-/// ∫δ at a time between rows: the parabola with the rudder at the row before and the exact integral at both rows.
+/// Rudder integral ∫δ, rad s, at a time between rows: the parabola with the rudder at the row before and the exact
+/// integral at both rows.
 pub fn rudder_integral(samples: &Samples, time: f64) -> f64 {
     let next = samples.time.partition_point(|t| *t <= time).clamp(1, samples.len() - 1);
     let (k, h) = (next - 1, samples.time[next] - samples.time[next - 1]);

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::points::Points;
 use crate::samples::Samples;
 
-/// One trial with its points.
+/// Trial with its characteristic points.
 #[derive(Debug)]
 pub(super) struct AnalysedTrial {
     pub(super) samples: Samples,
@@ -17,7 +17,7 @@ pub(super) struct AnalysedTrial {
 pub(super) struct PointsFit {
     /// K (1/s), K δ_r (rad/s), T (s).
     pub(super) parameters: [f64; 3],
-    /// Their covariance and degrees of freedom, or why there is none.
+    /// Covariance and degrees of freedom, or the reason why there is none.
     pub(super) covariance: Result<(Matrix3<f64>, f64), &'static str>,
     pub(super) diagnostics: Vec<(&'static str, f64)>,
 }

@@ -1,4 +1,4 @@
-//! Truth everywhere: K = 0.1 1/s, T = 16.3 s.
+//! Tests on records of known truth: K = 0.1 1/s, T = 16.3 s.
 
 use approx::assert_abs_diff_eq;
 use ship::angle::to_deg;
@@ -10,7 +10,7 @@ fn method(settings: Settings) -> CharacteristicPoints {
     settings.build().expect("valid settings")
 }
 
-/// The half width the reference numbers were made with.
+/// Settings with the half width of the reference values.
 fn four_seconds() -> Settings {
     Settings { half_width_s: Some(4.0), ..Settings::default() }
 }
@@ -24,7 +24,7 @@ fn errors(estimate: &Estimate) -> [f64; 2] {
     [100.0 * (estimate.response.K() / 0.1 - 1.0), 100.0 * (estimate.response.T() / 16.3 - 1.0)]
 }
 
-/// The record on another course, with an approach of `approach` rows in front.
+/// Record on another course, with an approach of `approach` rows before it.
 fn turned(case: &Case, course_deg: f64, approach: usize) -> Trial {
     let trial = case.trial();
     let rows = approach + trial.len();
@@ -47,7 +47,7 @@ fn three_peaks_have_no_uncertainty() {
     assert_eq!(method(settings).identify(&[short]).expect_err("two peaks").kind(), "too-few-points");
 }
 
-/// With its mended sign equation (8) is exact: what is left comes from the local cubics.
+/// With the corrected sign equation (8) is exact: the remaining error comes from the local cubics.
 #[test]
 fn equation_8_at_many_instants_is_unbiased_and_knows_its_scatter() {
     let settings = Settings { variant: Variant::Equation8, ..Settings::default() };
@@ -70,7 +70,7 @@ fn equation_8_at_many_instants_is_unbiased_and_knows_its_scatter() {
     }
 }
 
-/// At the vertices r(t) = 0: T stands in equation (8) with r(0) alone, and a start at rest leaves nothing of it.
+/// At the vertices r(t) = 0: in equation (8) T multiplies only r(0), which is zero for a start at rest.
 #[test]
 fn vertices_cannot_give_the_time_constant_from_rest() {
     let settings = Settings { variant: Variant::Equation8Vertices, ..four_seconds() };
@@ -134,7 +134,7 @@ fn says_why_it_cannot() {
         let method = method(Settings { variant, ..Settings::default() });
         for samples in 8..60 {
             let short = Case { samples, start: Start::Rest, ..Case::default() }.trial();
-            // Some answer, some refuse; none may panic.
+            // Some settings give an estimate, some fail; none may panic.
             if let Err(error) = method.identify(&[short]) {
                 assert!(!error.kind().is_empty());
             }

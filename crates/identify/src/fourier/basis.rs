@@ -1,5 +1,5 @@
-//! The basis 1, cos n w t, sin n w t (n = 1..N) on the instants of one record, orthogonalised once for any number of
-//! signals. It does not choose w: see [`super::fundamental`].
+//! Basis 1, cos n w t, sin n w t (n = 1..N) on the instants of one record, orthogonalised once for any number of
+//! signals. The choice of w is in [`super::fundamental`].
 
 use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -8,20 +8,20 @@ use super::curve::FourierFit;
 use super::nodes::{dot, has_even_steps};
 use crate::error::IdentifyError;
 
-/// The bases with 0, 1, .. N harmonics of one fundamental on given instants: leading columns of one design matrix X
-/// (rows × 2N+1, in the order 1, cos 1, sin 1, cos 2, …), so that one orthogonal decomposition serves all of them.
+/// Nested bases with 0, 1, .. N harmonics of one fundamental on given instants: leading columns of one design matrix X
+/// (rows × 2N+1, in the order 1, cos 1, sin 1, cos 2, …), so that one orthogonal decomposition serves all bases.
 ///
-/// Inside, time runs from the middle of the instants: moving the origin turns every pair (cos n, sin n) by an angle,
-/// an orthogonal change that keeps condition number and residuals but makes cos and sin columns nearly orthogonal to
-/// each other. On even steps they are orthogonal: every instant has a mirror image, and sum and difference of the two,
-/// over √2, turn X into a part with the cosines and another with the sines, half as long each.
+/// Internally, time runs from the middle of the instants: moving the origin turns every pair (cos n, sin n) by an
+/// angle, an orthogonal change that keeps condition number and residuals but makes cos and sin columns nearly
+/// orthogonal to each other. On even steps they are orthogonal: every instant has a mirror image, and sum and
+/// difference of the two, over √2, turn X into a part with the cosines and a part with the sines, each half as long.
 #[derive(Debug, Clone)]
 pub struct NestedBases {
     fundamental: f64,
     harmonics: usize,
     centre: f64,
     rows: usize,
-    /// X, or the two halves of it, column by column.
+    /// Design matrix X, or its two halves, column by column.
     columns: Vec<Vec<f64>>,
     parts: Vec<OrthogonalPart>,
 }
@@ -29,7 +29,7 @@ pub struct NestedBases {
 /// Group of columns of X that is orthogonal to the other groups.
 #[derive(Debug, Clone)]
 struct OrthogonalPart {
-    /// Column numbers, in rising order.
+    /// Column numbers, in increasing order.
     places: Vec<usize>,
     qr: QR<f64, Dyn, Dyn>,
 }
@@ -48,9 +48,9 @@ pub struct Basis {
 pub struct Projection {
     /// Coefficients in the order 1, cos 1, sin 1, cos 2, …, in the time of the basis.
     pub coefficients: DVector<f64>,
-    /// Signal less its projection, one value an instant.
+    /// Signal minus its projection, one value per instant.
     pub residual: Vec<f64>,
-    /// Share of the variance that the projection carries; 1 for a constant signal.
+    /// Share of the variance explained by the projection; 1 for a constant signal.
     pub r_squared: f64,
 }
 
@@ -61,12 +61,12 @@ impl OrthogonalPart {
         Self { places, qr }
     }
 
-    /// The columns that belong to a series of `harmonics` harmonics.
+    /// Columns of a series of `harmonics` harmonics.
     fn places(&self, harmonics: usize) -> &[usize] {
         &self.places[..self.places.partition_point(|&place| place <= 2 * harmonics)]
     }
 
-    /// Qᵀy of the part of a signal.
+    /// Qᵀy for the part of a signal.
     fn rotated(&self, mut signal: DVector<f64>) -> DVector<f64> {
         self.qr.q_tr_mul(&mut signal);
         signal
@@ -74,9 +74,9 @@ impl OrthogonalPart {
 }
 
 impl NestedBases {
-    /// The bases with up to `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
+    /// Bases with up to `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
     ///
-    /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns of the widest.
+    /// Fails with [`IdentifyError::TooFewPoints`] if there are not more instants than columns of the widest basis.
     pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
         let (rows, width) = (time.len(), 2 * harmonics + 1);
         if rows <= width {
@@ -84,13 +84,13 @@ impl NestedBases {
             return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
         }
         let centre = 0.5 * (time[0] + time[rows - 1]);
-        // Without harmonics there are no sines.
+        // Without harmonics there are no sine columns.
         let folded = harmonics > 0 && has_even_steps(time);
         let instants = &time[if folded { rows / 2 } else { 0 }..];
         let first: Vec<(f64, f64)> = instants.iter().map(|t| (fundamental * (t - centre)).sin_cos()).collect();
         let (mut c, mut s) = (vec![if folded { SQRT_2 } else { 1.0 }; instants.len()], vec![0.0; instants.len()]);
         if folded && rows % 2 == 1 {
-            // The middle is its own mirror image.
+            // The middle row is its own mirror image.
             c[0] = 1.0;
         }
         let mut columns = Vec::with_capacity(width);
@@ -125,7 +125,7 @@ impl NestedBases {
         rss
     }
 
-    /// The basis with the first `harmonics` of its harmonics, at least one where there are any.
+    /// Basis with the first `harmonics` harmonics, at least one if there are any.
     pub fn basis(self, harmonics: usize) -> Basis {
         let triangle = |part: &OrthogonalPart| {
             let width = part.places(harmonics).len();
@@ -152,7 +152,7 @@ impl NestedBases {
         vec![even, odd]
     }
 
-    /// The inverse of [`Self::split`].
+    /// Inverse of [`Self::split`].
     fn join(&self, parts: &[DVector<f64>]) -> Vec<f64> {
         let [even, odd] = parts else { return parts[0].as_slice().to_vec() };
         let half = even.len();
@@ -171,9 +171,9 @@ impl NestedBases {
 }
 
 impl Basis {
-    /// The basis of `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
+    /// Basis of `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
     ///
-    /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns.
+    /// Fails with [`IdentifyError::TooFewPoints`] if there are not more instants than columns.
     pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
         Ok(NestedBases::new(time, fundamental, harmonics)?.basis(harmonics))
     }
@@ -183,7 +183,7 @@ impl Basis {
         self.harmonics
     }
 
-    /// Condition number of X, columns as they are (√2 for whole periods); infinite when X is rank-deficient.
+    /// Condition number of X, columns unscaled (√2 for whole periods); infinite if X is rank-deficient.
     pub fn condition(&self) -> f64 {
         let largest = self.largest_singular_value();
         let smallest = self.svd.iter().map(|svd| svd.singular_values.min()).fold(f64::INFINITY, f64::min);
@@ -194,7 +194,7 @@ impl Basis {
         self.svd.iter().map(|svd| svd.singular_values.max()).fold(0.0, f64::max)
     }
 
-    /// The parts of the series with the places of their columns in this basis and the decomposition of their triangle.
+    /// Parts of the series, with the indices of their columns in this basis and the decomposition of their triangle.
     fn parts(&self) -> impl Iterator<Item = (&OrthogonalPart, &[usize], &SVD<f64, Dyn, Dyn>)> {
         self.series.parts.iter().zip(&self.svd).map(|(part, svd)| (part, part.places(self.harmonics), svd))
     }
@@ -223,7 +223,7 @@ impl Basis {
         Projection { coefficients, residual, r_squared }
     }
 
-    /// (XᵀX)⁻¹ in the order of [`Projection::coefficients`]: times a white noise variance, their covariance.
+    /// (XᵀX)⁻¹ in the order of [`Projection::coefficients`]; times a white noise variance it is their covariance.
     pub fn unscaled_covariance(&self) -> DMatrix<f64> {
         let width = 2 * self.harmonics + 1;
         let mut covariance = DMatrix::zeros(width, width);
@@ -243,7 +243,7 @@ impl Basis {
         covariance
     }
 
-    /// Xθ: the values at the instants of a series with `coefficients` θ.
+    /// Values Xθ at the instants of a series with `coefficients` θ.
     pub fn values(&self, coefficients: &DVector<f64>) -> Vec<f64> {
         let sum = |places: &[usize]| {
             let mut values = DVector::zeros(self.series.columns[0].len());
@@ -253,7 +253,7 @@ impl Basis {
         self.series.join(&self.parts().map(|(_, places, _)| sum(places)).collect::<Vec<_>>())
     }
 
-    /// Xᵀy: the sums of the products of `values` y, one an instant, with every function of the basis.
+    /// Moments Xᵀy: the sums of the products of `values` y, one per instant, with every function of the basis.
     pub fn moments(&self, values: &[f64]) -> DVector<f64> {
         let mut moments = DVector::zeros(2 * self.harmonics + 1);
         for ((_, places, _), signal) in self.parts().zip(self.series.split(values)) {
@@ -262,7 +262,7 @@ impl Basis {
         moments
     }
 
-    /// D θ: the coefficients of the derivative of a series, n w (bₙ cos n w t − aₙ sin n w t).
+    /// Coefficients D θ of the derivative of a series, n w (bₙ cos n w t − aₙ sin n w t).
     pub fn derivative(&self, coefficients: &DVector<f64>) -> DVector<f64> {
         let mut derivative = DVector::zeros(coefficients.len());
         for n in 1..=self.harmonics {
@@ -273,13 +273,13 @@ impl Basis {
         derivative
     }
 
-    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the other function of its
+    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the second function of its
     /// pair.
     pub fn moments_of_derivative(&self, moments: &DVector<f64>) -> DVector<f64> {
         -self.derivative(moments)
     }
 
-    /// The curve of a projection, with coefficients in the time of the record.
+    /// Curve of a projection, with coefficients in the time of the record.
     pub fn curve(&self, projection: &Projection) -> FourierFit {
         let (n, fundamental) = (self.harmonics, self.series.fundamental);
         let theta = &projection.coefficients;

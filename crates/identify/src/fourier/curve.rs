@@ -1,6 +1,6 @@
-//! The fitted curve and its derivatives.
+//! Fitted Fourier curve and its derivatives.
 
-/// A fitted Fourier curve of the heading; time runs from the first observed row of the record.
+/// Fitted Fourier curve of the heading; time runs from the first observed row of the record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierFit {
     /// Fundamental w, rad/s.
@@ -11,7 +11,7 @@ pub struct FourierFit {
     pub cosine: Vec<f64>,
     /// bₙ, n = 1..N, rad.
     pub sine: Vec<f64>,
-    /// Share of the variance of the heading that the curve carries.
+    /// Share of the variance of the heading explained by the curve.
     pub r_squared: f64,
     /// Condition number of the basis on the instants of the record (√2 for whole periods).
     pub condition: f64,

@@ -1,7 +1,7 @@
-//! The fundamental w of the series: by local search, by the lowest RSS of all or by a rule.
+//! Fundamental w of the series: by local search, by the lowest RSS of all or by a rule.
 //!
-//! A rule is preferable: RSS is nearly the same in several minima while derivatives and conditioning are not, so the
-//! lowest RSS is a poor criterion for w.
+//! A rule is preferable: RSS is nearly equal in several minima while derivatives and conditioning differ, so the lowest
+//! RSS is a poor criterion for w.
 
 use estimation::statistics::median;
 use serde::{Deserialize, Serialize};
@@ -13,46 +13,47 @@ use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 use crate::settings::{SettingsError, require};
 
-/// How the fundamental is chosen.
+/// Rule for the choice of the fundamental.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fundamental {
     /// Local searches, downhill in RSS(w), from the highest peak of the discrete Fourier transform of the heading, from
-    /// one period a record and from half a period; the best end wins.
+    /// one period per record and from half a period; the lowest end point is used.
     Starts,
-    /// A local search from the peak alone.
+    /// Local search from the peak alone.
     FftPeak,
-    /// The lowest RSS over all w from 0.35 periods a record (or 1.25/N of the peak of the transform, if that is more)
-    /// to 1.5 times the peak.
+    /// Lowest RSS over all w from 0.35 periods per record (or 1.25/N of the peak of the transform, if that is more) to
+    /// 1.5 times the peak.
     Global,
     /// One period of the series is the median period between zero crossings of the heading about its mean.
     ZeroCrossings,
-    /// One period of the series is the record and this many zig-zag periods more (periods by ZeroCrossings): the added
-    /// time lets the series join the end of the record to its beginning, so that the record need not be periodic.
+    /// One period of the series is the record plus this many zig-zag periods (periods by ZeroCrossings): the added time
+    /// connects the end of the record to its beginning, so that the record need not be periodic.
     RecordAndPeriods(f64),
 }
 
-/// A fundamental and how its search stopped.
+/// Fundamental, and the reason why the search stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChosenFundamental {
     /// w, rad/s.
     pub fundamental: f64,
-    /// Why the search stopped.
+    /// Reason why the search stopped.
     pub stop: StopReason,
-    /// Fundamentals tried.
+    /// Number of fundamentals tried.
     pub evaluations: usize,
 }
 
-/// Lowest fundamental of a scan, periods a record: below it 17 columns are one polynomial to rounding.
+/// Minimum fundamental of a scan, periods per record: below it 17 columns are one polynomial to rounding.
 const MIN_PERIODS: f64 = 0.35;
 
-/// Highest fundamental of a scan over the peak of the transform.
+/// Maximum fundamental of a scan, relative to the peak of the transform.
 const MAX_OVER_PEAK: f64 = 1.5;
 
-/// The highest harmonic must reach past the peak of the transform, else the series cannot follow the record.
+/// Minimum ratio of the highest harmonic to the peak of the transform; below it the series cannot follow the record.
 const MIN_REACH: f64 = 1.25;
 
-/// Steps as a share of π/(N T_rec), the change of w that moves the highest harmonic by half a period over the record.
+/// Scan step as a share of π/(N T_rec), the change of w that moves the highest harmonic by half a period over the
+/// record.
 const SCAN_STEP: f64 = 0.3;
 const DESCENT_STEP: f64 = 0.15;
 
@@ -66,7 +67,7 @@ impl Fundamental {
 
     /// Chooses w for `heading` (rad) at `time` (s, increasing), to be used with `harmonics` harmonics.
     ///
-    /// Fails with [`IdentifyError::TooFewPoints`] when a rule that needs the zig-zag period finds fewer than two
+    /// Fails with [`IdentifyError::TooFewPoints`] if a rule that needs the zig-zag period finds fewer than two
     /// crossings.
     pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<ChosenFundamental, IdentifyError> {
         let length = time[time.len() - 1] - time[0];
@@ -82,7 +83,7 @@ impl Fundamental {
     }
 }
 
-/// Local searches from every start (rad/s), the lowest RSS kept.
+/// Lowest RSS of local searches from every start (rad/s).
 fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
     let mut profile = Profile::new(time, heading, harmonics);
@@ -92,7 +93,7 @@ fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) 
     ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
-/// Walks downhill from `from` in steps too small to leave a basin, then closes in on the minimum.
+/// Minimum found downhill from `from` in steps too small to leave a basin, then refined.
 fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (f64, ChosenFundamental) {
     let step = DESCENT_STEP * PI / (harmonics as f64 * length);
     let (floor, ceiling) = (MIN_PERIODS * TAU / length, from.max(TAU / length) * 2.0);
@@ -119,8 +120,8 @@ fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (
     (rss, ChosenFundamental { fundamental, stop: StopReason::Converged, evaluations: 0 })
 }
 
-/// Minimum of RSS between `lo` and `hi` from an inner point `middle` with RSS `value`: Brent (1973), parabolas with
-/// golden sections where they fail. Settles at a relative step of 1e-8, below which RSS is flat to rounding.
+/// Minimum of RSS between `lo` and `hi` from an inner point `middle` with RSS `value`: Brent (1973), parabolas, with
+/// golden sections if they fail. Converges at a relative step of 1e-8, below which RSS is flat to rounding.
 fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.381_966_011_250_105;
     let (mut lo, mut hi) = (lo, hi);
@@ -172,7 +173,7 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
     (x, fx)
 }
 
-/// The lowest RSS on a grid of fundamentals, closed in on.
+/// Lowest RSS on a grid of fundamentals, refined.
 fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
     let peak = peak_of_transform(time, heading);
@@ -189,8 +190,8 @@ fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental 
     ChosenFundamental { fundamental, stop, evaluations: profile.evaluations }
 }
 
-/// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period a
-/// record upwards. Headings are interpolated to even steps first, so that gaps do no harm.
+/// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period per
+/// record upwards. Headings are first interpolated to even steps, so that gaps are admissible.
 pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
     let rows = time.len();
     let step = (time[rows - 1] - time[0]) / (rows - 1) as f64;
@@ -212,12 +213,12 @@ pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
 }
 
 /// Median time between every other crossing of the heading through its mean, s; twice the median time between crossings
-/// when there are only two.
+/// if there are only two.
 ///
-/// A crossing counts once the heading has gone a quarter of its amplitude to the other side, so that noise near zero
-/// makes no crossing; its time is the middle between the first and the last change of sign on the way.
+/// A crossing counts after the heading has passed a quarter of its amplitude on the opposite side, so that noise near
+/// zero makes no crossing; its time is the middle between the first and the last change of sign.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than two crossings.
+/// Fails with [`IdentifyError::TooFewPoints`] if there are fewer than two crossings.
 pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, IdentifyError> {
     let mean = heading.iter().sum::<f64>() / heading.len() as f64;
     let amplitude = heading.iter().fold(0.0f64, |most, psi| most.max((psi - mean).abs()));

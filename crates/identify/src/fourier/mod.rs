@@ -1,9 +1,9 @@
-//! A heading record as a Fourier series with a free fundamental: ψ(t) = a₀ + Σ (aₙ cos n w t + bₙ sin n w t), n = 1..N.
+//! Fourier series of a heading record with a free fundamental: ψ(t) = a₀ + Σ (aₙ cos n w t + bₙ sin n w t), n = 1..N.
 //! Source of the form: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, equation
 //! (9).
 //!
-//! Shared by `fourier-published` and `fourier-projected`, and by figures that show a fit. Because w is free this is a
-//! nonlinear regression, not a Fourier analysis: RSS(w) has many local minima, and the lowest often has a period longer
+//! Shared by `fourier-published` and `fourier-projected`, and by plots of a fit. Because w is free this is a nonlinear
+//! regression, not a Fourier analysis: RSS(w) has many local minima, and the lowest minimum often has a period longer
 //! than the record, large cancelling coefficients and poor derivatives. [`Fundamental`] lists the rules to choose w.
 //!
 //! | to learn about | read |
@@ -33,29 +33,28 @@ use document::{Warning, WarningCode};
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 
-/// Maximum condition number of the basis at which derivatives of the curve are used.
+/// Maximum condition number of the basis for the use of derivatives of the curve.
 pub const TRUSTED_CONDITION: f64 = 1e4;
 
 /// Fourier fit of a heading: the curve with its basis and projection.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// The curve.
+    /// Fitted curve.
     pub curve: FourierFit,
-    /// The basis, to project other signals of the same record.
+    /// Basis, for the projection of other signals of the record.
     pub basis: Basis,
     /// Coefficients and residual of the heading on the basis.
     pub projection: Projection,
-    /// Why the search for w stopped.
+    /// Reason why the search for w stopped.
     pub stop: StopReason,
-    /// Fundamentals tried.
+    /// Number of fundamentals tried.
     pub evaluations: usize,
 }
 
 /// Fits a heading (rad) given at `time` (s, increasing, from 0) by a series of `harmonics` harmonics.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when there are not more headings than coefficients or no period can be
-/// seen by a rule that needs one. Settings are expected to be valid ([`Fundamental::check`], 1 ≤ N ≤
-/// [`MAX_HARMONICS`]).
+/// Fails with [`IdentifyError::TooFewPoints`] if there are not more headings than coefficients or if a rule that needs
+/// a period finds none. Settings are expected to be valid ([`Fundamental::check`], 1 ≤ N ≤ [`MAX_HARMONICS`]).
 pub fn fit(
     time: &[f64],
     heading: &[f64],
@@ -73,7 +72,7 @@ pub fn fit(
     Ok(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
 }
 
-/// Diagnostics of the fits: w and N of the first trial, smallest R² and largest condition number of all.
+/// Diagnostics of the fits: w and N of the first trial, minimum R² and maximum condition number of all trials.
 pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
     let first = fits.first().map(|fit| &fit.curve);
     let r_squared = fits.iter().fold(1.0f64, |least, fit| least.min(fit.curve.r_squared));
@@ -86,7 +85,7 @@ pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
     all
 }
 
-/// Warnings on a fundamental at the edge of its search and on ill-conditioned bases.
+/// Warnings on a fundamental at the edge of the search and on ill-conditioned bases.
 pub(crate) fn warnings(fits: &[Fitted]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for Fitted { curve, stop, .. } in fits {

@@ -1,11 +1,10 @@
-//! A record folded about its middle: every row of a record in even steps has its mirror image, so that sums of even and
-//! odd functions of time run over half of them. It does not model the signal.
+//! Record folded about its middle: every row of a record in even steps has its mirror image, so that sums of even and
+//! odd functions of time run over half the rows. It does not model the signal.
 
-/// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as
-/// few as stay in registers.
+/// Number of instants summed in parallel: independent sums in a fixed order, few enough to stay in registers.
 pub const LANES: usize = 4;
 
-/// Deviation from even steps, as a share of the step, that is rounding of the clock.
+/// Maximum deviation from even steps, as a share of the step, that is treated as rounding of the clock.
 const EVEN_STEP_TOLERANCE: f64 = 1e-7;
 
 /// Instants u ≥ 0 from the middle of a record, such that for f = fₑ + fₒ, even and odd in u,
@@ -14,30 +13,30 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-7;
 /// All columns have one length, a multiple of [`LANES`]; the padding holds zeros.
 #[derive(Debug, Clone, Default)]
 pub struct Nodes {
-    /// u, s.
+    /// Time u from the middle, s.
     pub time: Vec<f64>,
-    /// Even and odd part of the signal.
+    /// Even part of the signal.
     pub even: Vec<f64>,
-    /// See [`Self::even`].
+    /// Odd part of the signal; see [`Self::even`].
     pub odd: Vec<f64>,
-    /// Even and odd part of the number of rows.
+    /// Even part of the number of rows.
     pub weight: Vec<f64>,
-    /// See [`Self::weight`].
+    /// Odd part of the number of rows; see [`Self::weight`].
     pub skew: Vec<f64>,
     /// `true` if every row has its mirror image, so that `skew` is zero.
     pub is_symmetric: bool,
-    /// Instants without the padding.
+    /// Number of instants without the padding.
     pub used: usize,
 }
 
 impl Nodes {
-    /// The rows of a record of `values` at `time` (s, increasing, equal lengths, at least 2).
+    /// Folded rows of a record of `values` at `time` (s, increasing, equal lengths, at least 2).
     pub fn from_rows(time: &[f64], values: &[f64]) -> Self {
         let rows = time.len();
         let centre = 0.5 * (time[0] + time[rows - 1]);
         let is_symmetric = has_even_steps(time);
         let mut nodes = Self { is_symmetric, ..Self::default() };
-        // Of an even record the rows from the middle on, each with its mirror image.
+        // For an even record the rows from the middle on, each with its mirror image.
         for row in if is_symmetric { rows / 2 } else { 0 }..rows {
             let u = time[row] - centre;
             let mirror = rows - 1 - row;
@@ -70,19 +69,19 @@ impl Nodes {
     }
 }
 
-/// `true` if times (s, increasing, at least 2) are a step apart to the rounding of a clock: then every one has its
+/// `true` if times (s, increasing, at least 2) have even steps to the rounding of a clock: then every time has its
 /// mirror image about the middle.
 pub fn has_even_steps(time: &[f64]) -> bool {
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN_STEP_TOLERANCE * step)
 }
 
-/// The block of a padded column from `start` on.
+/// Block of a padded column from `start` on.
 pub fn lanes<T>(values: &[T], start: usize) -> &[T; LANES] {
     values[start..start + LANES].try_into().expect("columns are padded to whole blocks")
 }
 
-/// Σ x y of columns of one length, [`LANES`] sums at a time.
+/// Sum of products Σ x y of columns of equal length, in [`LANES`] parallel sums.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     let ((x, x_tail), (y, y_tail)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
     let mut sums = [0.0; LANES];

@@ -1,11 +1,11 @@
-//! The residual sum of squares as a function of the fundamental alone, the coefficients eliminated: cheap enough to
+//! Residual sum of squares as a function of the fundamental alone, with the coefficients eliminated: cheap enough to
 //! scan. It has many local minima in w, so the result of a search depends on its start.
 //!
 //! With time u from the middle of a record of length L, cos k w u is a polynomial of degree k in cos w u, and sin k w u
 //! is sin w u times one of degree k − 1. Over less than one period cos w u runs through a part of [−1, 1] only and its
-//! Chebyshev polynomials are nearly dependent; those of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs through all
-//! of it, span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal equations hold only
-//! Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w.
+//! Chebyshev polynomials are nearly dependent; the polynomials of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs
+//! through all of [−1, 1], span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal
+//! equations hold only Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w.
 //!
 //! Source of the elimination: Golub and Pereyra (1973), variable projection.
 
@@ -16,29 +16,29 @@ use std::f64::consts::FRAC_PI_2;
 use super::nodes::{LANES, Nodes, lanes};
 
 /// Minimum pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
-/// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error
-/// and false minima appear. It happens where gaps leave too little of the record, and where the highest harmonics are
-/// beyond the sampling.
+/// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots consist of error and false
+/// minima appear. This happens if gaps leave too little of the record, or if the highest harmonics are beyond the
+/// sampling.
 const MIN_PIVOT: f64 = 1e-6;
 
-/// Steps of a walk after which its phasors are computed anew, before rounding adds up.
+/// Number of steps of a walk after which its phasors are computed anew, to limit rounding.
 const ANCHOR_STEPS: usize = 32;
 
-/// RSS(w) of the best series with N harmonics of w, with its work space allocated once.
+/// Profile RSS(w) of the best series with N harmonics of w; the work space is allocated once.
 #[derive(Debug, Clone)]
 pub struct Profile {
     harmonics: usize,
     /// Length of the record, s.
     length: f64,
     total: f64,
-    /// The record itself.
+    /// Rows of the record.
     rows: Nodes,
-    /// cos ½wu and sin ½wu of the fundamental evaluated last.
+    /// cos ½wu and sin ½wu of the last evaluated fundamental.
     phasor: Vec<[f64; 2]>,
     sums: Vec<Sums>,
     gram: Vec<f64>,
     right: Vec<f64>,
-    /// Number of fundamentals tried so far.
+    /// Number of fundamentals tried.
     pub evaluations: usize,
 }
 
@@ -56,8 +56,7 @@ struct Sums {
 }
 
 impl Profile {
-    /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MAX_HARMONICS`]
-    /// harmonics.
+    /// Profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MAX_HARMONICS`] harmonics.
     pub fn new(time: &[f64], values: &[f64], harmonics: usize) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
@@ -88,13 +87,13 @@ impl Profile {
         (0..count).map(|_| walk.next_rss()).collect()
     }
 
-    /// Fundamentals from `from` in steps of `step` (rad/s, either sign).
+    /// Walk over fundamentals from `from` in steps of `step` (rad/s, either sign).
     pub fn walk(&mut self, from: f64, step: f64) -> Walk<'_> {
         let turn = self.rows.time.iter().map(|u| phasor(0.5 * step * u)).collect();
         Walk { profile: self, turn, from, step, done: 0 }
     }
 
-    /// Computes the phasors of `fundamental`.
+    /// Sets the phasors of `fundamental`.
     fn anchor(&mut self, fundamental: f64) {
         for (value, u) in self.phasor.iter_mut().zip(&self.rows.time) {
             *value = phasor(0.5 * fundamental * u);
@@ -138,12 +137,12 @@ impl Profile {
         }
     }
 
-    /// RSS from an orthogonal decomposition, where its columns are nearly dependent on the rows there are.
+    /// RSS from an orthogonal decomposition, for columns that are nearly dependent on the given rows.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
         let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.length));
         let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
-        // A pair of instants weighs √2; an instant alone has the sign of its side in `skew`.
+        // A pair of instants has the weight √2; a single instant has the sign of its side in `skew`.
         let root: Vec<f64> = weight[..*used].iter().map(|weight| weight.sqrt()).collect();
         for row in 0..*used {
             let [xi, sine] = arguments(phasor(0.5 * fundamental * time[row]), share);
@@ -158,7 +157,7 @@ impl Profile {
         }
         let part = |signal: &[f64]| DVector::from_fn(*used, |row, _| signal[row] / root[row]);
         if *is_symmetric {
-            // The cosines see only the even part of the record, the sines only the odd part.
+            // The cosines act only on the even part of the record, the sines only on the odd part.
             return residual_sum_of_squares(cosines, part(even)) + residual_sum_of_squares(sines, part(odd));
         }
         let mut design = cosines.resize_horizontally(2 * n + 1, 0.0);
@@ -167,7 +166,7 @@ impl Profile {
     }
 }
 
-/// A walk through fundamentals in even steps: phasors are turned by the step instead of being computed anew.
+/// Walk through fundamentals in even steps: phasors are rotated by the step instead of being computed anew.
 #[derive(Debug)]
 pub struct Walk<'a> {
     profile: &'a mut Profile,
@@ -178,7 +177,7 @@ pub struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// RSS at the next fundamental, the first time at the start of the walk.
+    /// RSS at the next fundamental; the first call is at the start of the walk.
     pub fn next_rss(&mut self) -> f64 {
         let fundamental = self.from + self.done as f64 * self.step;
         if self.done.is_multiple_of(ANCHOR_STEPS) {
@@ -194,12 +193,12 @@ impl Walk<'_> {
     }
 }
 
-/// Limit on the harmonics of a series; far beyond what a zig-zag record can carry.
+/// Maximum number of harmonics of a series, far beyond the information of a zig-zag record.
 pub const MAX_HARMONICS: usize = 64;
 
 const MAX_COLUMNS: usize = 2 * MAX_HARMONICS + 1;
 
-/// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
+/// Share sin² ¼wL of [−1, 1] covered by cos w u over a record of length L; 1 from one period on.
 fn cosine_share(fundamental: f64, length: f64) -> f64 {
     (0.25 * fundamental * length).min(FRAC_PI_2).sin().powi(2)
 }
@@ -215,7 +214,7 @@ fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }
 
-/// Sums over `nodes` with Tₖ(ξ) for k ≤ 2N; those of the signal stop at the harmonics.
+/// Sums over `nodes` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
 fn accumulate(nodes: &Nodes, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
     sums.fill(Sums::default());
     for start in (0..nodes.time.len()).step_by(LANES) {
@@ -250,8 +249,8 @@ fn add(total: &mut [f64; LANES], factor: &[f64; LANES], term: &[f64; LANES]) {
     }
 }
 
-/// Σ sin² w u Tₖ from Σ Tₖ, for two orders less: sin² w u = x (2 − x), x = 1 − cos w u = `share` (1 − ξ), and
-/// (1 − ξ) Tₖ = Tₖ − ½ (Tₖ₊₁ + T_|k−1|).
+/// Σ sin² w u Tₖ from Σ Tₖ, for two fewer orders: sin² w u = x (2 − x), x = 1 − cos w u = `share` (1 − ξ), and (1 − ξ)
+/// Tₖ = Tₖ − ½ (Tₖ₊₁ + T_|k−1|).
 fn with_square_of_sine(sums: &[f64], share: f64) -> [f64; MAX_COLUMNS] {
     let by_x = |sums: &[f64], orders: usize| {
         let mut product = [0.0; MAX_COLUMNS];
@@ -275,7 +274,8 @@ fn residual_sum_of_squares(design: DMatrix<f64>, mut signal: DVector<f64>) -> f6
     signal.rows_range(width..).norm_squared()
 }
 
-/// bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` if a pivot is down to rounding.
+/// Explained sum of squares bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` if a pivot is within
+/// rounding.
 fn explained(gram: &mut [f64], right: &mut [f64]) -> Option<f64> {
     let width = right.len();
     let mut diagonal = [0.0; MAX_COLUMNS];

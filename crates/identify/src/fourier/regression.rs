@@ -1,6 +1,5 @@
-//! K, T and δ_r by least squares on T r' + r = K (δ + δ_r), with r and r' taken from Fourier curves, and their
-//! covariance under white heading noise. It does not fit the curves. Source of the equation: Ge, Hu, Yin and Sun,
-//! equation (10).
+//! Least squares for K, T and δ_r on T r' + r = K (δ + δ_r), with r and r' of Fourier curves, and their covariance
+//! under white heading noise. It does not fit the curves. Source of the equation: Ge, Hu, Yin and Sun, equation (10).
 
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
@@ -14,17 +13,17 @@ use super::basis::{Basis, Projection};
 use crate::error::IdentifyError;
 use estimation::least_squares::LeastSquares;
 
-/// The side of the equation of motion that the other terms are regressed on.
+/// Left side of the regression of the equation of motion.
 ///
-/// Noise of a regressor pulls its coefficient towards zero (errors in variables). The noise of r is smaller against
-/// its signal than that of r', by about the highest frequency of the series over that of the zig-zag.
+/// Noise of a regressor biases its coefficient towards zero (errors in variables). The relative noise of r is smaller
+/// than that of r', by about the ratio of the highest frequency of the series to the frequency of the zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RegressionForm {
-    /// r' = −(1/T) r + (K/T) δ + (K/T) δ_r: the less biased of the two.
+    /// r' = −(1/T) r + (K/T) δ + (K/T) δ_r: the less biased form.
     #[default]
     YawAcceleration,
-    /// r = −T r' + K δ + K δ_r: the equation as the paper writes it.
+    /// r = −T r' + K δ + K δ_r: the equation as in the paper.
     YawRate,
 }
 
@@ -37,7 +36,7 @@ pub struct Equations {
     trials: Vec<Block>,
 }
 
-/// Places of the rudder and of the constant 1 among the signals of [`Block::moments`].
+/// Indices of the rudder and of the constant 1 among the signals of [`Block::moments`].
 const RUDDER: usize = 2;
 const ONE: usize = 3;
 
@@ -50,10 +49,10 @@ struct Block {
     covariance: DMatrix<f64>,
 }
 
-/// The solution of [`Equations`].
+/// Solution of [`Equations`].
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// The response.
+    /// First-order response.
     pub response: FirstOrder,
     /// Covariance of (1/T, K/T, δ_r) for white heading noise of the variance given with every trial.
     pub covariance: Matrix3<f64>,
@@ -65,7 +64,7 @@ impl Equations {
     /// Adds equations at `rows` of the instants of `basis`: r and r' of the heading on it, `rudder` (rad) as given for
     /// all instants.
     ///
-    /// `noise_variance`, rad², is that of white noise on the heading.
+    /// `noise_variance`, rad², is the variance of white noise on the heading.
     pub fn add(
         &mut self,
         basis: &Basis,
@@ -103,11 +102,11 @@ impl Equations {
         self.rudder.is_empty()
     }
 
-    /// Solves for the response of the ship, with `response` as the left side.
+    /// Solution for the response of the ship, with `response` as the left side.
     ///
-    /// Fails with [`IdentifyError::Singular`] when the condition number of the scaled equations exceeds
+    /// Fails with [`IdentifyError::Singular`] if the condition number of the scaled equations exceeds
     /// `condition_limit`, with [`IdentifyError::TooFewPoints`] below three equations, and with
-    /// [`IdentifyError::NotAShip`] when K/T is not positive.
+    /// [`IdentifyError::NotAShip`] if K/T is not positive.
     pub fn solve(&self, response: RegressionForm, condition_limit: f64) -> Result<Solution, IdentifyError> {
         let constant = vec![1.0; self.len()];
         let (left, right) = self.sides(response);
@@ -115,7 +114,7 @@ impl Equations {
         let fit = LeastSquares::solve(&[&minus_right, &self.rudder, &constant], left, condition_limit)?;
         let parameters = Vector3::new(fit.parameters[0], fit.parameters[1], fit.parameters[2]);
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
-        // (1/T, K/T, δ_r) and its derivative by the parameters.
+        // (1/T, K/T, δ_r) and its derivative with respect to the parameters.
         let (a, b, to_response) = match response {
             RegressionForm::YawAcceleration => (p, q, [RowVector3::new(1.0, 0.0, 0.0), RowVector3::new(0.0, 1.0, 0.0)]),
             RegressionForm::YawRate => {
@@ -123,7 +122,7 @@ impl Equations {
                 (1.0 / p, q / p, [RowVector3::new(by_T, 0.0, 0.0), RowVector3::new(q * by_T, 1.0 / p, 0.0)])
             }
         };
-        // Written so that NaN is refused too.
+        // The condition also refuses NaN.
         if !(b > 0.0 && a.is_finite() && b.is_finite()) {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
@@ -149,13 +148,13 @@ impl Equations {
 
     /// Covariance of Zᵀe to first order in the noise of the coefficients, Z = [−x, δ, 1], e = y − Z (p, q, s)ᵀ.
     ///
-    /// d(Zᵀe) = Zᵀ(dy + p dx) − (eᵀdx, 0, 0)ᵀ: the noise of the equations, and the noise of the regressor against what
-    /// the truncated series leaves of them. dx and dy are linear in the coefficients, whose covariance is σ²(XᵀX)⁻¹.
+    /// d(Zᵀe) = Zᵀ(dy + p dx) − (eᵀdx, 0, 0)ᵀ: the noise of the equations, and the noise of the regressor times their
+    /// truncation residual. dx and dy are linear in the coefficients, whose covariance is σ²(XᵀX)⁻¹.
     fn spread_of_moments(&self, response: RegressionForm, parameters: &Vector3<f64>) -> Matrix3<f64> {
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
         let mut total = Matrix3::zeros();
         for Block { moments: [by_rate, by_acceleration], covariance } in &self.trials {
-            // Places of y and x among the signals.
+            // Indices of y and x among the signals.
             let (dy, dx, y, x) = match response {
                 RegressionForm::YawAcceleration => (by_acceleration, by_rate, 1, 0),
                 RegressionForm::YawRate => (by_rate, by_acceleration, 0, 1),
@@ -171,10 +170,10 @@ impl Equations {
     }
 }
 
-/// Variance of the white part of a residual that may also have a smooth part: mean square of every value about the
-/// straight line through its neighbours, per unit variance (Gasser, Sroka and Jennen-Steinmetz 1986).
+/// Variance of the white part of a residual that may also have a smooth part: mean square of the distances of values
+/// from the straight line through their neighbours, per unit variance (Gasser, Sroka and Jennen-Steinmetz 1986).
 ///
-/// For even steps it has 18/35 degrees of freedom a value. `time` and `residual` have the same length, at least 3.
+/// For even steps it has 18/35 degrees of freedom per value. `time` and `residual` have the same length, at least 3.
 pub fn white_variance(time: &[f64], residual: &[f64]) -> f64 {
     let mut total = 0.0;
     for (t, e) in time.windows(3).zip(residual.windows(3)) {
@@ -191,7 +190,7 @@ mod tests {
     use crate::testing::{Case, Truth};
     use approx::assert_relative_eq;
 
-    /// With exact r and r' both forms return the truth; bias included.
+    /// With exact r and r' both forms return the truth, bias included.
     #[test]
     fn the_algebra_is_exact() {
         let case = Case { bias_deg: 1.0, ..Case::default() };

@@ -1,8 +1,9 @@
-//! K, T and δ_r from triples of instants: T r'ᵢ + rᵢ = K (δᵢ + δ_r), i = 1, 2, 3, eq. (10) of Ge, Hu, Yin and Sun.
+//! Solution for K, T and δ_r from triples of instants: T r'ᵢ + rᵢ = K (δᵢ + δ_r), i = 1, 2, 3, eq. (10) of Ge, Hu, Yin
+//! and Sun.
 //!
 //! The determinant of the three equations is the area of the triangle that the instants make in the plane of rudder and
-//! r': zero for three instants with one rudder angle, small for a thin triangle, and then the error of r' decides the
-//! answer. This module draws triples and solves them; the method combines the estimates.
+//! r': zero for three instants with one rudder angle, small for a thin triangle, and then the error of r' dominates the
+//! estimate. This module samples triples and solves them; the method combines the estimates.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use nalgebra::Matrix3;
@@ -11,20 +12,20 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::IdentifyError;
 
-/// Area over the product of standard deviations below which three instants lie on one line to rounding.
+/// Minimum area, relative to the product of standard deviations; below it three instants lie on one line to rounding.
 const MIN_AREA: f64 = 1e-9;
 
-/// Draws allowed for every triple requested.
+/// Maximum number of draws per requested triple.
 const DRAWS_PER_TRIPLE: usize = 1000;
 
-/// Limit on the triples: ten million draws where no triple is usable.
+/// Maximum number of triples: ten million draws if no triple is usable.
 pub const MAX_TRIPLES: usize = 10_000;
 
 /// Maximum condition number of the equations of a well-conditioned triple, columns divided by the standard deviations
 /// of r' and δ.
 const MAX_CONDITION: f64 = 10.0;
 
-/// Which triples are used.
+/// Selection of the triples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Selection {
@@ -36,7 +37,7 @@ pub enum Selection {
     WellConditioned,
 }
 
-/// An instant at which the equation of motion may be written.
+/// Instant at which the equation of motion may be written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegressionPoint {
     /// Rudder δ, rad.
@@ -47,7 +48,7 @@ pub struct RegressionPoint {
     pub yaw_acceleration: f64,
 }
 
-/// Parameters that solve the three equations of a triple.
+/// Estimate from one triple: the solution of its three equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TripleEstimate {
     /// K, 1/s.
@@ -58,25 +59,25 @@ pub struct TripleEstimate {
     pub rudder_bias: f64,
 }
 
-/// Estimates of the triples that were kept, and counts of the triples that were not.
+/// Estimates of the kept triples, and counts of the other triples.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DrawnTriples {
     /// Estimate of every kept triple.
     pub answers: Vec<TripleEstimate>,
-    /// Triples drawn.
+    /// Number of sampled triples.
     pub tried: usize,
-    /// Left out: three points on a line, as with three equal rudder angles.
+    /// Number of triples left out with three points on a line, as with three equal rudder angles.
     pub singular: usize,
-    /// Left out: condition number above the limit.
+    /// Number of triples left out with a condition number above the limit.
     pub ill_conditioned: usize,
-    /// Kept, with K or T below zero.
+    /// Number of kept triples with K or T below zero.
     pub negative: usize,
 }
 
-/// Draws `count` usable triples from `instants`, with a generator made of `seed`.
+/// Samples `count` usable triples from `instants`, with a generator of this `seed`.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when there are fewer than three instants or `count` triples do not come
-/// together in a thousand draws each.
+/// Fails with [`IdentifyError::TooFewPoints`] if there are fewer than three instants or if a thousand draws per triple
+/// do not give `count` triples.
 pub fn draw(
     instants: &[RegressionPoint],
     selection: Selection,
@@ -141,7 +142,7 @@ fn condition(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> f64 {
         _ => 1.0,
     });
     let values = rows.singular_values();
-    // A singular triple was left out before, so that the smallest value is not zero.
+    // Singular triples are already excluded, so that the smallest value is not zero.
     values.max() / values.min()
 }
 
@@ -183,7 +184,7 @@ mod tests {
     }
 
     /// Three equal rudder angles: 14 to 20 % of random triples in 10/10 and 10/20 (independent computation; 0.162 and
-    /// 0.190 by counting rows, and the draw has a standard deviation of 0.006).
+    /// 0.190 by counting rows, and the sample has a standard deviation of 0.006).
     #[test]
     fn the_share_of_singular_triples_is_that_of_a_count() {
         for (heading_deg, counted) in [(10.0, 0.162), (20.0, 0.190)] {

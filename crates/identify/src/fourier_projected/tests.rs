@@ -17,12 +17,12 @@ fn zigzag(rudder_deg: f64, heading_deg: f64) -> Case {
     Case { rudder_deg, heading_deg, ..Case::default() }
 }
 
-/// The settings of the published method, samples instead of triples.
+/// Settings of the published method, samples instead of triples.
 fn plain(rudder: RudderTreatment) -> Settings {
     Settings { fundamental: Fundamental::Global, harmonics: Order::Fixed(8), rudder, response: RegressionForm::YawRate }
 }
 
-/// Ships of other size: the rules are in periods of the zig-zag, so scale changes nothing.
+/// Ships of other size: the rules are in periods of the zig-zag, so scale has no effect.
 #[test]
 fn a_model_is_identified_as_the_ship() {
     let ship = estimate(Settings::default(), &Case::default()).response;
@@ -33,8 +33,8 @@ fn a_model_is_identified_as_the_ship() {
     assert_relative_eq!(found.T() * 10.0, ship.T(), max_relative = 1e-3);
 }
 
-/// The reported standard deviations against the scatter over 150 noise draws (6 % uncertain): not below it by more than
-/// 30 %, and above it only by what truncation adds to the residual of the series (its ratio to the noise).
+/// Comparison of the reported standard deviations with the scatter over 150 noise draws (6 % uncertain): not below it
+/// by more than 30 %, and above it only by what truncation adds to the residual of the series (its ratio to the noise).
 #[test]
 fn reported_errors_are_those_of_repetition() {
     const DRAWS: u64 = 150;
@@ -104,9 +104,9 @@ fn short_records_are_refused() {
     assert_eq!(build(Settings::default()).identify(&[short]).expect_err("too short").kind(), "too-few-samples");
 }
 
-/// Means of three rows in place of the rows themselves, 120 000 of them at 0.005 s: the same answer within a hundredth
-/// of its standard deviation. That itself grows a little: what the series leaves beside noise is taken for noise of
-/// every row, and there are fewer of them.
+/// Means of three rows in place of 120 000 rows at 0.005 s: equal estimates within a hundredth of the standard
+/// deviation. The standard deviation grows a little: the truncation residual counts as noise of every row, and there
+/// are fewer rows.
 #[test]
 fn averaging_a_dense_record_changes_next_to_nothing() {
     let trial = Case { samples: 120_000, period_s: 0.005, noise_deg: 0.5, bias_deg: 0.5, ..Case::default() }.trial();
@@ -122,8 +122,8 @@ fn averaging_a_dense_record_changes_next_to_nothing() {
     }
 }
 
-/// The series holds the zig-zag and its third harmonic, or there is no answer: 64 harmonics that stop between the two
-/// gave K = 0.06 for 0.1.
+/// Without the third harmonic of the zig-zag there is no estimate: 64 harmonics that ended below it gave K = 0.06 for
+/// 0.1.
 #[test]
 fn a_record_of_more_zig_zags_than_the_series_can_follow_is_refused() {
     let long = |samples: usize| Case { samples, noise_deg: 0.1, ..Case::default() };

@@ -1,4 +1,4 @@
-//! The published method on records of known truth.
+//! Published method on records of known truth.
 
 use super::*;
 use crate::testing::Case;
@@ -48,7 +48,7 @@ fn the_starts_of_the_paper_find_the_global_optimum_here() {
     }
 }
 
-/// The range of the rudder in a window is that of its values and corners there.
+/// The range of the rudder in a window covers its values and corners there.
 #[test]
 fn the_range_of_the_rudder_is_that_of_its_window() {
     let trial = Case { samples: 120, ..Case::default() }.trial();

@@ -1,12 +1,14 @@
 //! Check of the prior of a hull against its records.
 //!
-//! If the prior N(μ, C₀) is true, the fitted values depart from μ by Δ with the covariance C₀ − C, C that of the fit:
-//! the predictive check of Box (1980, doi:10.2307/2982063) in the form that Evans and Moshonov (2006,
-//! doi:10.1214/06-BA129) give it for a prior against data. In the directions w that diagonalise both, C₀ → 1, C → λ,
+//! If the prior N(μ, C₀) is true, the fitted values depart from μ by Δ with the covariance C₀ − C, with C the
+//! covariance of the fit: the predictive check of Box (1980, doi:10.2307/2982063) in the form that Evans and Moshonov
+//! (2006, doi:10.1214/06-BA129) give it for a prior against data. In the directions w that diagonalise both, C₀ → 1, C
+//! → λ,
 //!
 //! χ² = Σ z²/(1 − λ), z = w·Δ, over the directions in which the records add information, λ < 0.9.
 //!
-//! It is exact for a linear model with a given noise law. A hull has neither: read a p of 0.01 as a reason to look.
+//! The check is exact for a linear model with a given noise law. A hull has neither: a p of 0.01 is a reason for
+//! inspection.
 
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::is_trial_specific;
@@ -17,7 +19,7 @@ use super::expected::FormPrior;
 /// Maximum ratio of posterior to prior variance of an informed direction.
 const MAX_RATIO: f64 = 0.9;
 
-/// p value below which the check reports a conflict.
+/// Maximum p value of a conflict.
 const CONFLICT_P_VALUE: f64 = 0.01;
 
 /// Result of the check of a prior against records.
@@ -25,7 +27,7 @@ const CONFLICT_P_VALUE: f64 = 0.01;
 pub struct PriorCheck {
     /// χ².
     pub chi_square: f64,
-    /// Directions of the check.
+    /// Number of directions of the check.
     pub degrees_of_freedom: usize,
     /// Probability of a larger χ² if the prior is true.
     pub p_value: f64,

@@ -27,8 +27,8 @@ const SHIP: HullParticulars = HullParticulars {
     x_g: None,
 };
 
-/// A hull whose every coefficient is a deviation above what was expected, known to a tenth of the deviation in every
-/// direction.
+/// Hull with every coefficient one deviation above the expected value and a standard deviation of a tenth of that
+/// deviation in every direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
     let form = HullForm::candidates(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
     let priors = form.coefficients();
@@ -38,7 +38,7 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
 }
 
 /// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
-/// deviations of the latter.
+/// deviations of the prior of her particulars.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
     let expected = FormPrior::of_ship(Some(ship), all);
     let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
@@ -51,8 +51,8 @@ fn near(found: [f64; 2], expected: [f64; 2]) {
     assert!((0..2).all(|end| (found[end] - expected[end]).abs() < 1e-9), "{found:?} {expected:?}");
 }
 
-/// A trial of precision 100 told 99 beside what was expected before it; of that counts 1/f², and what was expected
-/// counts once.
+/// A trial of precision 100 has the information 99 in addition to the prior; 1/f² of it counts, and the prior counts
+/// once.
 #[test]
 fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
     let one = earlier(SHIP, "quadratic");
@@ -64,8 +64,8 @@ fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
     near(after(&SHIP, "cubic", &[one], "Nv"), [0.0, 1.0]);
 }
 
-/// A hull with records of its own, of precision 100, weighed together with what an earlier trial told: both count, and
-/// two that say the same agree.
+/// A hull with its own records, of precision 100, combined with the information of an earlier trial: both count, and
+/// two equal estimates agree.
 #[test]
 fn a_hull_is_weighed_together_with_earlier_trials() {
     let own = earlier(SHIP, "quadratic");
@@ -96,8 +96,8 @@ fn another_scale_tells_less_and_nothing_of_friction() {
     assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::SameShip);
 }
 
-/// The departure from what the particulars say is carried to another draught, and what the formulas say of the draught
-/// with it. Of N_r every spread is a share of the mean or absolute, so its departure is compared in the unit itself.
+/// The departure from the prior of the particulars is carried to another draught, with the change of the formulas. The
+/// spread of N_r is a share of the mean or absolute, so its departure is compared in units of the coefficient.
 #[test]
 fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
@@ -109,14 +109,14 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
     let found = of(&ballast, &[earlier(SHIP, "mmg")]);
     let (told, own) = (full.sd.powi(-2) / 9.0, light.sd.powi(-2));
-    // 100 (θ − μ₁) of the trial, 99 of it about the mean of the ballast.
+    // Vector 100 (θ − μ₁) of the trial, with 99 about the mean in ballast.
     let departure = 100.0 * told * full.sd / (own + 99.0 * told);
     assert!((found.mean - light.mean - departure).abs() < 1e-9, "{found:?} {light:?} {departure}");
     assert!((light.mean - full.mean).abs() > 0.1 * full.sd, "the formulas say something of the draught");
 }
 
-/// At another loading 99/9 of the trial counts beside the 1 that was expected: what is expected follows the hull of the
-/// trials by 11/12. Without trials there is nothing to follow.
+/// At another loading the trial counts 99/9 and the prior 1: the expected hull follows the hull of the trials by 11/12.
+/// Without trials there is no gain.
 #[test]
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
@@ -132,7 +132,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     assert!(FormPrior::of_ship(Some(&ballast), &[])[0].law().is_none());
 }
 
-/// Particulars that only one of the ships declares are taken for the other.
+/// Particulars that only one ship declares are used for both ships.
 #[test]
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
@@ -174,8 +174,8 @@ fn half_of(trial: &Trial) -> Trial {
     Trial::new("half", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }
 
-/// KVLCC2, of which no form is true: with a prior from her 10/10 and 20/20, half of a 15/15 foretells three other
-/// zig-zags as well as the whole 15/15 does without, to 5 % over all forms and to 30 % for the worst of them.
+/// KVLCC2, which no form describes exactly: with a prior from her 10/10 and 20/20, half of a 15/15 predicts three other
+/// zig-zags as well as the whole 15/15 without that prior, to 5 % over all forms and to 30 % for the worst form.
 #[test]
 fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
@@ -199,7 +199,7 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     assert!(squares[0] < 1.05 * 1.05 * squares[1], "{squares:?}");
 }
 
-/// The ship herself agrees with her earlier trials; one of another N_v, N_r and N_δ does not.
+/// The same ship agrees with her earlier trials; a ship with other N_v, N_r and N_δ does not.
 #[test]
 fn another_ship_contradicts_the_prior() {
     let sailed = |ship: &dyn ship::Dynamics, angles: [f64; 2]| record(ship, angles, |_| 0.0);

@@ -2,17 +2,17 @@
 
 use thiserror::Error;
 
-/// Headings that a record needs.
+/// Minimum number of headings of a record.
 pub(super) const MIN_HEADINGS: usize = 20;
 
-/// Maximum interval between rows, L/U₀: within two lengths a ship turns and comes back.
+/// Maximum interval between rows, L/U₀: within two ship lengths a ship can turn and return.
 pub(super) const MAX_INTERVAL_LENGTHS: f64 = 2.0;
 
-/// Maximum duration of a record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials take less than a tenth of it,
-/// and the time of a fit grows with it.
+/// Maximum duration of a record, L/U₀: eleven hours of a ship of 320 m at 8 m/s. Trials last less than a tenth of this,
+/// and the computing time of a fit grows with it.
 pub(super) const MAX_DURATION_LENGTHS: f64 = 1000.0;
 
-/// Why no hull is fitted.
+/// Reason why no hull is fitted.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HullFitError {
     /// Length or speed are not declared.
@@ -31,7 +31,7 @@ pub enum HullFitError {
         trial: String,
         /// Median time between rows, L/U₀.
         row: f64,
-        /// Its length, L/U₀.
+        /// Duration of the record, L/U₀.
         whole: f64,
     },
     /// A record begins near rest, where the priors of a hull do not apply.
@@ -39,10 +39,10 @@ pub enum HullFitError {
     GathersWay {
         /// Name of the record.
         trial: String,
-        /// Speed in its first row over that of the approach.
+        /// Speed in the first row, relative to the approach speed.
         share: f64,
     },
-    /// No values near the prior can be replayed.
+    /// No coefficients near the prior can be replayed.
     #[error("no hull near its prior can be replayed; check length, speed and rudder sign")]
     NoReplay,
 }

@@ -9,8 +9,8 @@
 //!
 //! with the prior of her particulars, μ₀ and Λ₀, counted once for any number of trials; s = μ₀ − μ₁ is the change of
 //! the formulas with the particulars, and f widens by the likeness of the ships ([`Likeness`]): a power prior (Ibrahim
-//! and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². Where the earlier trial has no information, the prior is
-//! that of the particulars. Coefficients have no dimension, so scale changes none of them at the same Froude number.
+//! and Chen 2000, doi:10.1214/ss/1009212673) of power 1/f². If the earlier trial has no information, the prior of the
+//! particulars remains. Coefficients have no dimension, so at equal Froude numbers they do not depend on scale.
 
 use document::earlier_trials::Likeness;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
@@ -26,11 +26,11 @@ const MIN_INFORMATION: f64 = 1e-6;
 /// Prior of the coefficients of a form: a normal law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormPrior {
-    /// The form.
+    /// Hull form.
     pub form: HullForm,
-    /// Particulars of the ship, where they are declared.
+    /// Particulars of the ship; `None` if they are not declared.
     pub particulars: Option<HullParticulars>,
-    /// The coefficients, each with its prior mean and standard deviation.
+    /// Coefficients, each with prior mean and standard deviation.
     pub coefficients: Vec<HullCoefficient>,
     /// Inverse of the covariance of all coefficients.
     pub precision: DMatrix<f64>,
@@ -41,13 +41,13 @@ pub struct FormPrior {
 /// Hull estimate from earlier trials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EarlierHull {
-    /// Its form, with the prior of its particulars.
+    /// Form, with the prior of the particulars.
     pub form: HullForm,
-    /// Particulars of its ship.
+    /// Particulars of the ship.
     pub particulars: HullParticulars,
     /// Values of the coefficients.
     pub values: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
 }
 
@@ -87,7 +87,7 @@ impl FormPrior {
     }
 
     /// Covariance C of the coefficients, and their gain G = C (Λ − Λ₀) on the coefficients of the earlier hull: the
-    /// identity where its trials dominate, 0 where they have no information. `None` without trials.
+    /// identity if the trials dominate, 0 if they have no information. `None` without trials.
     pub fn law(&self) -> Option<[DMatrix<f64>; 2]> {
         let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
         let gain = &covariance * (&self.precision - precision_of(&self.form));
@@ -120,18 +120,18 @@ fn precision_of(form: &HullForm) -> DMatrix<f64> {
 }
 
 impl EarlierHull {
-    /// Information of the trials of this hull, D/f² and (h + D s)/f², in the places of the coefficients of another
-    /// ship. `None` if its covariance is not positive definite.
+    /// Information of the trials of this hull, D/f² and (h + D s)/f², in the order of the coefficients of another ship.
+    /// `None` if its covariance is not positive definite.
     ///
-    /// Coefficients of a single trial are left out; so are those of friction at another scale, except through their
-    /// correlations.
+    /// Coefficients of a single trial are left out, as are coefficients of friction at another scale, except through
+    /// their correlations.
     fn information(&self, expected: &FormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();
         let of_ship = |key: &str| !is_trial_specific(key) && (likeness == Likeness::SameShip || !is_frictional(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();
         let count = kept.len();
-        // In standard deviations of the prior, so that every direction is measured alike: L with L Lᵀ its covariance.
+        // In standard deviations of the prior, so that all directions have equal units: L with L Lᵀ the covariance.
         let kept_block = |matrix: &DMatrix<f64>| DMatrix::from_fn(count, count, |i, j| matrix[(kept[i], kept[j])]);
         let root = Cholesky::new(kept_block(self.form.covariance()))?.l();
         let in_root = |vector: DVector<f64>| root.solve_lower_triangular(&vector);
@@ -149,7 +149,7 @@ impl EarlierHull {
                 vector.axpy(direction.dot(&departure_information), &direction, 1.0);
             }
         }
-        // For the other ship the same departure counts from the prior of her particulars: D s + D μ₁ = D μ₀.
+        // For the other ship the departure counts from the prior of her particulars: D s + D μ₁ = D μ₀.
         let carried = self.carried(expected, ship, before);
         vector += &precision * in_root(DVector::from_fn(count, |i, _| carried[kept[i]]))?;
         let weight = likeness.factor().powi(-2);
@@ -169,7 +169,7 @@ impl EarlierHull {
 
     /// Prior means before the earlier trials, moved by the change of the formulas with the particulars.
     fn carried(&self, expected: &FormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
-        // A particular that only one of the ships declares makes no difference.
+        // A particular that only one ship declares has no effect.
         let filled = self.particulars.with_missing_from(ship);
         let forms = HullForm::candidates(Some(&filled));
         let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullForm::coefficients);

@@ -1,22 +1,21 @@
-//! A hull of three degrees of freedom fitted to records of heading and rudder, with a prior of its coefficients.
+//! Hull of three degrees of freedom fitted to records of heading and rudder, with a prior of the coefficients.
 //!
 //! The recorded rudder is replayed through the hull ([`ship::vessel::prime`]), over the whole record and over windows
 //! of 3.5 L/U₀; heading and yaw rate at the start are fitted, speed and sway begin as measured (or at approach speed)
 //! and run on. Positions give the speed of a record without a speed. The fit minimises
 //!
-//! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + the same of the windows + of the speed where it was
-//! recorded]
+//! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`HullDeviations`], which are those of the form and not of a sensor: a hull of ten
-//! or twenty numbers only approximates the ship. They start large and follow the residual of every record, down to 1°,
-//! 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. Nor is a yaw rate beside
-//! the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the heading error on other
-//! records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
+//! with the standard deviations of [`HullDeviations`], which describe the error of the form and not of a sensor: a hull
+//! of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every record,
+//! down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw rate is
+//! not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the
+//! heading error on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
 //!
-//! The n records of a ship weigh as much as a single record of their mean length: the error of the form is much the
-//! same in all of them. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to
-//! them is arbitrary there.
+//! The n records of a ship weigh as much as a single record of their mean length: the error of the form is similar in
+//! all records. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to zig-zags
+//! is arbitrary in such a turn.
 //!
 //! The covariance is the inverse of the second derivatives of J/2, so it includes the error of the form as far as that
 //! error is independent from ship length to ship length. Firm priors make so many coefficients identifiable from a
@@ -67,7 +66,7 @@ const RULES: SearchSettings = SearchSettings {
     max_small_steps: 2,
 };
 
-/// Rounds in which the deviations follow the residuals.
+/// Number of rounds in which the deviations follow the residuals.
 const REWEIGHTINGS: usize = 3;
 
 /// Residual of a record.
@@ -86,24 +85,24 @@ pub struct HullResidual {
 /// Estimate of the coefficients of a hull, with their covariance.
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
-    /// The form, and the prior of its coefficients.
+    /// Form, and the prior of the coefficients.
     pub expected: FormPrior,
-    /// Length, speed and propeller rate that make its quantities dimensionless.
+    /// Length, speed and propeller rate that make the quantities dimensionless.
     pub reference: HullReference,
-    /// The coefficients.
+    /// Values of the coefficients.
     pub values: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
-    /// Residuals of its records.
+    /// Residuals of the records.
     pub records: Vec<HullResidual>,
-    /// Error of the form, as a random moment.
+    /// Error of the form as a random moment.
     pub moment: FormMoment,
 }
 
-/// Fits a hull to records of one ship, with a prior of its coefficients.
+/// Fits a hull to records of one ship, with a prior of the coefficients.
 ///
-/// Fails if length or speed of the ship are missing, where a record has fewer than twenty headings, rows too far
-/// apart, an impossible duration or a start near rest, and where no values near the prior can be replayed.
+/// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart, an
+/// impossible duration or a start near rest, or if no coefficients near the prior can be replayed.
 pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;
@@ -140,14 +139,14 @@ pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
     tracks(trials).err()
 }
 
-/// The dimensionless records of one ship, and their reference quantities.
+/// Dimensionless records of one ship, and their reference quantities.
 fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
     let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
     let tracks = trials.iter().map(|trial| HullTrack::of(trial, &reference)).collect::<Result<_, _>>()?;
     Ok((reference, tracks))
 }
 
-/// Maximum residual of a member, relative to the smallest of all hulls and another model.
+/// Maximum residual of a member, relative to the smallest residual of all hulls and another model.
 const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
@@ -156,7 +155,7 @@ pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
     expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 
-/// The hulls supported by their records: their residual of whole records is at most three times the smallest of all
+/// Hulls supported by their records: the residual of whole records is at most three times the smallest residual of all
 /// hulls and of another model (`rival`, rad; infinite without another model).
 pub fn members(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
     let residual = |hull: &HullEstimate| hull.mean_square().sqrt();
@@ -165,7 +164,7 @@ pub fn members(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
 }
 
 impl HullEstimate {
-    /// The hull, ready to be replayed.
+    /// Hull, ready for replay.
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
@@ -174,7 +173,7 @@ impl HullEstimate {
     }
 
     /// Variance of the replayed heading of a record over time (s), rad²: from the covariance of the coefficients and
-    /// from the mean square residual of the fit. `None` for a record that cannot be replayed, and where the standard
+    /// from the mean square residual of the fit. `None` for a record that cannot be replayed, or if the standard
     /// deviation exceeds half a turn, beyond the range of a linear law.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;

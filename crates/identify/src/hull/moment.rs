@@ -1,4 +1,4 @@
-//! The error of the form of a hull, as a random yaw moment that reproduces the residual of the fit.
+//! Error of the form of a hull, as a random yaw moment that reproduces the residual of the fit.
 
 use estimation::number::Dual;
 use rand::rngs::ChaCha8Rng;
@@ -17,22 +17,22 @@ const CORRELATION_TIME_LENGTHS: f64 = 2.0;
 const FIRST_DEVIATION_RAD: f64 = 5e-3;
 const SCALINGS: usize = 2;
 
-/// Draws for every record, and their first seed.
+/// Number of draws per record, and their first seed.
 const DRAWS: u64 = 6;
 const SEED: u64 = 2_210_105;
 
 /// Random yaw moment of a form: an Ornstein–Uhlenbeck process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormMoment {
-    /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
+    /// Standard deviation as the rudder angle of equal moment at approach speed, rad.
     pub deviation: f64,
     /// Time in which its autocorrelation falls to 1/e, s.
     pub correlation_time: f64,
 }
 
 impl FormMoment {
-    /// The moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
-    /// L/U₀ as far as the records do, whose residuals are `misfits`.
+    /// Random moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
+    /// L/U₀ by the residuals of the records, `misfits`.
     pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
         let hull = hull.constant::<Dual<1>>();
         let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;

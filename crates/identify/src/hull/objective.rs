@@ -1,5 +1,5 @@
 //! Objective of the fit of a hull: replays of the rudder over whole records and over windows, in which heading and yaw
-//! rate at the start are fitted while speed and sway run on; and the speed, where it was recorded.
+//! rate at the start are fitted while speed and sway run on; and the speed, if it was recorded.
 
 use estimation::levenberg_marquardt::{Normal, Objective};
 use estimation::number::{Dual, Real};
@@ -12,32 +12,32 @@ use super::replayed::{Replayed, replayed};
 use super::track::HullTrack;
 use super::turn::HardTurn;
 
-/// Derivatives carried: the coefficients of the largest form, the yaw rate at the start, and a spare.
+/// Number of derivatives: the coefficients of the largest form, the yaw rate at the start, and one spare.
 const DIRECTIONS: usize = 26;
 
-/// Steps of the search for a yaw rate at the start, and the step lengths of its line search.
+/// Number of steps of the search for a yaw rate at the start, and of step lengths of the line search.
 const STEPS: usize = 3;
 const STEP_SHARES: [f64; 4] = [1.0, 0.4, 0.16, 0.06];
 
-/// Relative gain below which that search ends.
+/// Minimum relative gain of a step; below it that search ends.
 const MIN_GAIN: f64 = 1e-6;
 
 /// Standard deviations of the residuals of a hull, which weigh the kinds of reading: even the best form leaves an
 /// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullDeviations {
-    /// Heading of a whole replay, rad.
+    /// Standard deviation of the heading of a whole replay, rad.
     pub whole: f64,
-    /// Heading in a window, rad.
+    /// Standard deviation of the heading in a window, rad.
     pub window: f64,
-    /// Speed over U₀.
+    /// Standard deviation of the speed, over U₀.
     pub speed: f64,
 }
 
 /// Minimum deviations of a record.
 const MIN_DEVIATIONS: HullDeviations = HullDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
-/// Deviations at the start of a search: so large that the hull stays near its prior.
+/// Deviations at the start of a search, so large that the hull stays near its prior.
 const FIRST_DEVIATIONS: HullDeviations = HullDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean square residuals of a record, and the initial yaw rate of the whole replay, U₀/L.
@@ -49,14 +49,14 @@ pub(super) struct Misfit {
     pub initial_yaw_rate: f64,
 }
 
-/// The yaw rates at the start of a record and of its windows, kept from one evaluation to the next.
+/// Yaw rates at the start of a record and of its windows, kept between evaluations.
 #[derive(Debug, Clone)]
 struct Starts {
     whole: [f64; 1],
     windows: Vec<f64>,
 }
 
-/// Records, a form and its priors.
+/// Objective of the fit of a form with its priors to records.
 pub(super) struct HullObjective<'a> {
     expected: &'a FormPrior,
     tracks: &'a [HullTrack],
@@ -163,7 +163,7 @@ impl<'a> HullObjective<'a> {
         Self { expected, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
-    /// Mean square residuals of every record; `None` if the values make no ship.
+    /// Mean square residuals of every record; `None` if the coefficients are not valid.
     pub fn misfits(&mut self, at: &[f64]) -> Option<Vec<Misfit>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
         let hull = self.expected.form.with(&values)?;
@@ -288,7 +288,7 @@ fn add(
 }
 
 /// Derivatives of the recorded headings with respect to the coefficients at the best initial yaw rate, with the
-/// residuals as last column; and the derivatives of that yaw rate.
+/// residuals as last column; and the derivatives of the yaw rate.
 fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: usize) -> (DMatrix<f64>, Vec<f64>) {
     let read: Vec<usize> = (0..rows.len()).filter(|&row| measured[row].is_finite()).collect();
     let heading = |i: usize, j: usize| {
@@ -310,8 +310,8 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
     (columns, shares)
 }
 
-/// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if
-/// the values make no ship.
+/// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
+/// coefficients are not valid.
 pub(super) fn variances(
     expected: &FormPrior,
     track: &HullTrack,
@@ -333,7 +333,7 @@ pub(super) fn variances(
     Some([read.map(|(time, _)| *time).collect(), variance])
 }
 
-/// Adds XᵀX and Xᵀe of the columns before `error`, e being that column.
+/// Adds XᵀX and Xᵀe of the columns X before the column e = `error`.
 fn add_squares(normal: &mut Normal, columns: &DMatrix<f64>, error: usize, weight: f64) {
     let regressors = columns.columns(0, error - 1);
     normal.matrix.gemm_tr(weight, &regressors, &regressors, 1.0);

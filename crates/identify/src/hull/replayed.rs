@@ -1,4 +1,4 @@
-//! The rudder of a record, or of a part of it, replayed through a hull.
+//! Replay of the rudder of a record, or of a part, through a hull.
 
 use estimation::number::Real;
 use ship::vessel::prime::PrimeHull;
@@ -11,7 +11,7 @@ const MAX_STEP_LENGTHS: f64 = 0.08;
 /// Replay of a window: rows of states, each (ψ, u, v).
 pub(super) struct Replayed<R> {
     pub rows: Vec<[R; 3]>,
-    /// State at the first row after it.
+    /// State at the first row after the window.
     pub end: [R; 3],
 }
 

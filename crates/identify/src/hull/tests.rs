@@ -1,4 +1,4 @@
-//! Records of hulls of the forms themselves, without noise: what a fit finds again.
+//! Fits to noise-free records of hulls of the fitted forms.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -20,11 +20,11 @@ use super::{FormMoment, FormPrior, HullEstimate, HullFitError, HullReference, fi
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
 
-/// A quadratic hull that is not the expected one.
+/// Quadratic hull that differs from the expected hull.
 pub(super) const TRUTH: [f64; 19] =
     [-2.6, -1.8, 1.05, -0.7, -0.45, -0.14, 0.4, 0.0, 0.01, 0.08, 0.5, 1.7, 0.08, 0.08, -1.0, -0.4, -0.9, 0.1, 2.5e-3];
 
-/// The quadratic form of any ship.
+/// Quadratic form of any ship.
 fn form() -> HullForm {
     HullForm::candidates(None).swap_remove(0)
 }
@@ -34,7 +34,8 @@ pub(super) fn hull(truth: &[f64; 19]) -> ScaledHull {
     ScaledHull { hull, length: LENGTH, speed: SPEED, propeller: None }
 }
 
-/// A zig-zag at 8 Hz, in which `moment` (as rudder angle over the number of the row, rad) acts beside the rudder.
+/// Record of a zig-zag at 8 Hz, in which `moment` (rudder angle, rad, as a function of the row number) acts in addition
+/// to the rudder.
 pub(super) fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: impl Fn(usize) -> f64) -> Trial {
     let (step, rate) = (0.125, from_deg(15.0));
     let mut state = vec![0.0; ship.dimension()];
@@ -75,7 +76,7 @@ fn quadratic(trials: &[Trial]) -> HullEstimate {
     fit(trials, &FormPrior::of_form(form())).expect("a fit")
 }
 
-/// All come back to within 2.5 standard deviations, and the moment of the rudder to within 15 %.
+/// All coefficients are recovered within 2.5 standard deviations, and the moment of the rudder within 15 %.
 #[test]
 fn a_hull_of_the_form_comes_back() {
     let fitted = quadratic(&records(|_| 0.0));
@@ -90,7 +91,7 @@ fn a_hull_of_the_form_comes_back() {
     assert!(fitted.moment.deviation < from_deg(0.2), "{:?}", fitted.moment);
 }
 
-/// Rudder, heading and speed of a record, and channels that do not vary.
+/// Record of rudder, heading and speed, with constant channels.
 fn beside_constants(trial: &Trial, constants: &[(Channel, f64)]) -> Trial {
     let recorded = [Channel::Rudder, Channel::Heading, Channel::Speed];
     let recorded = recorded.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
@@ -101,7 +102,7 @@ fn beside_constants(trial: &Trial, constants: &[(Channel, f64)]) -> Trial {
     Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }
 
-/// A hull in a true wind of some speed (m/s) and direction (rad).
+/// Hull in a true wind of some speed (m/s) and direction (rad).
 struct InWind(ScaledHull, [f64; 2]);
 
 impl Dynamics for InWind {
@@ -129,8 +130,8 @@ impl Dynamics for InWind {
     }
 }
 
-/// A wind of five times the speed of the ship tells her Y_w to 5 %, where it was measured; unmeasured it is an error of
-/// the form.
+/// A measured wind of five times the speed of the ship determines Y_w to 5 %; an unmeasured wind is an error of the
+/// form.
 #[test]
 fn a_measured_wind_tells_how_it_acts() {
     let wind = [5.0 * SPEED, 0.7];
@@ -145,8 +146,8 @@ fn a_measured_wind_tells_how_it_acts() {
     assert!(3.0 * found.mean_square().sqrt() < blind.mean_square().sqrt(), "{found:?} {blind:?}");
 }
 
-/// KVLCC2 is of no polynomial form, and of the MMG one with another wake and propeller than expected: a 20/20 alone
-/// foretells her 10/10 within 3.5°, rms.
+/// KVLCC2 has no polynomial form, and differs from the MMG form in wake and propeller: a single 20/20 predicts her
+/// 10/10 within 3.5°, rms.
 #[test]
 fn a_hull_of_another_form_is_foreseen_as_well() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
@@ -186,7 +187,7 @@ fn in_the_mirror(trial: &Trial) -> Trial {
     Trial::new("mirrored", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }
 
-/// A moment of 1° of rudder that acts on the ship is what the fit leaves, to within a third.
+/// The estimated moment agrees with an acting moment of 1° of rudder within a third.
 #[test]
 fn a_random_moment_is_found_again() {
     let mut random = ChaCha8Rng::seed_from_u64(1);
@@ -201,7 +202,7 @@ fn a_random_moment_is_found_again() {
     assert!((correlation_time * SPEED / LENGTH - 2.0).abs() < 1e-12, "{correlation_time}");
 }
 
-/// Some channels of the three records, from a hull of the form; positions are read to 0.5 % of the length.
+/// Hull fitted to some channels of three records of a hull of the form; positions are read to 0.5 % of the length.
 fn fitted_to(channels: &[Channel]) -> HullEstimate {
     let mut random = ChaCha8Rng::seed_from_u64(2);
     let of = |trial: &Trial| {
@@ -219,8 +220,8 @@ fn fitted_to(channels: &[Channel]) -> HullEstimate {
     quadratic(&records(|_| 0.0).iter().map(of).collect::<Vec<_>>())
 }
 
-/// Positions give the coefficients that the speed gives, to 0.05 of their deviations; a heading alone is off by 0.1.
-/// Positions beside a speed change nothing, nor does a north without an east.
+/// Positions give the coefficients of a recorded speed to 0.05 of their deviations; a heading alone differs by 0.1.
+/// Positions in addition to a speed have no effect, nor has a north without an east.
 #[test]
 fn positions_stand_for_a_speed_that_was_not_recorded() {
     use Channel::{East, Heading, North, Speed};
@@ -238,14 +239,15 @@ fn positions_stand_for_a_speed_that_was_not_recorded() {
 #[test]
 fn the_hulls_that_records_speak_for_are_near_them() {
     let found = members(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
-    // All three forms are fitted; the quadratic one is the truth, and what leaves three times as much is left out.
+    // All three forms are fitted; the quadratic form is the truth, and forms with three times its residual are left
+    // out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
     assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
-/// Near rest is said of the approach at the rate of the propeller of the record.
+/// A start near rest is relative to the approach speed at the propeller rate of the record.
 #[test]
 fn a_trial_at_slow_ahead_is_one() {
     let trial = &records(|_| 0.0)[0];

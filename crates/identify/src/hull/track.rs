@@ -27,7 +27,7 @@ pub struct HullReference {
     pub length: f64,
     /// Approach speed U₀, m/s.
     pub speed: f64,
-    /// Rate of the propeller at that speed, 1/s, where it was recorded.
+    /// Rate of the propeller at that speed, 1/s, if it was recorded.
     pub propeller: Option<f64>,
 }
 
@@ -46,25 +46,25 @@ impl HullReference {
     }
 }
 
-/// A record in units of L and U₀.
+/// Record in units of L and U₀.
 #[derive(Debug, Clone)]
 pub(super) struct HullTrack {
     pub time: Vec<f64>,
     /// L/U₀, s.
     pub second: f64,
-    /// rad; NaN where it was not recorded.
+    /// Heading, rad; NaN if it was not recorded.
     pub heading: Vec<f64>,
-    /// rad.
+    /// Rudder angle, rad.
     pub rudder: Vec<f64>,
-    /// Propeller rate over that of the approach.
+    /// Propeller rate relative to the approach.
     pub turning: Vec<f64>,
     /// Yaw moment as rudder angle, rad: zero for a record.
     pub moment: Vec<f64>,
-    /// Accelerations of the relative wind over Y_w, where it was recorded: surge, sway and yaw.
+    /// Accelerations of the relative wind over Y_w, if it was recorded: surge, sway and yaw.
     pub wind: Option<[Vec<f64>; 3]>,
-    /// Speed, where it was recorded or follows from positions.
+    /// Speed, over U₀, if it was recorded or follows from positions.
     pub speed: Option<Vec<f64>>,
-    /// Surge and sway in the first row.
+    /// Surge and sway velocity in the first row.
     pub start: [f64; 2],
     /// First rows of the windows, and the number of rows.
     pub cuts: Vec<usize>,
@@ -73,8 +73,8 @@ pub(super) struct HullTrack {
 }
 
 impl HullTrack {
-    /// Fails for a record with too few headings, for one whose clock is not that of a ship of this length and speed,
-    /// and for one that begins near rest.
+    /// Track of a record. Fails for a record with too few headings, a clock that does not fit this length and speed, or
+    /// a start near rest.
     pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
         let second = reference.time();
         let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
@@ -83,7 +83,7 @@ impl HullTrack {
         }
         let short = || HullFitError::Short(trial.name().to_owned());
         let track = Self::cut(trial, reference).ok_or_else(short)?;
-        // Approach speed at the propeller rate of this record, which may differ from that of the reference.
+        // Approach speed at the propeller rate of this record, which may differ from the reference.
         let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
         let share = track.start[0] * reference.length / (track.second * approach);
         match share < MIN_START_SPEED {
@@ -92,7 +92,8 @@ impl HullTrack {
         }
     }
 
-    /// Track of a rudder (rad) put over instantly on a steady approach and held for `length` (L/U₀), without headings.
+    /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `length` (L/U₀), without
+    /// headings.
     pub fn of_rudder(rudder: f64, length: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
@@ -113,7 +114,7 @@ impl HullTrack {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let (first, last) = (*rows.first()?, *rows.last()?);
         let record_reference = HullReference::of(trial).unwrap_or(*reference);
-        // Without a propeller rate the unit of speed is that of the record.
+        // Without a propeller rate the unit of speed comes from the record.
         let approach_rate = reference.propeller.zip(record_reference.propeller).map(|(reference, _)| reference);
         let speed_unit = if approach_rate.is_some() { reference.speed } else { record_reference.speed };
         let second = reference.length / speed_unit;
@@ -160,7 +161,7 @@ impl HullTrack {
         })
     }
 
-    /// Length in L/U₀.
+    /// Duration in L/U₀.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
@@ -169,7 +170,7 @@ impl HullTrack {
 /// Speed over ground of every row: the distance between the first and the last position within half a [`SPEED_BASE`] of
 /// it, over the time between them. NaN with fewer than two positions.
 ///
-/// It includes the current. A usual current is below 0.1 U₀, the smallest deviation of a speed; with a stronger current
+/// It includes the current. A usual current is below 0.1 U₀, the minimum deviation of a speed; with a stronger current
 /// the replay begins at a wrong speed.
 fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
     let read: Vec<usize> = (0..time.len()).filter(|&row| north[row].is_finite() && east[row].is_finite()).collect();
@@ -184,7 +185,7 @@ fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
     time.iter().map(speed_at).collect()
 }
 
-/// First rows of successive windows, and the number of rows; a remainder of less than half a window belongs to the
+/// First rows of successive windows, and the number of rows; a remainder of less than half a window is part of the
 /// window before.
 fn cuts(time: &[f64]) -> Vec<usize> {
     let mut cuts = vec![0];
@@ -203,7 +204,7 @@ fn mean_of_read(values: &[f64]) -> f64 {
     read().sum::<f64>() / read().count() as f64
 }
 
-/// Gaps filled with the value before, or after at the start; `None` if nothing was read.
+/// Gaps filled with the value before, or after at the start; `None` if there is no finite value.
 fn filled(mut values: Vec<f64>) -> Option<Vec<f64>> {
     let mut last = *values.iter().find(|value| value.is_finite())?;
     for value in &mut values {

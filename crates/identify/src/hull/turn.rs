@@ -8,7 +8,7 @@ use ship::vessel::prime::PrimeHull;
 use super::replayed::replayed;
 use super::track::HullTrack;
 
-/// Rudder, rad, and the time it is held, in L/U₀: two circles, after which a turn is steady or runs away.
+/// Rudder, rad, and the time for which it is held, in L/U₀: two circles, after which a turn is steady or diverges.
 const RUDDER_RAD: f64 = 35.0 * DEGREE;
 const DURATION_LENGTHS: f64 = 24.0;
 
@@ -19,13 +19,13 @@ const DURATION_LENGTHS: f64 = 24.0;
 /// so half of that range is the standard deviation.
 const CURVATURE: [f64; 2] = [0.75, 0.25];
 
-/// Mean and standard deviation of −v/r in the turn, L: how far ahead of midship the pivot point lies.
+/// Mean and standard deviation of −v/r in the turn, L: the distance of the pivot point ahead of midship.
 ///
-/// Shiphandlers have it a quarter to a third of the length behind the stem, 0.17 L to 0.25 L ahead of midship; the
-/// five hulls of this project turn about points 0.24 L (SEIUN-like) to 0.42 L (Mariner) ahead.
+/// Shiphandlers place it a quarter to a third of the length abaft the stem, 0.17 L to 0.25 L ahead of midship; the five
+/// hulls of this project turn about points 0.24 L (SEIUN-like) to 0.42 L (Mariner) ahead.
 const PIVOT: [f64; 2] = [0.35, 0.12];
 
-/// A rudder that is put over to either side and held.
+/// Turns with the rudder put over to either side and held.
 #[derive(Debug, Clone)]
 pub(super) struct HardTurn([HullTrack; 2]);
 
@@ -54,7 +54,7 @@ mod tests {
     use ship::ships::{Model, Ship};
     use ship::vessel::prime::HullForm;
 
-    /// Published hulls turn as is expected, to within 2.5 standard deviations; so do the forms before any record.
+    /// Published hulls turn as expected within 2.5 standard deviations, as do the forms before any record.
     #[test]
     fn hulls_turn_as_ships_do() {
         let turns: Vec<(String, [f64; 2])> = ship::ships::all().iter().filter_map(steady).collect();
@@ -70,7 +70,7 @@ mod tests {
         }
     }
 
-    /// r L/U of a hull in the steady turn, and its pivot point ahead of midship in L.
+    /// Dimensionless yaw rate r L/U of a hull in the steady turn, and the pivot point ahead of midship, L.
     fn steady(ship: &Ship) -> Option<(String, [f64; 2])> {
         let (Model::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
         let step = 0.02 * scale.length / scale.speed;

@@ -1,4 +1,4 @@
-//! A fitted hull combined with the information of earlier trials, without a new fit.
+//! Combination of a fitted hull with the information of earlier trials, without a new fit.
 
 use nalgebra::Cholesky;
 use ship::vessel::prime::HullForm;
@@ -6,11 +6,11 @@ use ship::vessel::prime::HullForm;
 use super::conflict::PriorCheck;
 use super::expected::{EarlierHull, FormPrior};
 
-/// The estimate of some trials combined with that of earlier trials, which it does not include yet, and the check of
-/// the two against each other; `None` if the earlier trials have no information on its form.
+/// Estimate of some trials combined with the estimate of earlier trials, which it does not include yet, and the check
+/// of both against each other; `None` if the earlier trials have no information on its form.
 ///
 /// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`FormPrior`]. Both are treated as
-/// normal laws: where they are far apart, a fit with the earlier trials as prior is better.
+/// normal laws: if they are far apart, a fit with the earlier trials as prior is better.
 pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();
     let mut coefficients = fitted.form.coefficients().to_vec();

@@ -1,4 +1,4 @@
-//! The equations of stretches of a record, with their initial states projected out, and their solution.
+//! Equations of stretches of a record, with their initial states projected out, and their solution.
 
 use std::ops::Range;
 
@@ -8,17 +8,17 @@ use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 use crate::error::IdentifyError;
 use crate::samples::Samples;
 
-/// Shared parameters a, b, b δ_r.
+/// Number of shared parameters a, b, b δ_r.
 pub(super) const SHARED: usize = 3;
 
-/// Their columns and the heading.
+/// Number of their columns and the heading.
 const WIDTH: usize = SHARED + 1;
 
-/// One stretch without a gap: its times and the columns of its equations.
+/// Stretch without a gap: times and columns of its equations.
 #[derive(Debug)]
 pub(super) struct IntegratedStretch<'a> {
     pub(super) time: &'a [f64],
-    /// The columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
+    /// Columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
     pub(super) columns: [Vec<f64>; WIDTH],
 }
 
@@ -32,7 +32,7 @@ impl<'a> IntegratedStretch<'a> {
         let (start, middle) = (time[0], 0.5 * (time[0] + time[time.len() - 1]));
         let half_square = |t: &f64| 0.5 * (t - middle) * (t - middle);
         let columns = [
-            // The integral is that of the heading less its first value.
+            // The heading is integrated minus its first value.
             minus_integral(time, heading),
             time.iter().zip(twice).map(|(t, integral)| integral - twice[0] - once * (t - start)).collect(),
             time.iter().map(half_square).collect(),
@@ -41,8 +41,8 @@ impl<'a> IntegratedStretch<'a> {
         Self { time, columns }
     }
 
-    /// Projects c₀ and c₁ out of all columns; adds the squared lengths that the columns had before to `lengths` and
-    /// the cross products they have after to `products`.
+    /// Projects c₀ and c₁ out of all columns; adds the squared lengths of the columns before the projection to
+    /// `lengths` and their cross products after it to `products`.
     pub(super) fn project(&mut self, lengths: &mut Vector3<f64>, products: &mut Matrix4<f64>) {
         let count = self.time.len() as f64;
         let middle = sum(self.time) / count;
@@ -60,17 +60,17 @@ impl<'a> IntegratedStretch<'a> {
     }
 }
 
-/// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope of a row being that of the chord between its
-/// neighbours.
+/// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope at a row is the slope of the chord between
+/// its neighbours.
 ///
 /// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24. On
-/// unequal ones a parabola through three rows would give a smoother slope, but it leans on the shorter interval: where
-/// two rows nearly coincide, the noise of their difference over next to nothing would be integrated over the long one.
-/// `time` and `value` have the same length, at least 3.
+/// unequal steps a parabola through three rows would give a smoother slope, but it depends mainly on the shorter
+/// interval: if two rows nearly coincide, the noise of their slope would be integrated over the long interval. `time`
+/// and `value` have the same length, at least 3.
 pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let chord = |from: usize, to: usize| (value[to] - value[from]) / (time[to] - time[from]);
-    // At the ends a parabola: its chord is the mean of its slopes.
+    // At the ends a parabola is used: its chord is the mean of the end slopes.
     let beyond = |chord: f64, slope: f64| 2.0 * chord - slope;
     let mut slope = beyond(chord(0, 1), chord(0, 2));
     let mut total = 0.0;
@@ -86,7 +86,7 @@ pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     integral
 }
 
-/// The least-squares solution, its normal matrix and its condition number.
+/// Least-squares solution, normal matrix and condition number.
 #[derive(Debug)]
 pub(super) struct Solution {
     /// a, b, b δ_r.
@@ -97,7 +97,7 @@ pub(super) struct Solution {
 }
 
 impl Solution {
-    /// Solves, and leaves the rows of the pieces projected.
+    /// Solution of the equations; the rows of the pieces stay projected.
     pub(super) fn of(pieces: &mut [IntegratedStretch], condition_limit: f64) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {

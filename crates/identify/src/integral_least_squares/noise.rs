@@ -10,21 +10,21 @@ use super::equations::{IntegratedStretch, SHARED, Solution};
 pub(super) struct ResidualNoise {
     /// Variance of the heading noise, rad²; `None` without degrees of freedom.
     pub variance: Option<f64>,
-    /// Equations less unknowns.
+    /// Number of equations minus number of unknowns.
     pub degrees_of_freedom: f64,
-    /// Equations over degrees of freedom: the correction for the noise absorbed by the fit.
+    /// Ratio of equations to degrees of freedom: the correction for the noise absorbed by the fit.
     pub finite_sample: f64,
     /// Lag-1 autocorrelation of the heading noise.
     pub lag1: f64,
-    /// Σ z zᵀ, where z is the derivative of Xᵀe with respect to the noise of one heading; times the variance it is
-    /// the covariance of Xᵀe.
+    /// Σ z zᵀ, with z the derivative of Xᵀe with respect to the noise of one heading; times the variance it is the
+    /// covariance of Xᵀe.
     pub influence: Matrix3<f64>,
-    /// z n of every piece, for a covariance that does not assume white n.
+    /// Scores z n of every piece, for a covariance that does not assume white n.
     pub scores: Vec<[Vec<f64>; SHARED]>,
 }
 
 impl ResidualNoise {
-    /// From projected pieces and their solution.
+    /// Noise from projected pieces and their solution.
     pub fn of(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
         let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
@@ -48,7 +48,7 @@ impl ResidualNoise {
     }
 }
 
-/// Solves e = n + a ∫n (trapezoid) for n, in the direction of time in which errors die out.
+/// Solves e = n + a ∫n (trapezoid) for n, in the direction of time in which errors decay.
 fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
     let [a, b, beta] = solution.parameters.into();
     let [x0, x1, x2, y] = &piece.columns;
@@ -56,7 +56,7 @@ fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
     let mut noise: Vec<f64> = columns.map(|(y, (x0, (x1, x2)))| y - a * x0 - b * x1 - beta * x2).collect();
     let last = noise.len() - 1;
     let half = |k: usize| 0.5 * a * (piece.time[k] - piece.time[k - 1]);
-    // Where the sweep has been, `noise` holds n; where it has not, e.
+    // Behind the sweep `noise` holds n, ahead of it e.
     if a >= 0.0 {
         let (mut before, mut error) = (noise[0], noise[0]);
         for (k, noise) in noise.iter_mut().enumerate().skip(1) {
@@ -79,10 +79,10 @@ fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
     noise
 }
 
-/// The columns z of a stretch.
+/// Columns z of a stretch.
 ///
-/// A heading enters its own equation with weight 1 + a h/2 and every later one with a (h + h')/2, where h and h' are
-/// the intervals before and after it; hence one pass backwards with the sum of the later columns.
+/// A heading enters its own equation with weight 1 + a h/2 and every later equation with a (h + h')/2, with h and h'
+/// the intervals before and after it; hence one backward pass with the sum of the later columns.
 fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHARED] {
     let half_a = 0.5 * solution.parameters[0];
     let [x0, x1, x2, _] = &piece.columns;

@@ -1,4 +1,4 @@
-//! Truth everywhere: K = 0.1 1/s, T = 16.3 s, unless a test says otherwise.
+//! Tests on records of known truth: K = 0.1 1/s, T = 16.3 s, unless a test states another value.
 
 use approx::assert_relative_eq;
 use ship::angle::from_deg;
@@ -16,14 +16,14 @@ fn errors(estimate: &Estimate, case: &Case) -> [f64; 2] {
     [100.0 * (estimate.response.K() / case.K - 1.0), 100.0 * (estimate.response.T() / case.T - 1.0)]
 }
 
-/// The rows `keep` of a record.
+/// Record with the rows `keep`.
 fn rows(case: &Case, keep: impl Fn(usize) -> bool) -> Trial {
     let trial = case.trial();
     let kept = |column: &[f64]| (0..trial.len()).filter(|&k| keep(k)).map(|k| column[k]).collect();
     record("thinned", kept(trial.time()), kept(trial.heading()), kept(trial.rudder()))
 }
 
-/// The record with a heading only where `seen`.
+/// Record with a heading only in the rows `seen`.
 fn hidden(case: &Case, seen: impl Fn(usize) -> bool) -> Trial {
     let trial = case.trial();
     let heading = (0..trial.len()).map(|k| if seen(k) { trial.heading()[k] } else { f64::NAN }).collect();
@@ -40,7 +40,8 @@ fn coarse_sampling_is_no_bias_of_the_integral() {
 
 #[test]
 fn a_course_unstable_ship_is_an_answer_and_its_deviation_honest() {
-    // Large rudder and small heading: the ship must not reach the yaw rate |K| δ from which no rudder brings it back.
+    // Large rudder and small heading: the ship must not reach the yaw rate |K| δ, beyond which the rudder cannot stop
+    // the turn.
     let case = Case { K: -0.05, T: -60.0, rudder_deg: 20.0, heading_deg: 5.0, samples: 401, ..Case::default() };
     let [k, t] = errors(&identify(&[case.trial()]), &case);
     assert!(k.abs() < 0.3 && t.abs() < 0.3, "K {k:+.3} %, T {t:+.3} %");
@@ -60,7 +61,7 @@ fn a_course_unstable_ship_is_an_answer_and_its_deviation_honest() {
 fn normal_equations_agree_with_singular_values() {
     let case = Case { noise_deg: 0.3, bias_deg: 1.0, samples: 1201, period_s: 0.5, ..Case::default() };
     let trial = case.trial();
-    // A base course of 350 deg is what costs digits.
+    // A base course of 350 deg costs digits.
     let heading = trial.heading().iter().map(|psi| psi + from_deg(350.0)).collect();
     let trial = record("base course", trial.time().to_vec(), heading, trial.rudder().to_vec());
     let samples = Samples::new(&trial, 8).expect("valid");
@@ -76,8 +77,8 @@ fn normal_equations_agree_with_singular_values() {
     assert_relative_eq!(response.rudder_bias, reference.parameters[2] / reference.parameters[1], max_relative = 1e-9);
 }
 
-/// Logs joined row by row: intervals of 0.01 to 7 s without order. The noise of two rows that nearly coincide must not
-/// be taken for a slope.
+/// Logs merged row by row: random intervals of 0.01 to 7 s. The noise of two nearly coincident rows must not act as a
+/// slope.
 #[test]
 fn rows_that_nearly_coincide_do_no_harm() {
     for seed in 0..10 {
@@ -102,22 +103,22 @@ fn a_long_gap_starts_a_new_stretch() {
 #[test]
 fn says_why_it_cannot() {
     let method = Settings::default().build().expect("valid");
-    // Nine headings, each behind a gap of its own.
+    // Nine headings, each after a gap.
     let setting = Settings { longest_gap_s: Some(1.0), ..Settings::default() }.build().expect("valid");
     let sparse = Case { samples: 9, period_s: 10.0, ..Case::default() }.trial();
     assert_eq!(setting.identify(&[sparse]).expect_err("sparse").kind(), "too-few-points");
-    // A rudder that is reversed in the record, but not on the ship.
+    // A rudder with reversed sign in the record, but not on the ship.
     let trial = Case::default().trial();
     let flipped = trial.rudder().iter().map(|delta| -delta).collect();
     let flipped = record("flipped", trial.time().to_vec(), trial.heading().to_vec(), flipped);
     assert_eq!(method.identify(&[flipped]).expect_err("flipped").kind(), "not-a-ship");
-    // A rudder that never moves again: K and δ_r cannot be told apart.
+    // A rudder that never moves again: K and δ_r are not separable.
     let line: Vec<f64> = (0..100).map(f64::from).collect();
     let turning = record("turning", line.clone(), line.iter().map(|t| 0.01 * t).collect(), vec![0.1; 100]);
     assert!(method.identify(&[turning]).is_err());
 }
 
-/// The rudder moves only in rows that gaps leave alone, so the stretches between them hold none of it.
+/// The rudder moves only in rows isolated by gaps, so the stretches between gaps contain no rudder movement.
 #[test]
 fn stretches_without_any_rudder_are_refused() {
     let time: Vec<f64> = (0..40).map(f64::from).chain([400.0, 800.0]).collect();

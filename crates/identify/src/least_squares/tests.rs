@@ -1,4 +1,4 @@
-//! Truth everywhere: K = 0.1 1/s, T = 16.3 s, unless a test says otherwise.
+//! Tests on records of known truth: K = 0.1 1/s, T = 16.3 s, unless a test states another value.
 
 use ship::angle::from_deg;
 
@@ -26,7 +26,7 @@ fn errors(estimate: &Estimate) -> [f64; 2] {
     [100.0 * (estimate.response.K() / 0.1 - 1.0), 100.0 * (estimate.response.T() / 16.3 - 1.0)]
 }
 
-/// A record with a gyro, whose noise is the heading noise of the case per second.
+/// Record with a gyro, whose noise is the heading noise of the case per second.
 fn with_gyro(case: &Case) -> Trial {
     let (truth, noisy) = (case.truth(), case.trial());
     let noise = noisy.heading().iter().zip(&truth.heading).map(|(seen, psi)| seen - psi);
@@ -51,7 +51,7 @@ fn the_bias_of_noise_is_predicted() {
     }
 }
 
-/// A smoother rudder is closer to what the smoothed heading answers to.
+/// A smoothed rudder is closer to the input of the smoothed heading.
 #[test]
 fn smoothing_the_rudder_too_lessens_the_bias() {
     let trial = [Case::default().trial()];
@@ -62,7 +62,7 @@ fn smoothing_the_rudder_too_lessens_the_bias() {
 
 #[test]
 fn the_gyro_gives_the_ship_and_its_scatter() {
-    // r' is a mean over two intervals, (h/T)²/6 of it too flat within a swing and more at the corners of the rudder.
+    // r' is a mean over two intervals, too small by (h/T)²/6 within a swing and by more at the corners of the rudder.
     let [k, t] = errors(&identify(gyro(), &[with_gyro(&Case::default())]));
     assert!(k.abs() < 0.1 && t.abs() < 0.4, "K {k:+.3} %, T {t:+.3} %");
     let (mut squares, mut reported, mut mean) = (0.0, 0.0, 0.0);
@@ -96,7 +96,7 @@ fn says_why_it_cannot() {
 }
 
 /// A turn in seven rows and an eighth six hours later. Five equations gave a K of 0.56 ± 0.49, and seven integrated
-/// ones 1.6 ± 9.
+/// equations 1.6 ± 9.
 #[test]
 fn a_handful_of_rows_before_a_gap_is_too_little() {
     let time = vec![0.0, 9.0, 46.0, 55.0, 64.0, 73.0, 82.0, 23_600.0];

@@ -1,4 +1,4 @@
-//! The Kalman filter of a noise on a schedule.
+//! Kalman filter of a noise law on a schedule.
 
 use estimation::kalman::{Filter, Sensor, System, Whitener};
 use estimation::with_states;
@@ -8,8 +8,8 @@ use super::parameters::NoiseParameters;
 use super::schedule::Schedule;
 use super::transition::step;
 
-/// The filter that makes columns of one record white, in units of the compass error, with variances of the initial
-/// heading and yaw rate in units of that of the compass.
+/// Whitening filter for columns of one record, in units of the compass error, with variances of the initial heading and
+/// yaw rate in units of the compass variance.
 pub fn whitener(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> Whitener {
     with_states!(parameters.states(), N => Filter::<N>::new(system(schedule, parameters, initial)).whitener())
 }
@@ -28,7 +28,7 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     }
     // A correlated compass error is a separate state.
     let white = if compass.is_some() { 0.0 } else { 1.0 };
-    // In the order of the places of `schedule`.
+    // In the order of the sensors of `schedule`.
     let sensors = vec![
         Sensor { state: 0, beside: compass, variance: white },
         Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },

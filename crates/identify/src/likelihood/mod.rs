@@ -7,8 +7,8 @@
 //! own correlation time; the gyro error is white.
 //!
 //! All noise enters linearly, so gains and variances of the Kalman filter do not depend on the readings: the filter is
-//! a linear map that makes residual and sensitivities white, and −2 log L = Σ log 2πS + Σ ν²/S with innovations ν and
-//! their variances S. This module does not choose parameters.
+//! a linear map that whitens residual and sensitivities, and −2 log L = Σ log 2πS + Σ ν²/S with innovations ν and their
+//! variances S. This module does not choose parameters.
 //!
 //! Sources: Åström and Källström (1976), Automatica 12, 9–22, for maximum likelihood on ship records; Van Loan (1978)
 //! for exact discretisation; Harvey (1989) for the prediction error decomposition.
@@ -30,19 +30,19 @@ pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
 pub use track::{MotionColumns, Track};
 
-/// Log-likelihood of the headings of a trial (and of its yaw rates, where `noise` has a gyro) for given ship parameters
+/// Log-likelihood of the headings of a trial (and of the yaw rates, if `noise` has a gyro) for given ship parameters
 /// and a given noise law.
 ///
 /// The initial heading (rad) and yaw rate (rad/s) are normal about zero with the standard deviations `initial_sd`; a
-/// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite when a response
-/// leaves the range of numbers.
+/// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite if a response
+/// overflows.
 pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
     let parameters = NoiseVector::of(noise, ship).parameters(ship.inverse_T);
     let unit = noise.heading_sd;
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
-    // The columns are from rest at the first row, where the prior stands.
+    // The columns start from rest at the first row, where the prior applies.
     let mut columns = MotionColumns::default();
     track.fill_from(false, ship.inverse_T, &mut columns);
     let offset = ship.K_over_T * ship.rudder_bias;

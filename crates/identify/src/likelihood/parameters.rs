@@ -1,40 +1,40 @@
-//! Noise parameters for an optimiser: logarithms, in units of the compass error, so that each may take any value and
-//! the size of the compass error drops out.
+//! Noise parameters for an optimiser: logarithms, in units of the compass error, so that each may have any value and
+//! the size of the compass error is eliminated.
 
 use ship::FirstOrder;
 
 use trial::noise_model::{MomentKind, NoiseModel};
 
-/// Entries of a [`NoiseVector`].
+/// Number of entries of a [`NoiseVector`].
 pub const ENTRIES: usize = 5;
 
 /// Noise vector: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time of the
 /// compass error and of σ_r/σ, with flags for the active entries. The default is a white compass error alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseVector {
-    /// Which yaw moment.
+    /// Kind of yaw moment.
     pub moment: MomentKind,
     /// `true` if the rudder has an error.
     pub rudder: bool,
     /// `true` if the compass error has a correlation time.
     pub coloured: bool,
-    /// The logarithms, in the order above; inactive entries are ignored.
+    /// Logarithms, in the order above; inactive entries are ignored.
     pub log: [f64; ENTRIES],
 }
 
-/// Entry of q/σ.
+/// Index of q/σ.
 pub const LEVEL: usize = 0;
-/// Entry of τ.
+/// Index of τ.
 pub const CORRELATION: usize = 1;
-/// Entry of the rudder error.
+/// Index of the rudder error.
 pub const RUDDER: usize = 2;
-/// Entry of the correlation time of the compass error.
+/// Index of the correlation time of the compass error.
 pub const COMPASS: usize = 3;
-/// Entry of σ_r/σ.
+/// Index of σ_r/σ.
 pub const GYRO: usize = 4;
 
 impl NoiseVector {
-    /// The vector of a noise law for a ship.
+    /// Noise vector of a noise law for a ship.
     pub fn of(noise: &NoiseModel, ship: &FirstOrder) -> Self {
         let unit = noise.heading_sd;
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
@@ -52,7 +52,7 @@ impl NoiseVector {
         }
     }
 
-    /// The noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
+    /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
     pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
         let has_moment = self.moment != MomentKind::None;
@@ -71,7 +71,7 @@ impl NoiseVector {
         }
     }
 
-    /// The active entries.
+    /// Indices of the active entries.
     pub fn entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
         let active = [
             self.moment != MomentKind::None,
@@ -83,7 +83,7 @@ impl NoiseVector {
         (0..ENTRIES).filter(move |&entry| active[entry])
     }
 
-    /// The parameters of the noise for this 1/T.
+    /// Noise parameters for this 1/T.
     pub fn parameters(&self, inverse_time: f64) -> NoiseParameters {
         let size = |entry: usize| self.log[entry].exp();
         NoiseParameters {
@@ -98,22 +98,22 @@ impl NoiseVector {
     }
 }
 
-/// How the noise moves the state, in units of the compass error.
+/// Noise parameters, in units of the compass error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseParameters {
     /// a = 1/T, 1/s.
     pub inverse_time: f64,
-    /// Which yaw moment.
+    /// Kind of yaw moment.
     pub moment: MomentKind,
-    /// q/σ.
+    /// Level q/σ of the moment.
     pub level: f64,
-    /// 1/τ, 1/s.
+    /// Rate 1/τ of the moment, 1/s.
     pub rate: f64,
     /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s².
     pub rudder: Option<f64>,
-    /// One over the correlation time of the compass error, 1/s.
+    /// Inverse correlation time of the compass error, 1/s.
     pub compass_rate: Option<f64>,
-    /// σ_r/σ, 1/s.
+    /// Gyro error σ_r/σ, 1/s.
     pub gyro: f64,
 }
 
@@ -130,12 +130,12 @@ impl NoiseParameters {
             + usize::from(self.compass_rate.is_some())
     }
 
-    /// Place of the rudder error among the states.
+    /// Index of the rudder error among the states.
     pub fn rudder_state(&self) -> Option<usize> {
         self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
     }
 
-    /// Place of the compass error among the states: the last.
+    /// Index of the compass error among the states: the last.
     pub fn compass_state(&self) -> Option<usize> {
         self.compass_rate.map(|_| self.states() - 1)
     }

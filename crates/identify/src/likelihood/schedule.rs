@@ -4,21 +4,21 @@ use estimation::kalman::Reading;
 
 use super::track::{Track, differs};
 
-/// Place of the compass among the sensors.
+/// Index of the compass among the sensors.
 pub const HEADING: usize = 0;
 
-/// Place of the gyro among the sensors.
+/// Index of the gyro among the sensors.
 pub const YAW_RATE: usize = 1;
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
-    /// Lengths, s.
+    /// Lengths of the pieces, s.
     pub pieces: Vec<f64>,
 }
 
 impl Span {
-    /// Length, s.
+    /// Length of the span, s.
     pub fn length(&self) -> f64 {
         self.pieces.iter().sum()
     }
@@ -31,13 +31,13 @@ impl Span {
 /// Readings of a record in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
-    /// The kinds of steps.
+    /// Kinds of steps.
     pub spans: Vec<Span>,
-    /// The readings.
+    /// Readings in order.
     pub readings: Vec<Reading>,
 }
 
-/// Number of recent kinds of steps that are compared with the next step: clocks repeat themselves soon or not at all.
+/// Number of recent kinds of steps that are compared with the next step: steps of a clock repeat soon or not at all.
 const MAX_RECENT_KINDS: usize = 16;
 
 impl Schedule {
@@ -70,7 +70,7 @@ impl Schedule {
         schedule
     }
 
-    /// Number of a kind of step, which is stored when it is new.
+    /// Index of a kind of step, which is stored if it is new.
     fn kind(&mut self, pieces: &[f64]) -> usize {
         let recent = self.spans.len().saturating_sub(MAX_RECENT_KINDS);
         if let Some(place) = self.spans[recent..].iter().rposition(|span| span.has_pieces(pieces)) {

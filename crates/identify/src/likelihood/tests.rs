@@ -10,7 +10,7 @@ use super::parameters::NoiseVector;
 use super::*;
 use crate::testing::{record, record_with_gyro};
 
-/// The record of the published values: uneven rows, a clipped sine of the rudder, a sine of the heading.
+/// Record of the published values: uneven rows, a clipped sine of the rudder, a sine of the heading.
 fn published() -> Trial {
     let mut time = Vec::new();
     let mut t = 0.0;
@@ -42,7 +42,7 @@ fn noise(moment: MomentKind, level: f64, correlation: f64) -> NoiseModel {
     }
 }
 
-/// Heading, yaw rate and rudder of every row: what a dense Gaussian is built from.
+/// Record with heading, yaw rate and rudder in every row, for a dense Gaussian.
 fn with_gyro() -> Trial {
     let trial = published();
     let rate: Vec<f64> = trial.time().iter().map(|t| 0.012 * (0.157 * (t - 9.0)).cos()).collect();
@@ -54,8 +54,8 @@ fn with_gyro() -> Trial {
     record_with_gyro(trial.time().to_vec(), heading, trial.rudder().to_vec(), missing(&rate, 4))
 }
 
-/// The same log-likelihood without a filter: the covariance of all readings from responses to every noise source, with
-/// the moment stepped finely, and the determinant and inverse of that matrix.
+/// Log-likelihood without a filter: the covariance of all readings from responses to every noise source, with the
+/// moment stepped finely, and the determinant and inverse of that matrix.
 fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     const FINE: usize = 40;
     let (time, rudder) = (trial.time(), trial.rudder());
@@ -181,13 +181,13 @@ fn the_filter_is_the_dense_gaussian() {
             let initial = [from_deg(5.0), from_deg(1.0)];
             let filtered = log_likelihood(trial, &ship, &noise, initial);
             let expected = dense(trial, &ship, &noise, initial);
-            // What is left is the step of the dense computation.
+            // The remaining error is the step of the dense computation.
             assert_relative_eq!(filtered, expected, max_relative = 2e-4);
         }
     }
 }
 
-/// A gain that has settled is the gain that would have been computed.
+/// A gain kept as stationary equals the computed gain.
 #[test]
 fn even_rows_settle() {
     let time: Vec<f64> = (0..400).map(f64::from).collect();

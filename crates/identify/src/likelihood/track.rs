@@ -1,11 +1,11 @@
-//! The first-order heading of one trial as a linear combination of four columns, once 1/T is given.
+//! First-order heading of one trial as a linear combination of four columns for a given 1/T.
 //!
-//! ψ = ψ₁ · 1 + r₁ · φ₁(t − t₁) + b · G(t; a) + b δ_r · H(t; a), where G is the response to the recorded rudder and H
-//! that to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the last
-//! one and the columns are stepped backwards in time, so that nothing grows exponentially for either sign of T and the
-//! columns stay as independent as the record allows. This module fills the columns and their derivatives with respect
-//! to a; it does not choose parameters. Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the steering
-//! qualities of ships.
+//! ψ = ψ₁ · 1 + r₁ · φ₁(t − t₁) + b · G(t; a) + b δ_r · H(t; a), with G the response to the recorded rudder and H the
+//! response to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the
+//! last row and the columns are stepped backwards in time, so that no column grows exponentially for either sign of T
+//! and the columns stay as independent as the record allows. This module fills the columns and their derivatives with
+//! respect to a; it does not choose parameters. Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the
+//! steering qualities of ships.
 
 use ship::FirstOrder;
 use ship::first_order::{State, TangentTransition, Transition};
@@ -14,7 +14,7 @@ use trial::Trial;
 /// Relative tolerance of equal step lengths: far below the resolution of a clock.
 const STEP_TOLERANCE: f64 = 1e-9;
 
-/// One trial, from its first to its last row with a heading.
+/// Track of one trial, from the first to the last row with a heading.
 #[derive(Debug, Clone)]
 pub struct Track {
     /// Time of every row, s.
@@ -29,7 +29,7 @@ pub struct Track {
     pub observed: Vec<usize>,
     /// Heading of the observed rows, rad.
     pub heading: Vec<f64>,
-    /// Rows that have a yaw rate which is used, in order.
+    /// Rows with a used yaw rate, in order.
     pub observed_rates: Vec<usize>,
     /// Yaw rate of these rows, rad/s.
     pub rates: Vec<f64>,
@@ -44,37 +44,37 @@ struct Interval {
     rudder_rate: f64,
 }
 
-/// A corner of the rudder between a row and the next.
+/// Corner of the rudder between a row and the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct CornerAfterRow {
     row: usize,
-    /// Time from the row to it, s.
+    /// Time from the row to the corner, s.
     after: f64,
-    /// Rudder rate behind it, rad/s.
+    /// Rudder rate after the corner, rad/s.
     rudder_rate: f64,
 }
 
-/// A step from one row to the next, in either direction of time.
+/// Step from one row to the next, in either direction of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackStep {
-    /// The row before.
+    /// Row before the step.
     pub from: usize,
-    /// The row after.
+    /// Row after the step.
     pub to: usize,
     /// Signed length, s.
     pub length: f64,
     /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
-    /// The corner of the rudder in it.
+    /// Corner of the rudder within the step.
     pub bend: Option<Bend>,
 }
 
-/// A change of the rudder rate between two rows.
+/// Change of the rudder rate between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bend {
-    /// Signed time from it to the end of the step, s.
+    /// Signed time from the change to the end of the step, s.
     pub remaining: f64,
-    /// The change, rad/s.
+    /// Change of the rate, rad/s.
     pub change: f64,
 }
 
@@ -87,27 +87,27 @@ impl Bend {
     }
 }
 
-/// The columns beside the constant one, at the observed rows.
+/// Columns of the heading except the constant column, at the observed rows.
 #[derive(Debug, Clone, Default)]
 pub struct MotionColumns {
     /// φ₁(t − t₁), s.
     pub homogeneous: Vec<f64>,
-    /// G, rad s².
+    /// Response G to the rudder, rad s².
     pub rudder: Vec<f64>,
-    /// H, s².
+    /// Response H to a constant, s².
     pub constant: Vec<f64>,
     /// Columns of the yaw rate, at the rows where it is used.
     pub rates: RateColumns,
 }
 
-/// The yaw rates of the columns.
+/// Yaw rates of the columns.
 #[derive(Debug, Clone, Default)]
 pub struct RateColumns {
     /// exp(−a (t − t₁)).
     pub homogeneous: Vec<f64>,
-    /// G', rad s.
+    /// Response G' to the rudder, rad s.
     pub rudder: Vec<f64>,
-    /// H', s.
+    /// Response H' to a constant, s.
     pub constant: Vec<f64>,
 }
 
@@ -164,7 +164,7 @@ impl Track {
         Self { time, rudder, intervals, corners, observed, heading, observed_rates, rates }
     }
 
-    /// The same track with the yaw rates of its trial; without `rates` they are left out.
+    /// Track with the yaw rates of the trial; without `rates` they are left out.
     pub fn with_rates(mut self, rates: Option<&[f64]>, trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let rates = rates.map_or(&[][..], |rates| &rates[first..][..self.time.len()]);
@@ -173,7 +173,7 @@ impl Track {
         self
     }
 
-    /// The same track without the headings of the given rows.
+    /// Track without the headings of the given rows.
     pub fn without(&self, headings: &[usize]) -> Self {
         let mut less = self.clone();
         less.observed.retain(|row| !headings.contains(row));
@@ -187,8 +187,8 @@ impl Track {
         less
     }
 
-    /// About `rows` of the observed rows, evenly spread, the first included: enough to locate a minimum. The rudder
-    /// between them is linear, so its corners are cut.
+    /// Track thinned to about `rows` observed rows, evenly spread, the first included: enough to locate a minimum. The
+    /// rudder between them is linear, so its corners are cut.
     pub fn thinned(&self, rows: usize) -> Self {
         let every = (self.len() / rows).max(1);
         let kept = || self.observed.iter().step_by(every);
@@ -207,12 +207,12 @@ impl Track {
         self.heading.is_empty()
     }
 
-    /// Length in time, s.
+    /// Duration, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
-    /// The steps from the anchor away.
+    /// Steps away from the anchor.
     #[inline(always)]
     pub fn steps(&self, backward: bool) -> impl Iterator<Item = TrackStep> {
         let (rows, count) = (self.intervals.len(), self.corners.len());
@@ -327,7 +327,7 @@ impl Track {
         keep(&self.observed, heading);
     }
 
-    /// A column of all rows, zero at the anchor.
+    /// Column of all rows, zero at the anchor.
     fn prepared<'a>(&self, inverse_time: f64, out: &'a mut Vec<f64>) -> &'a mut [f64] {
         out.resize(self.time.len(), 0.0);
         out[self.anchor_row(is_backward(inverse_time))] = 0.0;
@@ -339,7 +339,7 @@ impl Track {
     fn tangents(&self, inverse_time: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64, f64)) {
         let backward = is_backward(inverse_time);
         let anchor = coefficients.anchor;
-        // The change of the motion and the motion itself, side by side.
+        // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
@@ -420,7 +420,7 @@ fn keep(rows: &[usize], column: &mut Vec<f64>) {
     }
 }
 
-/// `true` if a step needs another transition than the last step.
+/// `true` if a step requires a transition other than that of the last step.
 #[inline(always)]
 pub fn differs(last: f64, h: f64) -> bool {
     (last - h).abs() > STEP_TOLERANCE * h.abs()

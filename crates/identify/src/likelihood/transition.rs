@@ -8,7 +8,7 @@ use trial::noise_model::MomentKind;
 use super::parameters::NoiseParameters;
 use super::schedule::Span;
 
-/// Terms of the series of the matrix exponential over one scaled step.
+/// Number of terms of the series of the matrix exponential over one scaled step.
 const TERMS: usize = 16;
 
 /// Maximum scaled step, in time constants: the series then ends below rounding. Longer steps are built by doubling.
@@ -28,7 +28,7 @@ const NODES: [(f64, f64); 8] = [
 
 type Small = [[f64; 3]; 3];
 
-/// The step over the time between two readings.
+/// Step over the time between two readings.
 pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
     let mut whole = match parameters.rudder {
         None => undisturbed(parameters, span.length()),

@@ -1,4 +1,4 @@
-//! Estimate at the largest likelihood: covariance from the information, diagnostics and warnings. Sources of the
+//! Estimate at the maximum likelihood: covariance from the information, diagnostics and warnings. Sources of the
 //! degrees of freedom: Satterthwaite (1946); Kenward and Roger (1997).
 
 use document::{HeadingNoise, RandomMoment, Warning, WarningCode};
@@ -25,7 +25,7 @@ use trial::noise_model::{MomentKind, NoiseModel};
 /// Step of a logarithm for the numerical derivative of a variance.
 const DIFFERENCE: f64 = 0.05;
 
-/// Number of outlier times that are listed.
+/// Maximum number of outlier times that are listed.
 const LISTED: usize = 8;
 
 /// Covariance of (1/T, b, b δ_r) from the information, with noise and initial states eliminated, and its condition
@@ -46,7 +46,7 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
     invert(&reduced, CONDITION_LIMIT)
 }
 
-/// Degrees of freedom of the variances of K, T and δ_r, the smallest of the three: the uncertainty of the noise sizes
+/// Degrees of freedom of the variances of K, T and δ_r, the minimum of the three: the uncertainty of the noise sizes
 /// makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
 fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
     let Point { inverse_time, gain, offset, ref vectors, ref parts, .. } = maximum.point;
@@ -59,7 +59,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
     let motions: Option<Vec<Matrix3<f64>>> = vectors.iter().enumerate().map(|(k, vector)| motion(k, vector)).collect();
     let inverse = motions.as_ref().and_then(|all| all.iter().sum::<Matrix3<f64>>().try_inverse());
     let Some(inverse) = inverse else { return 1.0 };
-    // Gradients of log K, log T and δ_r by (1/T, b, b δ_r).
+    // Gradients of log K, log T and δ_r with respect to (1/T, b, b δ_r).
     let (a, b) = (inverse_time, gain);
     let directions = [
         Vector3::new(-1.0 / a, 1.0 / b, 0.0),
@@ -106,7 +106,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
     2.0 / variance.into_iter().fold(0.0, f64::max)
 }
 
-/// Covariance of (1/T, b, b δ_r) and degrees of freedom of its variances, averaged over the plausible noise laws, about
+/// Covariance of (1/T, b, b δ_r) and degrees of freedom of the variances, averaged over the plausible noise laws, about
 /// the estimate of the most plausible law.
 fn averaged_covariance(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
     let estimate_of = |point: &Point| Vector3::new(point.inverse_time, point.gain, point.offset);
@@ -122,7 +122,7 @@ fn averaged_covariance(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
     (total / weights, weights / per_freedom)
 }
 
-/// The estimate under the chosen noise law.
+/// Estimate under the selected noise law.
 pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, IdentifyError> {
     let Chosen { records, maxima, at_bound, .. } = &chosen;
     let maximum = &maxima[0].1;
@@ -205,7 +205,7 @@ fn outlier_warnings(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
     warnings
 }
 
-/// Figures of the noise of the first record, of the outliers, and of the kinds of moment that were fitted.
+/// Diagnostics of the noise of the first record, of the outliers, and of the kinds of moment that were fitted.
 fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str, f64)> {
     let count = |suspects: fn(&Suspects) -> usize| chosen.outliers.iter().map(suspects).sum::<usize>() as f64;
     let mut diagnostics = vec![
@@ -241,7 +241,7 @@ fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'s
     diagnostics
 }
 
-/// The random moment of a noise as the rudder angle of a ship of K/T = `gain`.
+/// Random moment of a noise law as the rudder angle of a ship with K/T = `gain`.
 fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
     let rudder = noise.moment_level / gain;
     match noise.moment {
@@ -281,8 +281,8 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning
     (!parts.is_empty()).then(|| WarningCode::Noise.warning(text()))
 }
 
-/// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial with given true parameters and noise: the smallest covariance of
-/// an unbiased method that also estimates the initial state.
+/// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial with given true parameters and noise: the minimum covariance of an
+/// unbiased method that also estimates the initial state.
 ///
 /// The information is Σ (∂ν/∂θ)(∂ν/∂θ)ᵀ/S over the innovations; the small information of the noise spectrum on 1/T is
 /// neglected. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the

@@ -1,5 +1,5 @@
-//! Selection of the noise law: every law is fitted, and the lowest BIC wins. Source: Schwarz (1978), Estimating the
-//! dimension of a model, Annals of Statistics 6, 461–464.
+//! Selection of the noise law: every law is fitted, and the law with the lowest BIC is selected. Source: Schwarz
+//! (1978), Estimating the dimension of a model, Annals of Statistics 6, 461–464.
 
 use ship::FirstOrder;
 use trial::Trial;
@@ -22,19 +22,19 @@ use trial::noise_model::MomentKind;
 /// Maximum number of rounds of outlier search and refit.
 const MAX_OUTLIER_ROUNDS: usize = 12;
 
-/// Gain in −2 log L, beside log n, that a jump of the compass needs.
+/// Minimum gain in −2 log L, in addition to log n, for a jump of the compass.
 const MIN_JUMP_GAIN: f64 = 25.0;
 
-/// Values of 1/T per decade, for each sign, that are evaluated under the selected noise.
+/// Number of values of 1/T per decade, for each sign, that are evaluated under the selected noise.
 const VALUES_PER_DECADE: usize = 2;
 
-/// Weight below which a noise law is dropped.
+/// Minimum weight of a kept noise law.
 const MIN_WEIGHT: f64 = 0.01;
 
-/// Gain in −2 log of the restricted likelihood below which a moment is absent.
+/// Minimum gain in −2 log of the restricted likelihood for a moment.
 const MIN_MOMENT_GAIN: f64 = 0.1;
 
-/// Gain in −2 log of the restricted likelihood above which a correlated moment is fitted as well.
+/// Minimum gain in −2 log of the restricted likelihood for the fit of a correlated moment.
 const MIN_GUST_GAIN: f64 = 2.0;
 
 /// Records with their outliers and the estimate of `output-error` as start.
@@ -46,14 +46,14 @@ pub(super) struct PreparedRecords {
     evaluations: usize,
 }
 
-/// The chosen noise law and its fit.
+/// Selected noise law and its fit.
 pub(super) struct Chosen {
     pub records: Vec<Record>,
     /// Fits under the plausible noise laws with their weights, the most plausible first.
     pub maxima: Vec<(f64, Maximum)>,
-    /// Spikes and jumps of every record, by row of its track.
+    /// Spikes and jumps of every record, by row of the track.
     pub outliers: Vec<Suspects>,
-    /// `true` if there were too many spikes to leave them out.
+    /// `true` if there are too many spikes to leave out.
     pub too_many: bool,
     /// BIC of every kind of moment that was fitted.
     pub tried: Vec<(MomentKind, f64)>,
@@ -63,7 +63,7 @@ pub(super) struct Chosen {
 }
 
 impl PreparedRecords {
-    /// Finds the outliers of the records and fits `output-error` to the other readings. Fails as it does.
+    /// Finds the outliers of the records and fits `output-error` to the other readings. Fails as `output-error` does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
         let whole = trials.iter().map(|trial| track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
@@ -129,7 +129,7 @@ impl PreparedRecords {
         self.records.iter().zip(&self.outliers).map(times).collect()
     }
 
-    /// Fits every noise law and selects that with the lowest BIC.
+    /// Fits every noise law and selects the law with the lowest BIC.
     pub fn choose(self, settings: &Settings) -> Result<Chosen, IdentifyError> {
         let Self { mut records, start, outliers, too_many, evaluations } = self;
         let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
@@ -145,7 +145,7 @@ impl PreparedRecords {
 
         let mut spent = evaluations;
         let (mut all, mut tried) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
-        // A jump is kept where it improves the likelihood enough under the selected noise.
+        // A jump is kept if it improves the likelihood enough under the selected noise.
         let suspected: usize = outliers.iter().map(|rows| rows.jumps.len()).sum();
         let mut kept = outliers;
         if let Some((_, maximum)) = all.first().filter(|_| suspected > 0) {
@@ -237,8 +237,8 @@ fn fit_laws(
         let start = search.best_start(starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
-    // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already the
-    // best.
+    // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already
+    // optimal.
     let is_coloured = |vector: &NoiseVector| vector.moment != MomentKind::None || vector.coloured || vector.rudder;
     if let Some((_, best)) = lowest(&all).filter(|(_, best)| best.point.vectors.iter().any(is_coloured)) {
         let elsewhere = best_inverse_time(&mut search, best.point.inverse_time, &best.point.vectors);
@@ -253,7 +253,7 @@ fn fit_laws(
 }
 
 impl Search<'_> {
-    /// The largest likelihood from a start, with its BIC.
+    /// Maximum likelihood from a start, with its BIC.
     fn highest(&mut self, start: Point) -> Option<(f64, Maximum)> {
         let maximum = self.maximise(start)?;
         Some((bic(self.records, &maximum.point), maximum))
@@ -272,7 +272,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         let plain = all.iter().find(|(_, maximum)| maximum.point.vectors[0].moment == MomentKind::None);
         let random =
             [&white, &walk].into_iter().flatten().map(|point: &Point| point.restricted).fold(f64::INFINITY, f64::min);
-        // Gusts lie between a white moment and a walk: without either of them gusts are not fitted.
+        // Gusts lie between a white moment and a walk: without either, gusts are not fitted.
         let hopeless = kind == MomentKind::OrnsteinUhlenbeck
             && plain.is_some_and(|(_, plain)| plain.point.restricted - random < MIN_GUST_GAIN);
         if (!kinds.contains(&kind) && !gusts) || hopeless {
@@ -285,7 +285,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
             MomentKind::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
         let start = search.best_start(starts, |point| point.restricted);
-        // A moment without gain at any size is absent; its BIC still counts its entries.
+        // A moment without gain at any size is absent; the BIC still counts its entries.
         let is_unseen = |start: &Point| {
             matches!(kind, MomentKind::White | MomentKind::Walk)
                 && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - MIN_MOMENT_GAIN)
@@ -309,8 +309,8 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
     all
 }
 
-/// Starts of the search for a correlated compass error, where the innovations are correlated: with the best noise law,
-/// and alone, because a large white moment can hide the correlation.
+/// Starts of the search for a correlated compass error, if the innovations are correlated: with the best noise law, and
+/// alone, because a large white moment can hide the correlation.
 fn coloured_compass_starts(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
     let is_correlated = |maximum: &&Maximum| {
         let readings: usize = maximum.point.parts.iter().map(|part| part.readings).sum();
@@ -336,7 +336,7 @@ fn lowest(all: &[(f64, Maximum)]) -> Option<&(f64, Maximum)> {
     all.iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The best of other values of 1/T, of both signs, under the same noise.
+/// Best of other values of 1/T, of both signs, under unchanged noise.
 fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
     let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);

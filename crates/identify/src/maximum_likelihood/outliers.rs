@@ -2,33 +2,33 @@
 //! constant.
 //!
 //! The residual of a fit changes no faster than the noise. A reading far from its neighbours is a spike; a level that
-//! changes from one reading to the next and stays is a jump. The search is repeated on the fit without them until
-//! nothing changes, so that a good reading beside a spike is restored. Source of the robust scale: the median absolute
-//! deviation, Hampel (1974), The influence curve and its role in robust estimation, Journal of the American Statistical
-//! Association 69, 383–393.
+//! changes from one reading to the next and stays is a jump. The search is repeated on the fit without the outliers
+//! until they no longer change, so that a good reading next to a spike is restored. Source of the robust scale: the
+//! median absolute deviation, Hampel (1974), The influence curve and its role in robust estimation, Journal of the
+//! American Statistical Association 69, 383–393.
 
 use estimation::column::extremes;
 use estimation::statistics::median;
 
 use crate::likelihood::track::Track;
 
-/// Neighbours on either side that a reading is compared with: enough to detect runs of up to three spikes.
+/// Number of neighbours on either side for the comparison of a reading: enough to detect runs of up to three spikes.
 const NEIGHBOURS: usize = 7;
 
-/// Neighbours that a side needs.
+/// Minimum number of neighbours on a side.
 const MIN_NEIGHBOURS: usize = 3;
 
-/// Readings on either side of a jump.
+/// Number of readings on either side of a jump.
 const SIDE: usize = 4;
 
-/// Distance from the neighbours, in robust standard deviations (SDs), beyond which a reading is left out: about one in
-/// 10⁸ normal readings.
+/// Maximum distance from the neighbours, in robust standard deviations (SDs), of a kept reading: exceeded by about one
+/// in 10⁸ normal readings.
 const SPIKE_SDS: f64 = 6.0;
 
-/// Change of level, in robust standard deviations, beyond which it is a jump.
+/// Minimum change of level of a jump, in robust standard deviations.
 const JUMP_SDS: f64 = 8.0;
 
-/// Minimum outlier, as a share of the heading range: corners of the rudder between rows leave residuals below it.
+/// Minimum outlier, as a share of the heading range: corners of the rudder between rows leave smaller residuals.
 const MIN_OUTLIER_SHARE: f64 = 2e-3;
 
 /// Minimum spike, relative to the largest new spike, that is removed in the same round.
@@ -37,7 +37,7 @@ const MIN_GROSS_SHARE: f64 = 0.3;
 /// Maximum share of outliers: a larger share is noise of another law.
 pub(super) const MAX_OUTLIER_SHARE: f64 = 0.1;
 
-/// Standard deviation of normal numbers over the median of their magnitudes.
+/// Ratio of the standard deviation of normal numbers to the median of their magnitudes.
 const NORMAL: f64 = 1.4826;
 
 /// Rows suspected as outliers.
@@ -51,11 +51,11 @@ pub(super) struct Suspects {
 
 /// Finds spikes and jumps in the heading residual of a fit (rad, a value for every reading of the whole track).
 ///
-/// Spikes spoil the fit and so enlarge other residuals: besides the spikes `excluded` from the fit only the largest are
-/// taken in a round.
+/// Spikes spoil the fit and so enlarge other residuals: in addition to the spikes `excluded` from the fit only the
+/// largest are selected in a round.
 pub(super) fn find(whole: &Track, residual: &[f64], excluded: &[usize]) -> Suspects {
     let (lowest, highest) = extremes(&whole.heading);
-    // The range itself may be that of a sentinel.
+    // The range may include a sentinel.
     let floor = MIN_OUTLIER_SHARE * (highest - lowest).min(std::f64::consts::PI);
     let rows = &whole.observed;
     let mut kept: Vec<usize> = (0..residual.len()).collect();
@@ -87,14 +87,14 @@ pub(super) fn find(whole: &Track, residual: &[f64], excluded: &[usize]) -> Suspe
 /// Comparison of a reading with its neighbours on one side, rad.
 #[derive(Debug, Clone, Copy)]
 struct Neighbours {
-    /// The reading less their median.
+    /// Reading minus the median of the neighbours, rad.
     distance: f64,
-    /// Median of their distances from their median.
+    /// Median distance of the neighbours from their median, rad.
     spread: f64,
 }
 
-/// Distance of a reading from both sides, rad: at a change of level it is near to one side, on a slope it lies between
-/// them. At an end of the record there is a single side, and the spread of the neighbours shows a slope.
+/// Distance of a reading from both sides, rad: at a change of level it is near one side, on a slope it lies between
+/// both sides. At an end of the record there is a single side, and the spread of the neighbours shows a slope.
 fn isolation(sides: [Option<Neighbours>; 2]) -> f64 {
     match sides {
         [Some(before), Some(after)] if before.distance * after.distance > 0.0 => {
@@ -133,7 +133,7 @@ fn jumps(residual: &[f64], kept: &[usize], floor: f64) -> Vec<usize> {
     let limit = (JUMP_SDS * NORMAL * middle(&mut magnitudes(&changes))).max(floor);
     let mut accepted: Vec<usize> = Vec::new();
     let mut order: Vec<usize> = (0..changes.len()).filter(|&k| changes[k].abs() > limit).collect();
-    // The steepest reading of a neighbourhood is the place of the jump.
+    // The jump is at the steepest reading of a neighbourhood.
     let steep = |k: usize| (residual[kept[places[k]]] - residual[kept[places[k] - 1]]) * changes[k].signum();
     order.sort_by(|&a, &b| (changes[b].abs() + steep(b)).total_cmp(&(changes[a].abs() + steep(a))));
     for k in order {
@@ -163,7 +163,7 @@ mod tests {
     fn isolated_readings_are_found_and_no_others() {
         let trial = Case { noise_deg: 0.1, ..Case::default() }.trial();
         let track = Track::new(&trial);
-        // Noise alone, as a good fit leaves it.
+        // Noise alone, as in the residual of a good fit.
         let truth = Case::default().truth();
         let noise: Vec<f64> = track.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
         assert_eq!(find(&track, &noise, &[]), Suspects::default());
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(find(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
     }
 
-    /// A smooth misfit without noise has no outliers, however it begins.
+    /// A smooth misfit without noise has no outliers, whatever its beginning.
     #[test]
     fn a_slope_is_not_a_run_of_spikes() {
         let track = Track::new(&Case::default().trial());

@@ -1,9 +1,9 @@
 //! Likelihood as a function of 1/T and the noise alone: given these, the heading is linear in all other unknowns, and
 //! the size of the compass error follows from the residual.
 //!
-//! The noise is selected by the restricted likelihood, −2 log L + log det(JᵀJ) with the whitened sensitivities J by all
-//! other unknowns: the likelihood of the part that these cannot fit, which does not underestimate the noise (Patterson
-//! and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
+//! The noise is selected by the restricted likelihood, −2 log L + log det(JᵀJ) with the whitened sensitivities J to all
+//! other unknowns: the likelihood of the part that these unknowns cannot fit, which does not underestimate the noise
+//! (Patterson and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
 
 use estimation::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
@@ -15,7 +15,7 @@ use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
 use crate::profile::solve2;
 use estimation::kalman::Whitener;
 
-/// Unknowns that all records share: 1/T, K/T and (K/T) δ_r.
+/// Number of unknowns that all records share: 1/T, K/T and (K/T) δ_r.
 pub(super) const SHARED: usize = 3;
 
 /// Maximum number of iterations of the weights of the records of one ship.
@@ -24,12 +24,12 @@ const MAX_WEIGHT_ITERATIONS: usize = 20;
 /// Relative change of the variances at convergence of the weights.
 const WEIGHT_TOLERANCE: f64 = 1e-12;
 
-/// One record with its readings.
+/// Record with its readings.
 #[derive(Debug, Clone)]
 pub(super) struct Record {
     pub track: Track,
     pub schedule: Schedule,
-    /// Rows from which on the compass is off by a constant.
+    /// First rows after jumps of the compass by a constant.
     pub jumps: Vec<usize>,
     /// Declared standard deviation of the rudder error, rad. It fixes the rudder error of a noise vector, whose entry
     /// then represents the size of the compass error.
@@ -60,22 +60,22 @@ pub(super) struct RecordAtPoint {
     pub anchor: State,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
-    /// Contribution to −2 log L, and its additional contribution to the restricted likelihood.
+    /// Contribution to −2 log L, and the additional contribution to the restricted likelihood.
     pub deviance: f64,
     pub determinant: f64,
-    /// Products of the sensitivities by 1/T, b and b δ_r.
+    /// Products of the sensitivities to 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
     pub white: White,
     /// Whitened sensitivity of the readings to 1/T, projected off the nuisance columns.
     pub by_time: Vec<f64>,
 }
 
-/// The best fit for one 1/T and one noise of every record.
+/// Best fit for one 1/T and one noise law of every record.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
     pub inverse_time: f64,
     pub vectors: Vec<NoiseVector>,
-    /// −2 log L, and the same of the restricted likelihood.
+    /// −2 log L, and −2 log of the restricted likelihood.
     pub deviance: f64,
     pub restricted: f64,
     /// b = K/T, 1/s², and b δ_r, rad/s².
@@ -116,8 +116,8 @@ impl Record {
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// The columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a
-    /// column is not finite.
+    /// Columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a column is
+    /// not finite.
     fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<White> {
         let mut motion = MotionColumns::default();
         self.track.fill(inverse_time, &mut motion);
@@ -143,7 +143,7 @@ impl Record {
         column
     }
 
-    /// Products of the whitened sensitivities by (1/T, b, b δ_r) at given coefficients, with the initial state
+    /// Products of the whitened sensitivities to (1/T, b, b δ_r) at given coefficients, with the initial state
     /// eliminated; divided by σ² they are the information of the motion.
     pub fn information(
         &self,
@@ -192,13 +192,13 @@ impl White {
         Some(Self { filter, nuisance, triangle, projected, shares })
     }
 
-    /// Products of the sensitivities by 1/T, b and b δ_r.
+    /// Products of the sensitivities to 1/T, b and b δ_r.
     fn motion(&self, by_time: &[f64]) -> Matrix3<f64> {
         let [rudder, constant, _] = &self.projected;
         Matrix3::from(gram([by_time, rudder, constant]))
     }
 
-    /// Readings less the response to the steering.
+    /// Readings minus the response to the steering.
     fn residual(&self, gain: f64, offset: f64) -> Vec<f64> {
         let [rudder, constant, readings] = &self.projected;
         readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
@@ -226,9 +226,9 @@ struct Weight {
     /// Products of the responses to rudder and constant and the readings.
     products: [[f64; 3]; 3],
     readings: f64,
-    /// Readings less the fitted unknowns.
+    /// Number of readings minus number of fitted unknowns.
     freedom: f64,
-    /// Compass error of a ship with b = 1, rad, where the rudder error is declared.
+    /// Compass error of a ship with b = 1, rad, if the rudder error is declared.
     tied: Option<f64>,
 }
 
@@ -248,7 +248,7 @@ impl Weight {
 
     fn square(&self, b: f64, q: f64) -> f64 {
         let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
-        // The square is not computed below its rounding error, which a record without noise keeps.
+        // The square is bounded below by its rounding error, which remains for a record without noise.
         let rounding = (f64::EPSILON * yy).max(f64::MIN_POSITIVE);
         (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(rounding)
     }
@@ -258,7 +258,7 @@ impl Weight {
     }
 }
 
-/// The best b and b δ_r over all records, and the variance of the compass error in every record.
+/// Best b and b δ_r over all records, and the variance of the compass error in every record.
 fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
     let mut variances = vec![1.0; weights.len()];
     let mut best = Vector2::zeros();
@@ -319,12 +319,12 @@ impl RecordAtPoint {
     }
 }
 
-/// Readings of all records.
+/// Number of readings of all records.
 pub(super) fn readings(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
 
-/// The best fit for a given 1/T and a noise vector of every record. `None` if it is not a ship or not finite.
+/// Best fit for a given 1/T and a noise vector of every record. `None` if it is not a ship or not finite.
 pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let columns =
         |(record, vector): (&Record, &NoiseVector)| record.white(inverse_time, &vector.parameters(inverse_time));

@@ -1,5 +1,5 @@
-//! Score and information of the likelihood at a point. Derivatives by the noise come from finite differences: there are
-//! few entries, and a filter with derivatives would cost about as much as a second filter.
+//! Score and information of the likelihood at a point. Derivatives with respect to the noise come from finite
+//! differences: there are few entries, and a filter with derivatives would cost about as much as a second filter.
 
 use std::ops::Range;
 
@@ -17,14 +17,14 @@ const DIFFERENCE: f64 = 1e-4;
 /// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the noise vectors, record by
 /// record.
 pub(super) struct Linearised {
-    /// ∂(−log L) by 1/T, and that of the restricted likelihood by the entries; zero for b and b δ_r, which are at their
-    /// optimum.
+    /// Derivative of −log L with respect to 1/T, and of the restricted likelihood with respect to the entries; zero for
+    /// b and b δ_r, which are at their optimum.
     pub score: DVector<f64>,
     /// Fisher information, the sizes of the compass errors eliminated.
     pub information: DMatrix<f64>,
     /// Scores of (1/T, b, b δ_r) reading by reading, for every record.
     pub scores: Vec<[Vec<f64>; 3]>,
-    /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero where the compass error is tied.
+    /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero if the compass error is tied.
     pub totals: Vec<DVector<f64>>,
 }
 
@@ -48,19 +48,18 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
     finite.then_some(all)
 }
 
-/// Derivatives of the innovations over √S and of log S of every reading by 1/T or an entry of the noise.
+/// Derivatives of the innovations over √S and of log S of every reading with respect to 1/T or an entry of the noise.
 struct Slope {
     innovation: Vec<f64>,
     log_variance: Vec<f64>,
     /// Derivatives of −log L and of the restricted likelihood.
     score: [f64; 2],
-    /// Derivative of the logarithm of the variance of the compass error, where it is tied to an entry.
+    /// Derivative of the logarithm of the variance of the compass error, if it is tied to an entry.
     tied: f64,
 }
 
 impl Slope {
-    /// Difference quotient to the same record under a noise that differs by `by`; `motion` is the information of all
-    /// records.
+    /// Difference quotient for a record under a noise that differs by `by`; `motion` is the information of all records.
     fn new(here: &RecordAtPoint, there: &RecordAtPoint, by: f64, motion: &Matrix3<f64>) -> Self {
         let logs = there.white.filter.log_variances().into_iter().zip(here.white.filter.log_variances());
         let log_variance: Vec<f64> = logs.map(|(there, here)| (there - here) / by).collect();
@@ -75,7 +74,7 @@ impl Slope {
 }
 
 impl Linearised {
-    /// Adds the contribution of a record, whose noise entries have these numbers among the unknowns. `None` if it is
+    /// Adds the contribution of a record, whose noise entries have these indices among the unknowns. `None` if it is
     /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {
         let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);
@@ -98,7 +97,7 @@ impl Linearised {
             let there = RecordAtPoint::new(record, a, steering, &moved, a, all)?;
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
             if is_tied && entry == RUDDER {
-                // A smaller compass error makes the same rudder error larger in its units.
+                // A smaller compass error makes a given rudder error larger in its units.
                 slope.log_variance.iter_mut().for_each(|by| *by += slope.tied);
             }
             slopes.push(slope);

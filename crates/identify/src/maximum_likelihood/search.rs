@@ -1,4 +1,4 @@
-//! The largest likelihood over 1/T and the noise: Fisher scoring with exact slopes from starts over all magnitudes.
+//! Maximum likelihood over 1/T and the noise: Fisher scoring with exact slopes from starts over all magnitudes.
 //! Sources: Fisher scoring and BFGS steps as in Nocedal and Wright (2006), Numerical Optimization, chapter 6.
 
 use nalgebra::{DMatrix, DVector};
@@ -14,13 +14,13 @@ use trial::noise_model::MomentKind;
 const MIN_DECREASE: f64 = 2e-4;
 const MIN_DECREASE_ALONE: f64 = 1e-12;
 
-/// Increase of −2 log of the restricted likelihood that a step may cause.
+/// Maximum increase of −2 log of the restricted likelihood in a step.
 const SLACK: f64 = 1e-2;
 
-/// Ridge, relative to the scaled information, that keeps it regular.
+/// Ridge, relative to the scaled information, for its regularity.
 const RIDGE: f64 = 1e-10;
 
-/// Halvings of a step.
+/// Maximum number of halvings of a step.
 const HALVINGS: usize = 12;
 
 /// Maximum change of a logarithm in one step.
@@ -32,12 +32,12 @@ pub(super) struct Ranges {
     /// Length of the record and usual time between its readings, s.
     pub duration: f64,
     pub spacing: f64,
-    /// Root mean square residual of a fit without a moment, in units of its white part.
+    /// Root mean square residual of a fit without a moment, in units of the white part.
     pub residual: f64,
 }
 
 impl Ranges {
-    /// The level of a moment that moves the heading of a ship without damping by `by` (in units of σ) over `time`.
+    /// Level of a moment that moves the heading of a ship without damping by `by` (in units of σ) over `time`.
     fn level(moment: MomentKind, by: f64, time: f64) -> f64 {
         match moment {
             MomentKind::Walk => by * (20.0 / time.powi(5)).sqrt(),
@@ -46,7 +46,7 @@ impl Ranges {
         }
     }
 
-    /// Minimum and largest logarithm of an entry.
+    /// Minimum and maximum logarithm of an entry.
     fn range(&self, vector: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
@@ -59,7 +59,7 @@ impl Ranges {
         ends.map(f64::ln)
     }
 
-    /// The noise vector with one entry at a value, clamped to its range.
+    /// Noise vector with one entry at a value, clamped to its range.
     fn with(&self, vector: &NoiseVector, entry: usize, log: f64) -> NoiseVector {
         let [low, high] = self.range(vector, entry);
         let mut moved = *vector;
@@ -71,7 +71,7 @@ impl Ranges {
 /// Start of a search: 1/T, and the noise vector of every record.
 pub(super) type Start = (f64, Vec<NoiseVector>);
 
-/// A search over all records.
+/// Search over all records.
 pub(super) struct Search<'a> {
     pub records: &'a [Record],
     pub ranges: &'a [Ranges],
@@ -81,7 +81,7 @@ pub(super) struct Search<'a> {
     pub unseen: Vec<(MomentKind, f64)>,
 }
 
-/// The end of a search.
+/// End of a search.
 pub(super) struct Maximum {
     pub point: Point,
     pub linearised: Linearised,
@@ -101,13 +101,13 @@ impl Search<'_> {
         Some(linearised)
     }
 
-    /// The start with the lowest −2 log L, or restricted −2 log L where only the noise differs.
+    /// Start with the lowest −2 log L, or restricted −2 log L if only the noise differs.
     pub fn best_start(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
         let points = starts.iter().filter_map(|(a, vectors)| self.evaluate(*a, vectors));
         points.min_by(|a, b| height(a).total_cmp(&height(b)))
     }
 
-    /// Start at the noise vectors that `moved` makes of given vectors.
+    /// Start at the noise vectors obtained by `moved` from given vectors.
     fn start(
         &self,
         inverse_time: f64,
@@ -158,10 +158,10 @@ impl Search<'_> {
         [0.2, 0.35, 0.5, 0.65].map(start).into()
     }
 
-    /// The largest likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
+    /// Maximum likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
     ///
-    /// 1/T follows the likelihood and the noise the restricted likelihood, so steps need not lower the latter to the
-    /// last digit.
+    /// 1/T follows the likelihood and the noise the restricted likelihood, so steps need not lower the restricted
+    /// likelihood to the last digit.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
         let mut linearised = self.linearise(&point)?;
@@ -205,7 +205,7 @@ impl Search<'_> {
         Some(Maximum { point, linearised, converged: false })
     }
 
-    /// Numbers of the free unknowns in the score: an entry at the edge of its range is free only if its score points
+    /// Indices of the free unknowns in the score: an entry at the edge of its range is free only if the score points
     /// inwards.
     fn free(&self, point: &Point, score: &DVector<f64>) -> Vec<usize> {
         let mut free = vec![0];
@@ -224,7 +224,7 @@ impl Search<'_> {
         free
     }
 
-    /// The noise vectors after a step.
+    /// Noise vectors after a step.
     fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> Start {
         let by = |index: usize| free.iter().position(|&number| number == index).map_or(0.0, |k| step[k]);
         let mut index = SHARED;
@@ -284,7 +284,7 @@ fn reduced(information: &DMatrix<f64>, selected: &[usize]) -> Option<DMatrix<f64
     Some(pick(selected, selected) - &cross * inner.solve(&cross.transpose()))
 }
 
-/// The logarithm of the gyro error with which a search begins.
+/// Noise vector with the initial gyro error of a search.
 pub(super) fn gyro_start(ranges: &Ranges, vector: &NoiseVector) -> NoiseVector {
     ranges.with(vector, GYRO, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

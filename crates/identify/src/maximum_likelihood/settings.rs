@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 use trial::noise_model::MomentKind;
 
-/// Which yaw moment is fitted.
+/// Choice of the fitted yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MomentChoice {
-    /// The moment with the lowest BIC.
+    /// Moment with the lowest BIC.
     #[default]
     Chosen,
     /// None.
@@ -21,7 +21,7 @@ pub enum MomentChoice {
 }
 
 impl MomentChoice {
-    /// The kinds of moment that are fitted.
+    /// Kinds of moment that are fitted.
     pub(super) fn kinds(self) -> &'static [MomentKind] {
         match self {
             Self::Chosen => &MomentKind::ALL,
@@ -33,11 +33,11 @@ impl MomentChoice {
     }
 }
 
-/// Which compass error is fitted.
+/// Choice of the fitted compass error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompassChoice {
-    /// White, or with a correlation time where that has the lower BIC.
+    /// White, or with a correlation time if that has the lower BIC.
     #[default]
     Chosen,
     /// White.
@@ -46,11 +46,11 @@ pub enum CompassChoice {
     Coloured,
 }
 
-/// Which error of the recorded rudder is fitted.
+/// Choice of the fitted error of the recorded rudder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderChoice {
-    /// White, of the size that the record declares, if that raises the likelihood.
+    /// White, of the declared size, if that raises the likelihood.
     #[default]
     Declared,
     /// None.
@@ -63,13 +63,13 @@ pub enum RudderChoice {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// The yaw moment: `chosen`, `none`, `white`, `ornstein-uhlenbeck` or `walk`.
+    /// Yaw moment: `chosen`, `none`, `white`, `ornstein-uhlenbeck` or `walk`.
     pub moment: MomentChoice,
-    /// The compass error: `chosen`, `white` or `coloured`.
+    /// Compass error: `chosen`, `white` or `coloured`.
     pub compass: CompassChoice,
-    /// The error of the recorded rudder: `declared`, `none` or `estimated`.
+    /// Error of the recorded rudder: `declared`, `none` or `estimated`.
     pub rudder: RudderChoice,
-    /// `true` if the yaw rate is used where every record has one.
+    /// `true` if the yaw rate is used, provided that every record has one.
     pub yaw_rate: bool,
     /// `true` if spikes are left out and jumps of the compass estimated.
     pub outliers: bool,

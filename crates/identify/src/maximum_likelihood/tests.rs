@@ -16,7 +16,7 @@ use crate::output_error;
 use crate::testing::{Case, record, record_with_gyro};
 use trial::Trial;
 
-/// Independent normal numbers.
+/// Generator of independent normal numbers.
 fn draws(seed: u64) -> impl FnMut() -> f64 {
     let (normal, mut generator) = (Normal::standard(), ChaCha8Rng::seed_from_u64(seed));
     move || normal.inverse_cdf((f64::from(generator.random::<u32>()) + 0.5) / 4294967296.0)
@@ -24,13 +24,13 @@ fn draws(seed: u64) -> impl FnMut() -> f64 {
 
 /// Random disturbance of a record, as rudder angle in degrees at every row, linear between rows.
 enum ExtraNoise {
-    /// A random walk with this standard deviation after a second.
+    /// Random walk with this standard deviation after one second.
     Walk(f64),
-    /// Nothing, but the recorded rudder is wrong by white noise.
+    /// White noise of the recorded rudder alone.
     RudderError(f64),
 }
 
-/// A record whose heading was computed with another rudder than the recorded one.
+/// Record whose heading was computed with a rudder other than the recorded rudder.
 fn disturbed(case: &Case, noise: &ExtraNoise) -> Trial {
     let truth = case.truth();
     let mut draw = draws(1000 + case.seed);
@@ -44,7 +44,7 @@ fn disturbed(case: &Case, noise: &ExtraNoise) -> Trial {
             ExtraNoise::RudderError(sd) => from_deg(*sd) * draw(),
         })
         .collect();
-    // The response is linear: that to the extra rudder is added.
+    // The response is linear: the response to the extra rudder is added.
     let ship = case.ship();
     let mut state = ship::first_order::State::default();
     let mut heading = Vec::new();
@@ -75,7 +75,7 @@ fn noisy() -> Case {
     Case { noise_deg: 0.1, seed: 5, ..Case::default() }
 }
 
-/// Without process noise value and interval are those of output error.
+/// Without process noise, estimate and interval agree with output error.
 #[test]
 fn a_calm_record_has_the_answer_of_output_error() {
     let method = Settings { moment: MomentChoice::None, ..Settings::default() }.build().expect("valid");
@@ -97,7 +97,7 @@ fn a_calm_record_has_the_answer_of_output_error() {
     }
 }
 
-/// Slopes of the two likelihoods against their differences, for two records that share the ship.
+/// Comparison of the slopes of both likelihoods with their differences, for two records of one ship.
 #[test]
 fn the_score_is_the_derivative() {
     let gyro = |trial: &Trial| {
@@ -115,11 +115,11 @@ fn the_score_is_the_derivative() {
         let a = 0.063;
         let point = evaluate(&records, a, &vectors).expect("a fit");
         let linearised = linearise(&records, &point).expect("a fit");
-        // By 1/T: the likelihood with everything else at its best.
+        // With respect to 1/T: the likelihood with all other unknowns at their optimum.
         let height = |a: f64| evaluate(&records, a, &vectors).expect("a fit").deviance;
         let numeric = 0.5 * (height(a + 1e-6) - height(a - 1e-6)) / 2e-6;
-        // The sizes of the compass errors, and with them how much each record counts, are those of the restricted
-        // likelihood: the two differ by what was fitted.
+        // The sizes of the compass errors, and so the weights of the records, come from the restricted likelihood: the
+        // two differ by the fitted unknowns.
         assert_relative_eq!(linearised.score[0], numeric, max_relative = 0.05);
         let mut at = 3;
         for number in 0..2 {
@@ -137,7 +137,7 @@ fn the_score_is_the_derivative() {
     }
 }
 
-/// Under a moment that walks the errors are far below those of output error, and the intervals hold.
+/// Under a random-walk moment the errors are far below the errors of output error, and the intervals contain the truth.
 #[test]
 fn a_walking_moment_leaves_smaller_errors() {
     let plain = output_error::Settings::default().build().expect("valid");
@@ -151,11 +151,11 @@ fn a_walking_moment_leaves_smaller_errors() {
         nearest += (plain.identify(&[trial]).expect("an answer").T().value - 16.3).powi(2);
     }
     assert!(likely < 0.65_f64.powi(2) * nearest, "{likely} against {nearest}");
-    // Of 40 intervals of 95 % fewer than 33 hold once in 3000 times.
+    // Fewer than 33 of 40 intervals of 95 % contain the truth once in 3000 times.
     assert!(held >= 33, "{held}");
 }
 
-/// A rudder error that is declared is taken into account: intervals widen and hold.
+/// A declared rudder error is included: intervals are wider and contain the truth.
 #[test]
 fn a_declared_rudder_error_counts() {
     let (mut held, mut estimated_well) = (0, 0);
@@ -173,7 +173,7 @@ fn a_declared_rudder_error_counts() {
     assert!(estimated_well >= 30, "{estimated_well}");
 }
 
-/// A spike, a sentinel and a jump are found, listed, and do no harm.
+/// A spike, a sentinel and a jump are found and listed, and do not bias the estimate.
 #[test]
 fn outliers_are_left_out_and_listed() {
     let clean = noisy().trial();
@@ -203,7 +203,7 @@ fn outliers_are_left_out_and_listed() {
     assert_eq!(raw.identify(&[trial]).expect("an answer").diagnostic("left_out"), Some(0.0));
 }
 
-/// A compass error with a memory is named, and intervals are wider than those of a white one.
+/// A correlated compass error is reported, and intervals are wider than for a white error.
 #[test]
 fn a_coloured_compass_is_named() {
     let truth = noisy().truth();
@@ -222,7 +222,7 @@ fn a_coloured_compass_is_named() {
     assert!(estimate.warnings.iter().any(|warning| warning.text.contains("compass error")), "{:?}", estimate.warnings);
 }
 
-/// Bounds under a small walk are those of a calm, and wider under a large walk; a gyro narrows them.
+/// Bounds under a small walk equal the bounds in a calm, and are wider under a large walk; a gyro narrows them.
 #[test]
 fn the_bound_knows_the_noise() {
     let case = noisy();

@@ -11,7 +11,7 @@ fn method() -> OutputError {
     Settings::default().build().expect("default settings are valid")
 }
 
-/// A record whose heading is exactly the response to its own rudder.
+/// Record whose heading is exactly the response to the recorded rudder.
 fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64) -> Trial {
     let rudder = Case { samples: rows, period_s: period, start: Start::Rest, ..Case::default() }.truth().rudder;
     let time: Vec<f64> = (0..rows).map(|k| 5.0 + k as f64 * period).collect();
@@ -38,8 +38,8 @@ fn recovers_ships_of_either_stability_to_rounding() {
     }
 }
 
-/// The rudder rests or moves at one rate, so its corners are known where two rows of every stroke are: the only error
-/// left is that of the arithmetic. A rudder that is linear from row to row would be wrong by 0.02 % of K at 1 s.
+/// The rudder rests or moves at one rate, so its corners follow from two rows of every stroke: the only remaining error
+/// is rounding. A rudder that is linear from row to row would give an error of 0.02 % in K at 1 s.
 #[test]
 fn corners_of_the_rudder_between_rows_leave_no_bias() {
     for (rudder_deg, heading_deg, period_s) in
@@ -86,7 +86,7 @@ fn no_start_beats_the_scan() {
     }
 }
 
-/// A heading that swings by itself, at another frequency than the rudder: no K can be read off it.
+/// A heading that oscillates by itself, at a frequency other than that of the rudder, gives no K.
 #[test]
 fn a_heading_that_does_not_answer_the_rudder_is_refused() {
     let steered = Case { start: Start::Rest, ..Case::default() }.trial();
@@ -97,7 +97,7 @@ fn a_heading_that_does_not_answer_the_rudder_is_refused() {
 }
 
 /// Twenty seconds in much noise: the best fit may be a T of a hundredth of a second, whose information is singular to
-/// rounding. It must not come with intervals of no width.
+/// rounding. It must not have intervals of zero width.
 #[test]
 fn what_rounding_decides_is_refused() {
     let mut refused = 0;
@@ -114,8 +114,8 @@ fn what_rounding_decides_is_refused() {
     assert!(refused > 0);
 }
 
-/// A rudder of which nothing but the sign is wrong is no course-unstable ship with a T of no time at all: the refusal
-/// tells the best fit, to within a step of the scan (33 %).
+/// A rudder with only the sign wrong is not a course-unstable ship with a vanishing T: the refusal gives the best fit
+/// to within a step of the scan (33 %).
 #[test]
 fn a_rudder_of_the_wrong_sign_is_refused() {
     for case in [
@@ -133,8 +133,8 @@ fn a_rudder_of_the_wrong_sign_is_refused() {
     }
 }
 
-/// Both methods have the same answer for white noise and the same sandwich: on few rows the correction for the degrees
-/// of freedom counts.
+/// Both methods have equal estimates for white noise and equal sandwich covariances: on few rows the correction for the
+/// degrees of freedom counts.
 #[test]
 fn the_robust_covariance_is_that_of_the_instrumental_variables() {
     let trial = [Case { samples: 15, period_s: 8.0, noise_deg: 0.2, ..Case::default() }.trial()];
@@ -146,7 +146,8 @@ fn the_robust_covariance_is_that_of_the_instrumental_variables() {
     }
 }
 
-/// A ship that answers faster than the search goes: the end of the search is no answer, and must not look like one.
+/// A ship that responds faster than the range of the search: the end of the search is not an estimate, and must not
+/// look like one.
 #[test]
 fn a_time_constant_at_the_end_of_the_search_says_so() {
     let bounded = |smallest| Settings { smallest_time_constant_s: Some(smallest), ..Settings::default() };

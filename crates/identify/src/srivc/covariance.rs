@@ -1,5 +1,5 @@
-//! Covariance of the estimate: that of refined instrumental variables for a white residual (Young and Jakeman 1980),
-//! and the sandwich of Newey and West (1987) for a coloured residual.
+//! Covariance of the estimate: of refined instrumental variables for a white residual (Young and Jakeman 1980), and the
+//! sandwich of Newey and West (1987) for a coloured residual.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,7 +17,7 @@ pub(super) struct Residuals {
     pub total: f64,
     /// Correlation of neighbouring residuals.
     pub lag1: f64,
-    /// Residuals less unknowns: three shared unknowns and two per record.
+    /// Number of residuals minus unknowns: three shared unknowns and two per record.
     pub degrees_of_freedom: f64,
     /// Covariance of the shared unknowns for a white residual e, σ² (Z̃ᵀZ̃)⁻¹.
     pub white: Matrix3<f64>,
@@ -27,7 +27,7 @@ pub(super) struct Residuals {
 }
 
 impl Residuals {
-    /// Filters every record with the final estimate.
+    /// Residuals and covariance from every record, filtered with the final estimate.
     ///
     /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
     pub fn new(records: &[Record], point: &Point, blocks: &[NormalEquations]) -> Option<Self> {

@@ -1,13 +1,13 @@
-//! The state-variable filters 1/(s (s + â)) run over a record, and the resulting normal equations, in a single pass
-//! without storage by row; the two unknowns of the initial state of a record are eliminated. Source: Garnier and Wang
-//! (2008), Identification of Continuous-time Models from Sampled Data, chapter 4.
+//! State-variable filters 1/(s (s + â)) run over a record, and the resulting normal equations, in a single pass without
+//! storage by row; the two unknowns of the initial state of a record are eliminated. Source: Garnier and Wang (2008),
+//! Identification of Continuous-time Models from Sampled Data, chapter 4.
 
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
 use ship::first_order::{State, TangentTransition};
 
 use super::record::{FilterRow, Record};
 
-/// The unknowns that all records share; linear in the regression but for the filter.
+/// Unknowns that all records share; linear in the regression except for the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shared {
     /// a = 1/T, 1/s.
@@ -18,7 +18,7 @@ pub(super) struct Shared {
     pub bias: f64,
 }
 
-/// A point of the iteration: the shared unknowns and the state at the first row of each record.
+/// Point of the iteration: the shared unknowns and the state at the first row of each record.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Point {
     pub shared: Shared,
@@ -26,7 +26,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// The point that lies at `share` of the way to another.
+    /// Point at `share` of the way to another point.
     pub fn towards(&self, other: &Self, share: f64) -> Self {
         let between = |from: f64, to: f64| from + share * (to - from);
         let (from, to) = (&self.shared, &other.shared);
@@ -39,12 +39,12 @@ impl Point {
     }
 }
 
-/// The filters of one record, at one row.
+/// Filters of one record, at one row.
 ///
 /// With F = 1/(s (s + â)) and lp = 1/(s + â), the signals are F 1/s = φ₂(t) and its derivative φ₁(t) in `unit`, F δ in
 /// `steered`, lp ψ in `lagged`, all exact for a rudder and a heading that are linear between rows; and the noise-free
 /// heading x of `shared` with ∂x/∂a in `motion` and `sensitivity`. Since (s + a) ∂x/∂a = −(x − x(0)), the sensitivity
-/// is the noise-free twin of −lp (ψ − ψ(0)): the instrument.
+/// is the noise-free counterpart of −lp (ψ − ψ(0)): the instrument.
 pub(super) struct Filters {
     shared: Shared,
     transition: TangentTransition,
@@ -85,7 +85,7 @@ impl Filters {
         }
     }
 
-    /// Advances the filters from the row `before` to `row`.
+    /// Steps the filters from the row `before` to `row`.
     #[inline]
     fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;
@@ -105,13 +105,13 @@ impl Filters {
         self.motion = exact.advance(self.motion, force, b * slope);
     }
 
-    /// The instruments of this row: ∂x/∂a, F δ, F 1/s, and the two of the initial state, 1 and φ₁.
+    /// Instruments of this row: ∂x/∂a, F δ, F 1/s, and the two instruments of the initial state, 1 and φ₁.
     #[inline]
     pub fn instruments(&self) -> SVector<f64, 5> {
         self.with_first(self.sensitivity.heading)
     }
 
-    /// The regressors: the same with the measured −lp ψ in place of its noise-free twin.
+    /// Regressors: the instruments with the measured −lp ψ in place of its noise-free counterpart.
     #[inline]
     fn regressors(&self) -> SVector<f64, 5> {
         self.with_first(-self.lagged)
@@ -126,7 +126,7 @@ impl Filters {
 /// Columns on the left of the normal equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Left {
-    /// The regressors themselves: least squares.
+    /// Regressors: least squares.
     Regressors,
     /// Noise-free instruments.
     Instruments,

@@ -1,21 +1,21 @@
 //! Simplified refined instrumental variables for continuous time (SRIVC), with rudder bias and initial state.
 //!
-//! The ship is ψ'' + a ψ' = b (δ + δ_r) with a = 1/T, b = K/T, and the heading is read with white noise. Divided by s
-//! (s + â), the equation has no derivative,
+//! The ship is ψ'' + a ψ' = b (δ + δ_r) with a = 1/T, b = K/T, and the heading is measured with white noise. Divided by
+//! s (s + â), the equation has no derivative,
 //!
 //! ψ = −(a − â) lp ψ + b F δ + b δ_r F 1/s + ψ₀ + (r₀ + (a − â) ψ₀) φ₁,  F = 1/(s (s + â)),  lp = 1/(s + â),
 //!
-//! and is linear in its unknowns. lp ψ is noisy, so an instrument takes its place on the left of the normal equations:
-//! the same filter over the heading simulated with the last estimate. Then â is set to the new a, until it converges.
+//! and is linear in its unknowns. lp ψ is noisy, so an instrument replaces it on the left of the normal equations: the
+//! filtered heading simulated with the last estimate. Then â is set to the new a, until it converges.
 //!
-//! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the straight line drawn between
-//! its samples biases the answer; the instruments are the gradient of the simulated heading, so the answer is a
-//! stationary point of the output error and efficient for white noise. Without noise the equation holds for any â. And
-//! a wrong noise model costs efficiency, not consistency, as long as the noise does not steer.
+//! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the linear interpolation
+//! between its samples biases the estimate; the instruments are the gradient of the simulated heading, so the estimate
+//! is a stationary point of the output error and efficient for white noise. Without noise the equation holds for any â.
+//! And a wrong noise model costs efficiency, not consistency, as long as the noise does not affect the rudder.
 //!
-//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is that
-//! of motion integrated twice, solved by least squares. For a < 0 the filters would grow; such a record is filtered
-//! backwards in time, which turns a into −a and keeps the rest of the equation.
+//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is the
+//! equation of motion integrated twice, solved by least squares. For a < 0 the filters would grow; such a record is
+//! filtered backwards in time, which turns a into −a and keeps the rest of the equation.
 //!
 //! Sources: Young and Jakeman (1980), refined instrumental variables part III; Garnier and Wang (2008), chapter 4;
 //! equivalence to the output error at the fixed point: Pan, González, Welsh and Rojas (2020).
@@ -43,20 +43,20 @@ use covariance::Residuals;
 use filter::{Left, NormalEquations, Point, Shared};
 use record::Record;
 
-/// Headings that a trial needs: twice its unknowns.
+/// Minimum number of headings of a trial: twice its unknowns.
 const MIN_ROWS: usize = 10;
 
-/// Minimum share of a step that is taken when the iteration oscillates.
+/// Minimum share of a step in an oscillating iteration.
 const MIN_STEP_SHARE: f64 = 0.05;
 
 /// Settings of the method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
-    /// Iterations after the start before the method gives up.
+    /// Maximum number of iterations after the start.
     pub max_iterations: usize,
-    /// Change of the simulated heading in one iteration at which the method has settled, as a share of the heading that
-    /// the rudder explains. Not of the parameters: a ship with 1/T = 0 and a poorly determined K have no scale.
+    /// Maximum change of the simulated heading in a converged iteration, as a share of the heading explained by the
+    /// rudder. Parameters are not compared: a ship with 1/T = 0 and a poorly determined K have no scale.
     pub relative_step: f64,
     /// Maximum accepted condition number of the scaled instruments, initial states eliminated.
     pub condition_limit: f64,
@@ -69,9 +69,9 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Checks the settings.
+    /// Method with these settings, which are checked.
     ///
-    /// Fails if there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the
+    /// Fails if the number of iterations is zero or above a thousand, the step is not within 1e-12 and 0.1, or the
     /// condition limit is not above 1.
     pub fn build(self) -> Result<Srivc, SettingsError> {
         check_iterations("max-iterations", self.max_iterations)?;
@@ -82,7 +82,7 @@ impl Settings {
     }
 }
 
-/// Simplified refined instrumental variables for continuous time; see the [module](self).
+/// Method of simplified refined instrumental variables for continuous time; see the [module](self).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Srivc {
     settings: Settings,
@@ -105,7 +105,7 @@ impl Identifier for Srivc {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        // The checks that all methods share.
+        // Checks that all methods share.
         Samples::from_trials(trials, MIN_ROWS)?;
         let mut records: Vec<Record> = trials.iter().map(Record::new).collect();
         let mut start = self.integral_least_squares(&records)?;
@@ -159,18 +159,18 @@ impl Identifier for Srivc {
 }
 
 impl Srivc {
-    /// The start: filters with their pole at 0 and the regressors as instruments.
+    /// Start of the iteration: filters with their pole at 0 and the regressors as instruments.
     fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
         let zero =
             Point { shared: Shared { a: 0.0, b: 0.0, bias: 0.0 }, starts: vec![State::default(); records.len()] };
         self.solve(records, &zero, Left::Regressors)
     }
 
-    /// Iterates to the fixed point; returns the number of iterations as well.
+    /// Iterates to the fixed point; also returns the number of iterations.
     ///
     /// With a large deterministic residual, as after a rudder put over between two rows, full steps oscillate about the
-    /// fixed point and decay slowly or not at all. From the first reversal that exceeds half the step before, steps are
-    /// shortened by their secant in a (Irons and Tuck 1969).
+    /// fixed point and decay slowly or not at all. After the first reversal that exceeds half of the previous step,
+    /// steps are shortened by their secant in a (Irons and Tuck 1969).
     fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
         let mut solution = start;
         let mut step = f64::INFINITY;
@@ -199,7 +199,7 @@ impl Srivc {
         Err(IdentifyError::NotConverged { iterations: self.settings.max_iterations, step })
     }
 
-    /// One pass over all records and the solution of their common normal equations.
+    /// Solution of the common normal equations after one pass over all records.
     fn solve(&self, records: &[Record], at: &Point, left: Left) -> Result<Solution, IdentifyError> {
         let limit = self.settings.condition_limit;
         let singular = |condition| IdentifyError::Singular { condition, limit };
@@ -220,7 +220,7 @@ impl Srivc {
         }
         let spread = correlation.symmetric_eigenvalues();
         let condition = (spread.max() / spread.min()).sqrt();
-        // NaN: the smallest eigenvalue is negative by rounding.
+        // NaN if the smallest eigenvalue is negative by rounding.
         if condition.is_nan() || condition > limit {
             return Err(singular(if condition.is_nan() { f64::INFINITY } else { condition }));
         }

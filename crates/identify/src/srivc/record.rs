@@ -2,28 +2,28 @@
 
 use trial::Trial;
 
-/// Relative tolerance of equal intervals: rows at 0.1 s differ in the last bits of their time, and every different
-/// interval needs new filter coefficients.
+/// Relative tolerance of equal intervals: rows at 0.1 s differ in the last bits of their time, and every new interval
+/// requires new filter coefficients.
 const INTERVAL_TOLERANCE: f64 = 1e-9;
 
-/// One row of a record.
+/// Row of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FilterRow {
     /// Time since the row before, s; unused in the first row.
     pub interval: f64,
     /// Rudder δ, rad.
     pub rudder: f64,
-    /// Heading from the first row, rad; interpolated where it was not observed.
+    /// Heading relative to the first row, rad; interpolated if it was not observed.
     pub heading: f64,
     /// `true` if the heading was observed.
     pub observed: bool,
 }
 
-/// The rows of a trial between its first and last observed heading, those without a heading included, and a row without
-/// a heading for every corner of the rudder between two of them.
+/// Rows of a trial from the first to the last observed heading, including rows without a heading, and one row without a
+/// heading for every corner of the rudder between rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Record {
-    /// The rows, in the order in which the filters run.
+    /// Rows, in the order in which the filters run.
     pub rows: Vec<FilterRow>,
     /// Number of observed headings.
     pub observed: usize,
@@ -74,9 +74,9 @@ impl Record {
         Self { rows, observed }
     }
 
-    /// The same record with time running backwards: ψ'' + a ψ' = b (δ + δ_r) keeps b and δ_r and turns a into −a.
+    /// Record with time running backwards: ψ'' + a ψ' = b (δ + δ_r) keeps b and δ_r and turns a into −a.
     pub fn reversed(&self) -> Self {
-        // The interval before a row is the one after it in the new order.
+        // The interval before a row is the interval after it in the new order.
         let intervals = std::iter::once(0.0).chain(self.rows[1..].iter().rev().map(|row| row.interval));
         let rows =
             self.rows.iter().rev().zip(intervals).map(|(row, interval)| FilterRow { interval, ..*row }).collect();

@@ -17,7 +17,7 @@ fn srivc() -> Srivc {
     Settings::default().build().expect("the defaults are valid")
 }
 
-/// The steering of `case`, repeated exactly by `ship` from a turning start.
+/// Exact motion of `ship` under the steering of `case`, from a turning start.
 fn exact(case: &Case, ship: &FirstOrder) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let truth = case.truth();
     let start = State { heading: 0.3, yaw_rate: from_deg(0.4) };
@@ -71,14 +71,14 @@ fn cramer_rao(case: &Case, sigma: f64) -> [f64; 2] {
     [K, T].map(|index| index.sd.expect("a bound") / index.value)
 }
 
-/// Answers over 2000 records that differ by their noise; K and T relative to the truth.
+/// Estimates over 2000 records that differ in noise; K and T relative to the truth.
 #[derive(Default)]
 struct Spread {
     value: [Vec<f64>; 2],
     least_squares: [Vec<f64>; 2],
     quoted: [Vec<f64>; 2],
     robust: [Vec<f64>; 2],
-    /// Share of the 95 % intervals of K, T and δ_r that hold the truth.
+    /// Share of the 95 % intervals of K, T and δ_r that contain the truth.
     covered: [f64; 3],
 }
 
@@ -133,7 +133,8 @@ fn exact_without_noise_for_every_zig_zag_start_and_sampling() {
     }
 }
 
-/// 2000 records: chance moves the scatter by 1.6 %, the coverage by 0.5 % and the mean by 0.02 standard deviations.
+/// With 2000 records the standard error is 1.6 % of the scatter, 0.5 % of the coverage and 0.02 standard deviations of
+/// the mean.
 #[test]
 fn efficient_and_honest_under_white_noise() {
     for noise_deg in [0.1, 0.5, 2.0] {
@@ -153,9 +154,9 @@ fn efficient_and_honest_under_white_noise() {
     }
 }
 
-/// Noise with a correlation time of ten samples, 1 deg. The filters are the true ones for the least squares too: what
-/// differs is the instrument. The quoted errors are the robust ones, because the residual shows its colour; they lack
-/// some 15 %, as Bartlett weights do where the noise is nearly as slow as the ship.
+/// Noise with a correlation time of ten samples, 1 deg. The filters are true for the least squares too: only the
+/// instrument differs. The reported errors are the robust errors, because the residual is coloured; they are some 15 %
+/// too small, as Bartlett weights are if the noise is nearly as slow as the ship.
 #[test]
 fn consistent_under_coloured_noise_where_least_squares_is_not() {
     let case = Case { samples: 1001, noise_deg: 1.0, ..Case::default() };
@@ -208,8 +209,8 @@ fn either_direction_of_time_gives_the_same_answer() {
     assert_relative_eq!(forwards.bias, backwards.bias, max_relative = 1e-6, epsilon = 1e-10);
 }
 
-/// A rudder put over between two rows leaves a residual of degrees, about which whole steps sway; the fixed point is
-/// that of the output error all the same.
+/// A rudder put over between two rows leaves a residual of degrees, about which full steps oscillate; the fixed point
+/// is still that of the output error.
 #[test]
 fn settles_where_whole_steps_sway() {
     for (K, T, period_s, seed) in [(0.08, 147.0, 20.7, 0), (0.16, 48.0, 6.75, 1), (0.073, 81.6, 5.9, 2)] {
@@ -246,12 +247,12 @@ fn refuses_what_cannot_be_identified() {
     let short = Case { samples: 9, ..Case::default() }.trial();
     assert_eq!(kind(short), "too-few-samples");
 
-    // A rudder of which nothing but the sign is wrong turns the ship the other way.
+    // A rudder with only the sign wrong turns the ship to the opposite side.
     let case = Case::default().truth();
     let opposite = case.rudder.iter().map(|delta| -delta).collect();
     assert_eq!(kind(record("sign", case.time, case.heading, opposite)), "not-a-ship");
 
-    // In a steady turn K and δ_r act alike; only the last interval tells them apart.
+    // In a steady turn K and δ_r act alike; only the last interval separates them.
     let mut rudder = vec![from_deg(10.0); 100];
     rudder[99] = from_deg(8.0);
     let turn = steered(&Case::default().ship(), State::default(), &time, &rudder);

@@ -1,4 +1,5 @@
-//! Records for the form of MSC/Circ.1053: the manoeuvre of the form that a record is, and its figures.
+//! Records for the form of MSC/Circ.1053: classification of a record as a manoeuvre of the form, and its
+//! characteristics.
 
 use ship::{Particulars, angle::to_deg};
 use simulate::motion::Current;
@@ -10,20 +11,20 @@ use crate::helm_replay;
 use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TOLERANCE, TWENTY};
 use crate::turn::{self, HeldTurn};
 
-/// Maximum yaw rate of a straight approach, relative to the largest of the record.
+/// Maximum yaw rate of a straight approach, relative to the maximum yaw rate of the record.
 const MAX_STRAIGHT_RATE: f64 = 0.05;
 
-/// Rows needed for the yaw rate of an approach to a circle.
+/// Minimum number of rows for the yaw rate of an approach to a circle.
 const MIN_APPROACH_ROWS: usize = 3;
 
-/// A record with its correction to full load.
+/// Record with its correction to full load.
 #[derive(Debug, Clone, Copy)]
 pub struct FormRecord<'a> {
-    /// The record.
+    /// Record.
     pub trial: &'a Trial,
-    /// Its correction, where a model of its condition was given.
+    /// Correction, if a model of the condition was given.
     pub correction: Option<&'a Correction>,
-    /// The current that was removed from its positions.
+    /// Current that was removed from the positions.
     pub current: Option<Current>,
 }
 
@@ -34,24 +35,24 @@ impl FormRecord<'_> {
     }
 }
 
-/// A record with its manoeuvre of the form, figures and remark.
+/// Record with its manoeuvre of the form, characteristics and remark.
 pub(crate) struct TestedManoeuvre<'a> {
     pub record: FormRecord<'a>,
-    /// The manoeuvre with its side, where it is one of the form.
+    /// Manoeuvre and side; `None` if it is not a manoeuvre of the form.
     pub what: Option<(FormManoeuvre, &'static str)>,
-    /// Figures that it shows.
+    /// Characteristics that the record shows.
     pub figures: Vec<(&'static str, Quantity)>,
-    /// Reason why it is not a manoeuvre of the form, or a remark on it.
+    /// Reason why the record is not a manoeuvre of the form, or a remark.
     pub remark: Option<String>,
 }
 
-/// Manoeuvre and side, figures and remark of a record, or the reason why it is not a manoeuvre of the form.
+/// Manoeuvre and side, characteristics and remark of a record, or the reason why it is not a manoeuvre of the form.
 type Classified = Result<((FormManoeuvre, &'static str), Vec<(&'static str, Quantity)>, Option<String>), String>;
 
 impl<'a> TestedManoeuvre<'a> {
-    /// The record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from
-    /// a straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of
-    /// the largest or below three times its error.
+    /// Record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from a
+    /// straight course: the rudder amidships, and, if the approach is recorded, a yaw rate below a twentieth of the
+    /// maximum or below three times its error.
     pub fn of(record: &FormRecord<'a>) -> Self {
         let classified = match Measured::of(record.trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record.trial, &zigzag),
@@ -64,18 +65,18 @@ impl<'a> TestedManoeuvre<'a> {
         }
     }
 
-    /// `true` if it is this manoeuvre to this side.
+    /// `true` if the record is of this manoeuvre to this side.
     pub fn is(&self, manoeuvre: FormManoeuvre, side: &str) -> bool {
         self.what.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
     }
 
-    /// A figure that it shows.
+    /// Characteristic of the record, by name.
     pub fn figure(&self, name: &str) -> Option<Quantity> {
         self.figures.iter().find(|(figure, _)| *figure == name).map(|(_, value)| *value)
     }
 }
 
-/// The side of a sign.
+/// Name of the side of a sign.
 fn side(sign: f64) -> &'static str {
     if sign < 0.0 { "port" } else { "starboard" }
 }
@@ -98,7 +99,7 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
         let before = to_deg(begin.rudder_before);
         return Err(format!("the {manoeuvre} begins with the rudder at {before:.1}°, not from a straight course"));
     }
-    // A slope from the few headings after a first execute is not that of the approach.
+    // A slope from the few headings after a first execute is not the yaw rate of the approach.
     let is_seen = zigzag.base_course.source == BaseCourseSource::Approach;
     if let (true, Some(rate), Some(largest)) = (is_seen, begin.yaw_rate, zigzag.largest_yaw_rate) {
         let allowed = (MAX_STRAIGHT_RATE * largest.value).max(3.0 * rate.sd.unwrap_or(0.0));

@@ -10,7 +10,7 @@ use super::record::TestedManoeuvre;
 use crate::imo::{CIRCLE, TEN, TWENTY};
 use crate::replay::file_of;
 
-/// The remarks, in order of relevance.
+/// Remarks, in order of relevance.
 pub(crate) fn remarks(
     tested: &[TestedManoeuvre],
     declared: Option<(&str, &Conditions)>,

@@ -1,4 +1,4 @@
-//! Names right of the frame, in place of a key: as near to what they name as they can stand without touching.
+//! Names right of the frame, in place of a key: as near to their layers as possible without touching.
 
 use plotters::style::text_anchor::HPos;
 
@@ -18,7 +18,7 @@ fn text(layer: &Layer, theme: &Theme) -> TextLine {
     TextLine { bold: true, colour: layer.colour(), ..TextLine::new(name, theme.small_font, HPos::Left) }
 }
 
-/// Width of the names with what keeps them clear of the frame, points.
+/// Width of the names with the gap to the frame, points.
 pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
     let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
     let named = layers.filter(|layer| data.names_aside && layer.name.is_some());
@@ -26,7 +26,7 @@ pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
     widths.reduce(f64::max).map_or(0.0, |width| width + GAP * theme.small_font)
 }
 
-/// Where a name points: the rightmost point of its layer in the frame; one without bound is at the edge.
+/// Anchor of a name: the rightmost point of its layer in the frame; an infinite value is at the edge.
 fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     let place = |(x, y): (f64, f64)| match y.is_infinite() {
         true => Some((chart.across(x)?, chart.rect.y)),
@@ -35,8 +35,8 @@ fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Writes the names right of the last panel of every row of `count`; returns those without a point in the frame, with
-/// their numbers.
+/// Writes the names right of the last panel of every row of `count`; returns the names without a point in the frame,
+/// with their numbers.
 pub(super) fn of_stack(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme) -> Plotted<Vec<String>> {
     let symbol = |title: &str| title.split(" [").next().unwrap_or_default().replace(is_markup, "");
     let across = stack.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
@@ -53,7 +53,7 @@ pub(super) fn of_stack(charts: &[Chart], stack: &Stack, count: usize, theme: &Th
     Ok(outside)
 }
 
-/// Writes the names of a panel; returns the layers that have no point in the frame.
+/// Writes the names of a panel; returns the layers without a point in the frame.
 fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Plotted<Vec<&'a Layer>> {
     let (named, outside): (Vec<_>, Vec<_>) = layers
         .iter()
@@ -76,7 +76,7 @@ fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Plotted<Vec<&
     Ok(outside.into_iter().map(|(layer, _)| layer).collect())
 }
 
-/// Middles of labels of one height, clear of each other and as near as may be to the wanted ones, which are in order.
+/// Middles of labels of one height, without overlap and as near as possible to the wanted ones, which are in order.
 fn spread(wanted: &[f64], height: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
     let mut free = top;
     let mut tops: Vec<f64> = Vec::with_capacity(wanted.len());

@@ -20,37 +20,37 @@ use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
 use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
 use crate::theme::Theme;
 
-/// What stands in a cell.
+/// Content of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MapCell {
-    /// The value; `None` is "not defined".
+    /// Value; `None` is "not defined".
     pub value: Option<f64>,
-    /// Its 95 % interval, written where there is room.
+    /// 95 % interval of the value, written if there is room.
     pub interval: Option<[f64; 2]>,
-    /// How the cell is outlined, where it is.
+    /// Outline of the cell, if it has one.
     pub outline: Option<Outline>,
 }
 
-/// Why a cell is outlined.
+/// Reason of an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outline {
-    /// A number belongs here: a solid line.
+    /// Correct cell: a solid line.
     Right,
-    /// A number may stand here too: a dotted line.
+    /// Cell that is also acceptable: a dotted line.
     Alias,
 }
 
-/// How values become colours.
+/// Mapping from values to colours.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shades {
-    /// Colours from the lowest to the highest value over an axis that is divided so; a bar under the panels says what
-    /// they are, with unit.
+    /// Colours from the lowest to the highest value over an axis of this division; a bar under the panels shows the
+    /// values, with this title and unit.
     Range(Division, String),
-    /// Per cent from white to blue; what is never is empty.
+    /// Per cent from white to blue; zero is empty.
     Shares,
 }
 
-/// What [`super::Plot::Cells`] draws.
+/// Data of [`super::Plot::Cells`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellMap {
     /// Titles of the horizontal and of the vertical axis.
@@ -59,18 +59,19 @@ pub struct CellMap {
     pub columns: Vec<String>,
     /// Names of the rows from the top.
     pub rows: Vec<String>,
-    /// How values become colours.
+    /// Mapping from values to colours.
     pub shades: Shades,
-    /// Panels with their heads: cells, one list a row.
+    /// Panels with their heads: cells, one list per row.
     pub panels: Vec<(Option<String>, Vec<Vec<MapCell>>)>,
-    /// A remark under the figure.
+    /// Remark under the figure.
     pub note: Option<String>,
 }
 
-/// Minimum type that can be read, points.
+/// Minimum legible font size, points.
 const MIN_FONT_PT: f64 = 6.5;
 
-/// Height that the rows of a wide figure take, as a share of its width, by being higher, up to so many times as high.
+/// Minimum height of all rows of a wide figure, as a share of its width, and maximum factor by which rows grow to reach
+/// it.
 const HEIGHT: f64 = 0.28;
 const SPREAD: f64 = 1.6;
 
@@ -83,7 +84,7 @@ impl CellMap {
         self.shades == Shades::Shares
     }
 
-    /// `true` if intervals stand below the values.
+    /// `true` if intervals are written below the values.
     fn has_intervals(&self, theme: &Theme) -> bool {
         self.is_shares() && !theme.is_narrow() && self.all().any(|cell| bracket(cell).is_some())
     }
@@ -102,7 +103,7 @@ impl CellMap {
         if theme.is_narrow() { usual } else { usual.max(higher) }
     }
 
-    /// Panels side by side: three, or as many as leave room for the numbers in the cells.
+    /// Number of panels side by side: three, or as many as leave room for the numbers in the cells.
     fn across(&self, theme: &Theme) -> usize {
         let widest = |labels: &[String], font: f64| {
             labels.iter().map(|label| text_width(label, font, false)).fold(0.0, f64::max)
@@ -120,13 +121,13 @@ impl CellMap {
     }
 }
 
-/// Draws the panels in rows of as many as fit.
+/// Drawing of the panels, in rows of as many as fit.
 pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>())?;
-    // The frame stands at the edges of the cells.
+    // The frame is at the edges of the cells.
     let column = AxisSide::new(Axis::columns(&data.columns), data.titles[0].as_str());
     let row = AxisSide::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
     let height = data.rows.len().max(1) as f64 * data.pitch(theme);
@@ -151,10 +152,10 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Dra
     Ok(sheet.finish())
 }
 
-/// Pieces of the bar of colours.
+/// Number of pieces of the colour bar.
 const PIECES: usize = 64;
 
-/// The colours with their values, under the panels; nothing if there is one value, or none.
+/// Draws the colour bar with its values under the panels; no bar for one value or none.
 fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Plotted {
     if shading.high <= shading.low {
         return Ok(());
@@ -170,7 +171,7 @@ fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) ->
     let grid = Grid { columns: vec![AxisSide::new(axis, title)], rows, ..Grid::default() };
     let piece = |number: usize| {
         let at = |share: f64| value(shading.low + share / PIECES as f64 * (shading.high - shading.low));
-        // Each lies over the end of the one before: edges side by side would let the paper through.
+        // Each piece overlaps the end of the one before: edges side by side would let the paper through.
         let corners = [(at(number as f64), -0.5), (high, 0.5)];
         Rectangle::new(corners, shading.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
@@ -181,12 +182,12 @@ fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) ->
     Ok(())
 }
 
-/// A value as it stands in a cell.
+/// Text of a value in a cell.
 fn written(cell: &MapCell) -> String {
     cell.value.map_or_else(|| MISSING.to_owned(), |value| significant(value, 2))
 }
 
-/// From values to colours.
+/// Mapping from values to colours.
 struct Shading {
     low: f64,
     high: f64,
@@ -203,7 +204,7 @@ impl Shading {
         Self { low, high, is_log, is_shares }
     }
 
-    /// Colour of a value and how dense it is; the lowest for a zero on an axis of equal factors.
+    /// Colour of a value and its opacity; the lowest colour for a zero on an axis of equal factors.
     fn colour(&self, value: f64) -> (RGBColor, f64) {
         if self.is_shares {
             let share = (value / 100.0).clamp(0.0, 1.0);
@@ -216,13 +217,13 @@ impl Shading {
     }
 }
 
-/// The interval of a share of the trials that is not none.
+/// Interval as text, for a share of the trials above zero.
 fn bracket(cell: &MapCell) -> Option<String> {
     let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|value| value > 0.0))?;
     Some(format!("{low:.0}–{high:.0}"))
 }
 
-/// A cell at its column and row.
+/// Cell at its column and row.
 struct PlacedCell<'a> {
     cell: MapCell,
     x: f64,
@@ -236,7 +237,7 @@ impl PlacedCell<'_> {
         self.cell.value.map_or((GRID, 1.0), |value| self.shading.colour(value))
     }
 
-    /// Its colour, and hairs between it and its neighbours where most cells are white.
+    /// Fills the cell, with thin lines to its neighbours if most cells are white.
     fn shade(&self, chart: &Chart) -> Plotted {
         let (colour, opacity) = self.colour();
         let [left, right, top, bottom] = [self.x - 0.5, self.x + 0.5, self.y - 0.5, self.y + 0.5];
@@ -247,7 +248,7 @@ impl PlacedCell<'_> {
         if self.shading.is_shares { chart.line(None, hairs, hair) } else { Ok(()) }
     }
 
-    /// Its numbers, and its outline over the hairs of its neighbours.
+    /// Writes the numbers of the cell, and its outline over the thin lines of its neighbours.
     fn label(&self, chart: &Chart) -> Plotted {
         let (theme, is_shares) = (self.theme, self.shading.is_shares);
         let corner = |side: f64| chart.place(self.x + side, self.y + side);
@@ -259,13 +260,13 @@ impl PlacedCell<'_> {
             chart.canvas.outline(Rect { x: left + inset, y: top + inset, w, h }, stroke)?;
         }
         let (RGBColor(r, g, b), opacity) = self.colour();
-        // Relative luminance (ITU-R BT.709) over white paper decides whether black or white can be read.
+        // Relative luminance (ITU-R BT.709) over white paper decides between black and white text.
         let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
         let colour = if 1.0 - opacity * (1.0 - luminance) > 0.5 { INK } else { PAPER };
         let number = |text: String, size: f64| TextLine { colour, ..TextLine::new(text, size, HPos::Center) };
         let value = match self.cell.value {
             Some(share) if is_shares && share <= 0.0 => return Ok(()),
-            // A rare one is not none.
+            // A small share is not zero.
             Some(share) if is_shares && share < 0.5 => String::from("<1"),
             Some(share) if is_shares => number::fixed(share, 0),
             _ => written(&self.cell),

@@ -1,4 +1,4 @@
-//! Draws [`Panels`]: axes over their layers, the layers, and what has to be said of what lies outside.
+//! Drawing of [`Panels`]: axes over their layers, the layers, and notes on data outside the axes.
 
 use plotters::element::ErrorBar;
 use plotters::style::text_anchor::HPos;
@@ -19,33 +19,33 @@ use crate::palette::{DASHED, DOTTED, INK, RECORD, SHORT_DASH};
 use crate::sheet::{AxisSide, Grid, Sheet};
 use crate::theme::Theme;
 
-/// What is said under a figure of what it does not show.
+/// Data outside a figure, for its notes.
 #[derive(Default)]
 struct Unshown {
     /// `true` if a layer is cut.
     is_cut: bool,
     /// Maximum number of dots beyond the panels of a stack.
     dots: usize,
-    /// `true` if a mark lies beyond a panel.
+    /// `true` if a mark is beyond a panel.
     marks: bool,
-    /// `true` if marks stand side by side.
+    /// `true` if marks are moved side by side.
     apart: bool,
     /// Names without a place in the frame, with their numbers.
     names: Vec<String>,
 }
 
-/// Maximum height of all panels of a wide figure, as a share of its width, and the least share of its height that a
+/// Maximum height of all panels of a wide figure, as a share of its width, and the minimum share of its height that a
 /// panel keeps.
 const WIDE: [f64; 2] = [0.52, 0.62];
 
-/// Maximum share of the height of a panel that is left free below and above its data.
+/// Maximum share of the height of a panel that is free below and above its data.
 const MAX_ROOM: f64 = 0.6;
 
-/// Panels side by side in a narrow figure.
+/// Number of panels side by side in a narrow figure.
 const NARROW: usize = 3;
 
-/// The figure as it fits its page: on a narrow one many panels side by side are small multiples, a wide one is wider
-/// than high.
+/// The figure adapted to its page: on a narrow page many panels side by side become small multiples, a wide figure is
+/// wider than high.
 fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
@@ -65,7 +65,7 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
     data
 }
 
-/// The stacks in rows: half ones two by two, unless the figure is narrow.
+/// The stacks in rows: half-width ones in pairs, unless the figure is narrow.
 fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a [Stack]> {
     let across = if theme.is_narrow() { 1 } else { 2 };
     let rows = data.stacks.chunk_by(|left, right| left.is_half && right.is_half);
@@ -77,7 +77,7 @@ pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> Plotted<Dra
     annotated(data, finding, theme, &|_| Ok(None))
 }
 
-/// The same with what is drawn over the first panel, and a remark on it.
+/// Drawing of the stacks, with `annotate` drawn over the first panel and its remark below.
 pub(super) fn annotated(
     data: &Panels,
     finding: &str,
@@ -89,7 +89,7 @@ pub(super) fn annotated(
     sheet.legend(&entries(data, theme))?;
     let mut outside = Unshown::default();
     let mut charts = Vec::new();
-    // Panels of the whole width stand below each other to the point.
+    // Panels of full width have a common left edge.
     let whole = data.stacks.iter().filter(|stack| !stack.is_half);
     let left = whole.map(|stack| sheet.left_margin(&grid(stack, theme).0)).fold(0.0, f64::max);
     for stacks in side_by_side(data, theme) {
@@ -102,7 +102,7 @@ pub(super) fn annotated(
             let (mut grid, mut is_cut) = grid(stack, theme);
             grid.left = Some(if stack.is_half { 0.0 } else { left });
             if stack.equal {
-                // Longer labels of the vertical axis take from the width, which changes the axis.
+                // Longer labels of the vertical axis reduce the width, which changes the axis.
                 let mut margin = left;
                 for _ in 0..3 {
                     equalise(&mut grid, theme.width - margin - Sheet::right_margin(theme));
@@ -143,7 +143,7 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
 fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
     let mut entries: Vec<KeyEntry> = Vec::new();
     for panel in data.stacks.iter().flat_map(|stack| &stack.panels).filter(|_| !data.names_aside) {
-        // Where a band lies on another one, that shines through.
+        // If a band overlaps another one, its sample has the opacity of both.
         let mut light = 1.0;
         for layer in &panel.layers {
             if let LayerKind::Band(_, _, opacity) = layer.kind {
@@ -159,20 +159,19 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
     entries
 }
 
-/// How a value of an axis is marked: with a name of its own, or without.
+/// Stroke of a marked value of an axis: one with a name, or one without.
 fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
     let (colour, dash) = if label.is_empty() { (RECORD, DOTTED) } else { (INK, SHORT_DASH) };
     Stroke { dash, ..Stroke::solid(colour, theme.thin) }
 }
 
-/// Panels of a stack side by side.
+/// Number of panels of a stack side by side.
 fn columns(stack: &Stack, theme: &Theme) -> usize {
     let narrower = usize::from(theme.is_narrow() && !stack.unbroken);
     stack.across.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
-/// The ends of some layers along one axis; where the axis is cut if the data are wild, every value is a thing of its
-/// own.
+/// Extents of some layers along one axis; if the axis is cut for wild data, every value is a separate extent.
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &Ruler, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
@@ -196,7 +195,7 @@ fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &Ruler, is_vertic
     extents
 }
 
-/// The frame of a stack, and whether something is cut by it.
+/// Grid of a stack, and whether a layer is cut by its frame.
 fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let count = columns(stack, theme);
     let mut is_cut = false;
@@ -222,7 +221,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let (axis, cut) = row.y.axis(&data, PAD);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
-        // Where type is large beside the panel, the data keep a part of it.
+        // If the font is large relative to the panel, the data keep a part of it.
         let taken = row.room[0] + row.room[1];
         let scale = (MAX_ROOM / taken).min(1.0);
         let [below, above] = row.room.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
@@ -249,7 +248,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     (grid, is_cut)
 }
 
-/// Widens one axis of a panel `width` points wide until a unit is as long on one axis as on the other.
+/// Widens one axis of a panel `width` points wide until a unit has the same length on both axes.
 fn equalise(grid: &mut Grid, width: f64) {
     let (Some(column), Some((row, height))) = (grid.columns.first_mut(), grid.rows.first_mut()) else { return };
     let sides = [(&mut column.axis, width), (&mut row.axis, *height)];
@@ -261,7 +260,7 @@ fn equalise(grid: &mut Grid, width: f64) {
     }
 }
 
-/// `true` if a layer goes beyond the axes of the one panel.
+/// `true` if a layer goes beyond the axes of the only panel.
 fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
     let (Some(column), Some((row, _))) = (grid.columns.first(), grid.rows.first()) else { return false };
     let holds = |axis: &Axis, value: f64| value >= axis.ends().0 && value <= axis.ends().1;
@@ -276,7 +275,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
     let mut dots = 0;
     for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
         background(chart, theme, stack, &stack.rows[if stack.across.is_some() { 0 } else { index / count }])?;
-        // What is an area lies under what is a line.
+        // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
         let (bands, others): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
         for layer in bands.into_iter().chain(others) {
@@ -292,7 +291,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
     Ok(())
 }
 
-/// What lies under the layers.
+/// Draws the background of the layers.
 fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Plotted {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
@@ -309,7 +308,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
     stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.at, mark_stroke(&mark.label, theme)))
 }
 
-/// What a small multiple says of what it does not show: how many of its dots lie outside.
+/// Writes the number of dots outside a small multiple into its corner.
 fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
@@ -323,7 +322,7 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
     chart.canvas.text_on_ground(place, &TextLine::new(note, theme.small_font, HPos::Right))
 }
 
-/// Draws a layer; returns how many dots lie beyond the panel.
+/// Draws a layer; returns the number of dots beyond the panel.
 fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Plotted<usize> {
     let name = layer.name.as_deref();
     match &layer.kind {
@@ -348,7 +347,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
     Ok(0)
 }
 
-/// Writes the words of a layer beside its points.
+/// Writes the words of a layer next to its points.
 fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
     let LayerKind::Words(colour, is_above, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
@@ -376,24 +375,24 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plott
     Ok(count)
 }
 
-/// Marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
+/// Draws marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
 fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Plotted {
     let Marks { look, intervals, joined, apart } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
     let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
     let across = if *apart { asides(&middles, 2.0 * theme.marker) } else { middles.clone() };
     outside.apart |= middles != across;
-    // A value without bound has a place far beyond.
+    // An infinite value has a place far beyond.
     let up = |y: &f64| chart.up(y.clamp(-f64::MAX, f64::MAX));
     let places: Vec<Option<PagePoint>> = across.iter().zip(&curve.y).map(|(x, y)| (*x).zip(up(y))).collect();
     let is_inside = |place: &Option<PagePoint>| place.is_some_and(|place| rect.contains(place));
     if let Some(pen) = joined {
-        // The line does not run along the edge, nor from zero to the first positive value of a broken axis.
+        // The line runs neither along the edge nor from zero to the first positive value of a broken axis.
         let mut line = Vec::new();
         for (row, pair) in curve.pairs().enumerate() {
             let is_along = row > 0 && !is_inside(&places[row - 1]) && !is_inside(&places[row]);
             line.extend(is_along.then_some((f64::NAN, f64::NAN)));
-            // It ends at the arrow of a mark beyond the panel.
+            // The line ends at the arrow of a mark beyond the panel.
             let (low, high) = chart.y.ends();
             line.push((pair.0, if is_inside(&places[row]) { pair.1 } else { pair.1.clamp(low, high) }));
             line.extend((pair.0 == 0.0 && chart.x.break_at().is_some()).then_some((f64::NAN, f64::NAN)));
@@ -424,7 +423,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     Ok(())
 }
 
-/// A vertical interval with caps at a place across the page; an end beyond the frame is cut, without cap.
+/// Vertical interval with caps at a horizontal place; an end beyond the frame is cut, without cap.
 fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Plotted {
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;

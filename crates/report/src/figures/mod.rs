@@ -1,5 +1,5 @@
-//! Few kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure
-//! is a specification, plain data in display units; [`Plot::draw`] draws it.
+//! Kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure is
+//! a specification, plain data in display units; [`Plot::draw`] draws it.
 
 mod aside;
 mod cells;
@@ -21,21 +21,21 @@ use crate::figure::Drawing;
 use crate::markup::is_markup;
 use crate::theme::Theme;
 
-/// A figure to draw.
+/// Figure to be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Plot {
     /// Layers over numeric axes.
     Panels(Panels),
     /// Named rows.
     Rows(NamedRows),
-    /// A map.
+    /// Map of cells.
     Cells(CellMap),
     /// A zig-zag trial with its characteristic quantities.
     ZigZag(ZigzagTrial),
 }
 
 impl Plot {
-    /// Draws it under what it shows, one sentence without its full stop; without a line for it where that is empty.
+    /// Drawing with its finding above it, one sentence without its full stop; no such line if the finding is empty.
     pub fn draw(&self, finding: &str, theme: &Theme) -> Drawing {
         let drawn = match self {
             Self::Panels(data) => layers::panels(data, finding, theme),
@@ -46,7 +46,7 @@ impl Plot {
         drawn.expect("the backend writes into memory, which does not fail")
     }
 
-    /// Titles of its axes of numbers, without italics: what a style gives limits by.
+    /// Titles of the numeric axes, without italics: the keys of the limits in a style.
     pub fn axis_titles(&self) -> Vec<String> {
         let rulers: Vec<Ruler> = match self {
             Self::Panels(data) => {

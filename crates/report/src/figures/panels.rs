@@ -1,6 +1,6 @@
-//! Panels of layers (lines, bands, records, marks) over numeric axes: stacked over one axis where they belong to the
-//! same one, in rows and columns where they share both, as small multiples where all are alike, side by side where they
-//! have nothing in common. What a figure shows is data; [`super::layers`] draws it.
+//! Panels of layers (lines, bands, records, marks) over numeric axes: stacked if they share one axis, in rows and
+//! columns if they share both, as small multiples if all are alike, side by side if they share none. A figure is data;
+//! [`super::layers`] draws it.
 
 use super::reach::{AxisReach, Extents};
 use super::shared::{Reference95, record_sample};
@@ -16,59 +16,59 @@ use crate::markup::symbol;
 use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
 use crate::theme::Theme;
 
-/// An axis: its title with the unit, how it is divided and how far it goes.
+/// Axis: its title with the unit, its division and its reach.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ruler {
-    /// Title with unit.
+    /// Title with the unit.
     pub title: String,
-    /// Division.
+    /// Division of the axis.
     pub division: Division,
-    /// How far it goes where the data are wild; `None`: all the way.
+    /// Reach of the axis for wild data; `None`: all data.
     pub reach: Option<AxisReach>,
 }
 
 impl Ruler {
-    /// An axis over everything.
+    /// Axis over all data.
     pub fn new(title: impl Into<String>, division: Division) -> Self {
         Self { title: title.into(), division, reach: None }
     }
 
-    /// Decimal numbers.
+    /// Axis of decimal numbers.
     pub fn decimal(title: impl Into<String>) -> Self {
         Self::new(title, Division::Decimal)
     }
 
-    /// Time in seconds.
+    /// Axis of time in seconds.
     pub fn time() -> Self {
         Self::new(format!("time {} [s]", symbol("t")), Division::Time)
     }
 
-    /// Heading in degrees.
+    /// Axis of heading in degrees.
     pub fn heading() -> Self {
         Self::new(format!("heading {} [°]", symbol("ψ")), Division::Angle)
     }
 
-    /// Rudder in degrees.
+    /// Axis of rudder angle in degrees.
     pub fn rudder() -> Self {
         Self::new(format!("rudder {} [°]", symbol("δ")), Division::Angle)
     }
 
-    /// Yaw rate in degrees a second.
+    /// Axis of yaw rate in degrees per second.
     pub fn yaw_rate() -> Self {
         Self::decimal(format!("yaw rate {} [°/s]", symbol("r")))
     }
 
-    /// The same axis, as far as so many times the middle extent of the data from a centre.
+    /// The axis limited to `times` the median extent of the data from a centre.
     pub fn within(self, times: f64, centre: Option<f64>) -> Self {
         Self { reach: Some(AxisReach { times, centre, symmetric: false }), ..self }
     }
 
-    /// The same about zero, as far to one side as to the other.
+    /// The axis limited symmetrically about zero.
     pub fn about_zero(self, times: f64) -> Self {
         Self { reach: Some(AxisReach { times, centre: Some(0.0), symmetric: true }), ..self }
     }
 
-    /// The axis over some data with free space at the ends; and whether something is cut.
+    /// The axis over some data with free space at the ends, and whether data are cut.
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
         match self.division {
             Division::Factors => return (Axis::log_covering(&data.positive()), false),
@@ -81,26 +81,26 @@ impl Ruler {
     }
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pen {
-    /// Colour.
+    /// Colour of the line.
     pub colour: RGBColor,
-    /// In usual widths.
+    /// Width, in standard widths.
     pub width: f64,
-    /// Dashes.
+    /// Dash pattern.
     pub dash: Dash,
-    /// From 0 to 1.
+    /// Opacity, from 0 to 1.
     pub opacity: f64,
 }
 
 impl Pen {
-    /// A solid line.
+    /// Solid line.
     pub const fn new(colour: RGBColor) -> Self {
         Self { colour, width: 1.0, dash: SOLID, opacity: 1.0 }
     }
 
-    /// The line of an origin.
+    /// Line of an origin.
     pub fn of(origin: &CurveOrigin) -> Self {
         let look = origin.look();
         Self { dash: look.dash, ..Self::new(look.colour) }
@@ -111,7 +111,7 @@ impl Pen {
         Self { width: 0.6, opacity: 0.35, ..Self::new(HEADING) }
     }
 
-    /// The same line in another width.
+    /// The line with another width.
     pub fn width(self, width: f64) -> Self {
         Self { width, ..self }
     }
@@ -124,75 +124,76 @@ impl Pen {
 /// Marks at the points of a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Marks {
-    /// How they look.
+    /// Look of the marks.
     pub look: Look,
-    /// Their intervals, where they have some.
+    /// Intervals of the marks, if they have any.
     pub intervals: Vec<Option<[f64; 2]>>,
-    /// The line that joins them.
+    /// Line that joins the marks.
     pub joined: Option<Pen>,
-    /// `true` if marks that would hide each other stand side by side.
+    /// `true` if marks that would overlap are drawn side by side.
     pub apart: bool,
 }
 
-/// How the points of a layer are drawn.
+/// Kind of a layer: how its points are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LayerKind {
-    /// A line through them.
+    /// Line through the points.
     Line(Pen),
-    /// The area between them and another curve, in a colour and as dense as is said.
+    /// Area between the points and another curve, with colour and opacity.
     Band(PlotCurve, RGBColor, f64),
-    /// A record: dots, or a wide line where it is dense.
+    /// Record: dots, or a wide line if there are too many points for dots.
     Record,
-    /// Small dots. Single ones far from all others do not set the axis: an arrow at its edge stands for them.
+    /// Small dots. Single ones far from all others do not set the axis: they are arrows at its edge.
     Dots(RGBColor),
-    /// Pale dots that set no axis; those outside are counted in the corner of the panel.
+    /// Pale dots that do not set the axis; those outside are counted in the corner of the panel.
     Cloud(RGBColor),
-    /// Marks with intervals. A value without bound is an arrow at the edge.
+    /// Marks with intervals. An infinite value is an arrow at the edge.
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Words beside the points, above them at their right, or below them at their left.
+    /// Words next to the points: above right, or below left.
     Words(RGBColor, bool, Vec<String>),
 }
 
-/// One thing in a panel.
+/// One layer of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// Its name in the key; layers of one name are told once.
+    /// Name in the key; layers of one name are listed once.
     pub name: Option<String>,
-    /// The points.
+    /// Points of the layer.
     pub curve: PlotCurve,
-    /// How they are drawn.
+    /// Kind of the layer.
     pub kind: LayerKind,
-    /// Share of the range of everything else by which it may widen the axes before it is cut; `None`: never cut.
+    /// Maximum share of the range of all other data by which the layer may widen the axes before it is cut; `None`:
+    /// never cut.
     pub room: Option<f64>,
 }
 
 impl Layer {
-    /// A layer that sets the axes.
+    /// Layer that sets the axes.
     pub fn new(name: impl Into<String>, curve: PlotCurve, kind: LayerKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
         Self { name, curve, kind, room: None }
     }
 
-    /// A line.
+    /// Line through a curve.
     pub fn line(name: impl Into<String>, curve: PlotCurve, pen: Pen) -> Self {
         Self::new(name, curve, LayerKind::Line(pen))
     }
 
-    /// The area between two curves.
+    /// Area between two curves.
     pub fn band(name: impl Into<String>, [lower, upper]: [PlotCurve; 2], colour: RGBColor, opacity: f64) -> Self {
         Self::new(name, lower, LayerKind::Band(upper, colour, opacity))
     }
 
-    /// Points with the middle of each, its value and its interval.
+    /// Marks at points, each with abscissa, value and interval.
     pub fn marks(name: impl Into<String>, look: Look, points: Vec<(f64, f64, Option<[f64; 2]>)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
         let intervals = points.into_iter().map(|(.., interval)| interval).collect();
         Self::new(name, PlotCurve { x, y }, LayerKind::Marks(Marks { look, intervals, joined: None, apart: false }))
     }
 
-    /// The same marks, joined by a line.
+    /// The marks joined by a line.
     pub fn joined(mut self, pen: Pen) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
             marks.joined = Some(pen);
@@ -200,7 +201,7 @@ impl Layer {
         self
     }
 
-    /// The same marks, side by side where they would hide each other.
+    /// The marks side by side if they would overlap.
     pub fn apart(mut self) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
             marks.apart = true;
@@ -208,7 +209,7 @@ impl Layer {
         self
     }
 
-    /// The same, cut where it leaves the range of everything else by more than this share of it.
+    /// The layer, cut if it leaves the range of all other data by more than this share of that range.
     pub fn within(self, room: f64) -> Self {
         Self { room: Some(room), ..self }
     }
@@ -228,7 +229,7 @@ impl Layer {
         }
     }
 
-    /// How it looks in the key; a band where others lie under it as dense as `shade`.
+    /// Sample in the key; for overlapping bands with the opacity `shade`.
     pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<KeySample> {
         Some(match &self.kind {
             LayerKind::Line(pen) => KeySample::Line(pen.stroke(theme)),
@@ -249,7 +250,7 @@ impl Layer {
     }
 }
 
-/// A row of panels with a common vertical axis.
+/// Row of panels with a common vertical axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PanelRow {
     /// Vertical axis.
@@ -258,64 +259,64 @@ pub struct PanelRow {
     pub height: f64,
     /// `true` if there is a line at zero.
     pub zero: bool,
-    /// Dashed lines from left to right, such as the ends of what chance leaves.
+    /// Levels of dashed lines from left to right, such as the limits of white noise.
     pub levels: Vec<f64>,
-    /// A value to compare with.
+    /// Reference value.
     pub reference: Option<Reference95>,
-    /// Shares of the height that are left free below and above the data.
+    /// Shares of the height that are free below and above the data.
     pub room: [f64; 2],
 }
 
 impl PanelRow {
-    /// A row.
+    /// Row of panels.
     pub fn new(y: Ruler, height: f64) -> Self {
         Self { y, height, ..Self::default() }
     }
 
-    /// A row with a line at zero.
+    /// Row of panels with a line at zero.
     pub fn zeroed(y: Ruler, height: f64) -> Self {
         Self { zero: true, ..Self::new(y, height) }
     }
 }
 
-/// A panel.
+/// Panel of layers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LayeredPanel {
-    /// A line above it.
+    /// Line of text above the panel.
     pub head: Option<String>,
     /// The layers, the first at the bottom.
     pub layers: Vec<Layer>,
 }
 
-/// A value of the horizontal axis, such as a limit of a rule.
+/// Marked value of the horizontal axis, such as a limit of a rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisLine {
-    /// The value.
+    /// Value on the axis.
     pub at: f64,
-    /// Its name in the key; nothing if it has none.
+    /// Name in the key; empty without one.
     pub label: String,
 }
 
 /// Panels with common axes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stack {
-    /// Horizontal axes, one a column.
+    /// Horizontal axes, one per column.
     pub x: Vec<Ruler>,
-    /// The rows.
+    /// Rows of the stack.
     pub rows: Vec<PanelRow>,
     /// The panels, row by row.
     pub panels: Vec<LayeredPanel>,
     /// Lines from bottom to top.
     pub marks: Vec<AxisLine>,
-    /// Small multiples, so many side by side: the one axis and the one row are those of all.
+    /// Small multiples: their number side by side; all share the one axis and the one row.
     pub across: Option<usize>,
-    /// `true` if these stay side by side on a narrow page, too: a row of them is one thing.
+    /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
     pub unbroken: bool,
-    /// `true` if it takes half the width of the figure; two of them stand side by side where there is room.
+    /// `true` if the stack has half the width of the figure; two of them are side by side if there is room.
     pub is_half: bool,
     /// `true` if there is a line at zero from bottom to top.
     pub zero: bool,
-    /// `true` if one unit is as long on one axis as on the other.
+    /// `true` if a unit has the same length on both axes.
     pub equal: bool,
 }
 
@@ -327,29 +328,29 @@ impl Stack {
         Self { x: vec![x], rows, panels, ..Self::default() }
     }
 
-    /// Panels with one pair of axes, so many side by side.
+    /// Panels with one pair of axes, `across` of them side by side.
     pub fn multiples(across: usize, x: Ruler, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
         Self { x: vec![x], rows: vec![row], panels, across: Some(across), ..Self::default() }
     }
 }
 
-/// What [`super::Plot::Panels`] draws.
+/// Data of [`super::Plot::Panels`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panels {
     /// The stacks, in reading order.
     pub stacks: Vec<Stack>,
-    /// `true` if names stand right of the frame, in place of a key; on a narrow page they are in the key all the same.
+    /// `true` if names are right of the frame, in place of a key; on a narrow page they are always in the key.
     pub names_aside: bool,
-    /// Numbers that stand in the key.
+    /// Texts with numbers in the key.
     pub said: Vec<String>,
-    /// A remark under the figure.
+    /// Remark under the figure.
     pub note: Option<String>,
-    /// A remark where a layer is cut.
+    /// Remark if a layer is cut.
     pub cut: Option<String>,
 }
 
 impl Panels {
-    /// A figure of one stack.
+    /// Figure of one stack.
     pub fn of(stack: Stack) -> Self {
         Self { stacks: vec![stack], ..Self::default() }
     }

@@ -1,54 +1,54 @@
-//! How far an axis goes: over what has to be seen, and over what may be cut as far as there is room.
+//! Reach of an axis: over data that must be visible, and over data that may be cut if there is no room.
 
 use estimation::statistics::upper_median;
 
 use crate::axis;
 
-/// What of wild data an axis shows: so many times the middle extent from a centre.
+/// Limit of an axis for wild data: a multiple of the median extent from a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisReach {
-    /// Times the middle extent.
+    /// Multiple of the median extent.
     pub times: f64,
-    /// The centre; the middle of the data if there is none.
+    /// Centre of the axis; `None`: the median of the data.
     pub centre: Option<f64>,
-    /// `true` if the axis goes as far to one side of the centre as to the other.
+    /// `true` if the axis is symmetric about the centre.
     pub symmetric: bool,
 }
 
-/// What stands along an axis.
+/// Data along an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Extents {
-    /// Ends of everything that sets the axis, a pair for each thing.
+    /// Ends of everything that sets the axis, one pair per item.
     pub core: Vec<(f64, f64)>,
-    /// Values that have to be seen whatever else there is.
+    /// Values that are always visible.
     pub fixed: Vec<f64>,
-    /// Values that may widen the axis by a share of the range of everything else.
+    /// Values that may widen the axis, each with its maximum share of the range of all other data.
     pub soft: Vec<(f64, f64)>,
 }
 
-/// The share of the range by which the ends of intervals may widen an axis.
+/// Maximum share of the range by which the ends of intervals may widen an axis.
 pub(super) const INTERVALS: f64 = 1.0;
 
-/// The least extent that counts as usual, as a share of the centre: equal values differ by rounding alone.
+/// Minimum usual extent, as a share of the centre: equal values differ by rounding alone.
 const LEAST_USUAL: f64 = 1e-3;
 
-/// The least room of an interval, as a share of the largest value: equal values have no range.
+/// Minimum room of an interval, as a share of the maximum value: equal values have no range.
 const LEAST_ROOM: f64 = 0.2;
 
-/// Lower ends of intervals nearer to zero than this share of the smallest value are cut on an axis of equal factors:
-/// they would stretch it by decades.
+/// Minimum lower end of an interval on an axis of equal factors, as a share of the minimum value; lower ones are cut,
+/// because they would stretch the axis by decades.
 const LOWEST: f64 = 0.5;
 
-/// Upper ends beyond this many times the largest value are cut there.
+/// Maximum upper end of an interval on such an axis, in maximum values.
 const HIGHEST: f64 = 10.0;
 
 impl Extents {
-    /// Adds a thing that sets the axis.
+    /// Adds an item that sets the axis.
     pub(super) fn add(&mut self, values: impl IntoIterator<Item = f64>) {
         self.core.extend(axis::range(values));
     }
 
-    /// Both ends, and whether something soft is cut; `None` if there is nothing.
+    /// Ends of the axis, and whether a soft value is cut; `None` without data.
     pub(super) fn ends(&self, reach: Option<AxisReach>) -> (Option<(f64, f64)>, bool) {
         let within = reach.map_or_else(|| self.core.clone(), |reach| self.within(reach));
         let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };
@@ -76,7 +76,7 @@ impl Extents {
         }
     }
 
-    /// What lies within the reach of an axis, and of what lies in it by a part, that part.
+    /// Extents within the reach of an axis; an extent partly within it is shortened.
     fn within(&self, AxisReach { times, centre, .. }: AxisReach) -> Vec<(f64, f64)> {
         let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
@@ -88,7 +88,7 @@ impl Extents {
         near.map(|(lo, hi)| (lo.max(least), hi.min(most))).collect()
     }
 
-    /// The values that have a place on an axis of equal factors.
+    /// Values that have a place on an axis of equal factors.
     pub(super) fn positive(&self) -> Vec<f64> {
         let all = self.core.iter().flat_map(|(lo, hi)| [*lo, *hi]).chain(self.fixed.iter().copied());
         let mut values: Vec<f64> = all.filter(|value| *value >= 0.0 && value.is_finite()).collect();
@@ -100,13 +100,13 @@ impl Extents {
     }
 }
 
-/// Share of the points on either side that may be far from all others.
+/// Maximum share of the points on either side that count as far from all others.
 const FAR: f64 = 0.005;
 
-/// Times the range of the other points that an axis reaches beyond them for these.
+/// Maximum distance of these points from the others on the axis, in ranges of the others.
 const ROOM: f64 = 0.5;
 
-/// Values with those that are few and far from all others drawn in.
+/// Range of the values, with few far ones moved towards all others.
 pub(super) fn robust(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let skipped = (FAR * values.len() as f64).ceil() as usize;

@@ -19,76 +19,76 @@ use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, RECORD};
 use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
 use crate::theme::Theme;
 
-/// What stands in a row.
+/// Content of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowKind {
-    /// A mark at a value, and its interval as a bar with caps. A value without bound is an arrow at the edge.
+    /// Mark at a value, and its interval as a bar with caps. An infinite value is an arrow at the edge.
     Mark(Look, f64, Option<[f64; 2]>),
-    /// A thin interval.
+    /// Thin interval.
     Thin([f64; 2]),
-    /// A range in a pale colour.
+    /// Range in a pale colour.
     Range(RGBColor, [f64; 2]),
-    /// A bar from zero.
+    /// Bar from zero.
     Bar(Look, f64),
-    /// A line from the bottom to the top of the row.
+    /// Line from the bottom to the top of the row.
     Limit(f64),
-    /// No value: the name of the row is a heading of those below it.
+    /// No value: the name of the row is a heading of the rows below it.
     Heading,
-    /// A distribution: value and density, ascending; its quantiles 2.5, 25, 50, 75 and 97.5 %.
+    /// Distribution: value and density, ascending; its quantiles 2.5, 25, 50, 75 and 97.5 %.
     Violin(Look, Vec<(f64, f64)>, [f64; 5]),
 }
 
-/// Where something stands in its row.
+/// Place of an item in its row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RowPlace {
-    /// So far below the middle, as a share of the pitch of the rows.
+    /// Distance below the middle, as a share of the pitch of the rows.
     Aside(f64),
-    /// On a line of its own below those before it.
+    /// On a separate line below the items before it.
     Below,
-    /// On the line of what stands before it.
+    /// On the line of the item before it.
     Beside,
 }
 
-/// One thing in a row.
+/// One item of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowItem {
-    /// Its name in the key; items of one name are told once.
+    /// Name in the key; items of one name are listed once.
     pub name: Option<String>,
-    /// What it is.
+    /// Kind of the item.
     pub kind: RowKind,
-    /// Where it stands in its row.
+    /// Place of the item in its row.
     pub place: RowPlace,
-    /// `true` if it may be cut where it leaves the range of everything else by more than that range.
+    /// `true` if the item may be cut when it leaves the range of all other data by more than that range.
     pub soft: bool,
-    /// A number written at the right end of the row.
+    /// Number written at the right end of the row.
     pub text: Option<String>,
-    /// A number written beside a mark.
+    /// Number written next to a mark.
     pub number: Option<String>,
 }
 
 impl RowItem {
-    /// Something in the middle of its row that sets the axis.
+    /// Item in the middle of its row that sets the axis.
     pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
         Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None, number: None }
     }
 
-    /// A row that is a heading.
+    /// Row that is a heading.
     pub fn heading() -> Vec<Self> {
         vec![Self::new("", RowKind::Heading)]
     }
 
-    /// A mark that stands below those before it in its row.
+    /// Mark on a line below the items before it in its row.
     pub fn below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
         Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
     }
 
-    /// The same, cut where it runs far off.
+    /// The item, cut if it is far from all other data.
     pub fn softly(self) -> Self {
         Self { soft: true, ..self }
     }
 
-    /// `true` if it stands for a value, and not only for an interval of one; a heading needs none.
+    /// `true` if the item is a value, and not only an interval of one; a heading needs none.
     fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
@@ -108,7 +108,7 @@ impl RowItem {
         }
     }
 
-    /// Enters its values into the extents of an axis.
+    /// Adds the values of the item to the extents of an axis.
     fn enter(&self, data: &mut Extents) {
         let ends: Vec<f64> = match &self.kind {
             RowKind::Mark(_, value, interval) => {
@@ -120,7 +120,7 @@ impl RowItem {
             RowKind::Limit(value) => vec![*value],
             RowKind::Heading => Vec::new(),
             RowKind::Violin(_, _, quantiles) => {
-                // The middle of a distribution is seen before its ends are.
+                // The middle of a distribution has priority over its ends.
                 let rooms = [(1, BOXES), (2, MEDIANS), (3, BOXES)];
                 data.soft.extend(rooms.map(|(place, room)| (quantiles[place], room)));
                 vec![quantiles[0], quantiles[4]]
@@ -133,7 +133,8 @@ impl RowItem {
     }
 }
 
-/// Share of the range of usual distributions by which the median of another may widen an axis, and its quartiles.
+/// Maximum share of the range of usual distributions by which the median of another may widen an axis, and its
+/// quartiles.
 const MEDIANS: f64 = 4.0;
 const BOXES: f64 = 4.0;
 
@@ -142,32 +143,32 @@ const BOXES: f64 = 4.0;
 pub struct RowsColumn {
     /// The axis.
     pub x: Ruler,
-    /// What stands in every row.
+    /// Items of every row.
     pub rows: Vec<Vec<RowItem>>,
-    /// `true` if the axis holds zero, with a line there.
+    /// `true` if the axis includes zero, with a line there.
     pub zero: bool,
-    /// Share of the axis that is left free at its right end, for numbers.
+    /// Share of the axis that is free at its right end, for numbers.
     pub room: f64,
-    /// A value to compare with.
+    /// Reference value.
     pub reference: Option<Reference95>,
-    /// Values that all rows are held against, with their names in the key.
+    /// Reference values of all rows, with their names in the key.
     pub lines: Vec<(String, Pen, f64)>,
-    /// Values that the axis reaches whatever else there is.
+    /// Values that the axis always includes.
     pub reached: Vec<f64>,
 }
 
-/// What [`super::Plot::Rows`] draws.
+/// Data of [`super::Plot::Rows`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedRows {
-    /// What the names are, beside them; nothing if they say it themselves.
+    /// Title of the names; empty if the names need none.
     pub of: String,
     /// Names from top to bottom.
     pub names: Vec<String>,
     /// The columns, side by side.
     pub columns: Vec<RowsColumn>,
-    /// Rows on a pale ground, and what these are.
+    /// Rows on a pale ground, and the meaning of that ground.
     pub shaded: Option<(String, Vec<usize>)>,
-    /// A remark under the figure.
+    /// Remark under the figure.
     pub note: Option<String>,
 }
 
@@ -176,29 +177,30 @@ fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
     Stroke { opacity, ..Stroke::solid(look.colour, 0.9 * theme.tick_font) }
 }
 
-/// Thinner than a mark, which is seen on it.
+/// Stroke of a limit, thinner than a mark, which stays visible on it.
 fn limit_stroke(theme: &Theme) -> Stroke {
     Stroke::solid(INK, theme.line)
 }
 
-/// Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
+/// Stroke of a range: pale, so that marks on it are visible, and higher than a mark, so that a narrow one is visible
+/// too.
 fn range_stroke(colour: RGBColor, theme: &Theme) -> Stroke {
     Stroke { opacity: 0.4, ..Stroke::solid(colour, 2.9 * theme.marker) }
 }
 
-/// Rows that may stand twice below each other.
+/// Maximum number of rows for columns above each other in a narrow figure.
 const FEW: usize = 8;
 
 /// Opacity of the ground of rows.
 const GROUND: f64 = 0.1;
 
-/// Height of the rows of a wide figure, as a share of its width, at least and at most: few rows stand farther apart, up
-/// to so many times as far, many rows nearer to each other.
+/// Minimum and maximum height of all rows of a wide figure, as shares of its width, and maximum factor by which few
+/// rows are spread.
 const HEIGHT: [f64; 2] = [0.25, 0.6];
 const SPREAD: f64 = 1.8;
 
-/// Draws the columns side by side, in a narrow figure above each other, or two by two where they have many rows. What
-/// reaches beyond an axis is cut and marked.
+/// Drawing of the columns side by side; in a narrow figure above each other, or in pairs if they have many rows. Data
+/// beyond an axis are cut and marked.
 pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
@@ -244,7 +246,7 @@ fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     }
 }
 
-/// Items that stand below each other.
+/// Number of items below each other.
 fn stacked(items: &[RowItem]) -> usize {
     items.iter().filter(|item| item.place == RowPlace::Below).count()
 }
@@ -259,7 +261,7 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     let shaded = data.shaded.iter().map(|(name, _)| KeyEntry::new(KeySample::Line(ground), name));
     for entry in lines.chain(items).chain(shaded) {
         match entries.iter_mut().find(|listed| listed.label == entry.label) {
-            // A range is of the mark that bears its name.
+            // A range belongs to the mark with the same name.
             Some(listed) if matches!(entry.sample, KeySample::Marker(_)) => *listed = entry,
             Some(_) => {}
             None => entries.push(entry),
@@ -272,14 +274,14 @@ fn axis(column: &RowsColumn) -> Axis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
-    // Numbers stand beyond all that is drawn.
+    // Numbers are right of all data.
     let kept = if column.room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
     data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
     if !column.zero {
         return column.x.axis(&data, 0.06).0;
     }
-    // The axis ends at zero where everything lies on one side of it.
+    // The axis ends at zero if all data are on one side of it.
     let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
@@ -287,10 +289,10 @@ fn axis(column: &RowsColumn) -> Axis {
     Axis::linear(lo, hi + column.room * (hi - lo), Division::Decimal).labelled_until(hi)
 }
 
-/// Draws the rows of a column; returns whether something lies beyond its axis.
+/// Draws the rows of a column; returns whether data are beyond its axis.
 fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotted<bool> {
     let (left, right) = chart.x.ends();
-    // A ground under every other row keeps several marks of a row together.
+    // A ground under every second row groups the marks of a row.
     for (row, _) in column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && row % 2 == 1) {
         chart.rectangle([left, right], [row as f64 - 0.5, row as f64 + 0.5], GRID.mix(0.45))?;
     }
@@ -303,7 +305,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
     for (name, pen, value) in &column.lines {
         chart.vertical(Some(name), *value, pen.stroke(theme))?;
     }
-    let mut beyond = false;
+    let (mut beyond, mut numbered) = (false, Vec::new());
     for (row, items) in column.rows.iter().enumerate() {
         let mut line = -0.5 * (stacked(items) + 1) as f64;
         for item in items {
@@ -313,7 +315,11 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
                 RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font / pitch,
             };
             beyond |= draw_item(chart, theme, item, row as f64 + aside, stacked(items) < 2)?;
+            numbered.push((item, row as f64 + aside));
         }
+    }
+    for (item, y) in numbered {
+        number(chart, theme, item, y)?;
     }
     chart.frame(theme)?;
     let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
@@ -332,7 +338,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
     Ok(beyond)
 }
 
-/// Draws an item at its height, in rows; returns whether it lies beyond the axis.
+/// Draws an item at its height, in rows; returns whether it is beyond the axis.
 fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> Plotted<bool> {
     let name = item.name.as_deref();
     let bar =
@@ -357,16 +363,12 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
     }
 }
 
-/// A mark at a value and a height, or an arrow with its number where it lies beyond the axis; returns whether it does.
+/// Draws a mark, or an arrow with its number if it is beyond the axis; returns whether it is beyond.
 fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> Plotted<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
     let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
         chart.marker(item.name.as_deref(), value, y, theme.marker, look)?;
-        if let (Some(number), Some((x, height))) = (&item.number, place) {
-            let number = TextLine::new(number, theme.small_font, HPos::Left);
-            chart.canvas.text_on_ground((x + 1.6 * theme.marker, height), &number)?;
-        }
         return Ok(false);
     };
     let (edge, side) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
@@ -381,11 +383,24 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     Ok(true)
 }
 
-/// Half the height of a violin and of a limit, in rows.
+/// Number of an item, to the right of its mark and of its interval, inside the frame.
+fn number(chart: &Chart, theme: &Theme, item: &RowItem, y: f64) -> Plotted {
+    let end = match &item.kind {
+        RowKind::Mark(_, value, interval) => interval.map_or(*value, |[_, end]| end.max(*value)),
+        RowKind::Violin(_, _, quantiles) => quantiles[4],
+        _ => return Ok(()),
+    };
+    let Some((text, (x, height))) = item.number.as_ref().zip(chart.reach(end.min(f64::MAX), y)) else { return Ok(()) };
+    let text = TextLine::new(text, theme.small_font, HPos::Left);
+    let x = (x + 1.6 * theme.marker).min(chart.rect.right() - text.width() - theme.marker);
+    chart.canvas.text_on_ground((x, height), &text)
+}
+
+/// Half height of a violin and of a limit, in rows.
 const HALF: f64 = 0.42;
 
-/// Density, box of the quartiles and median, with the ends of the interval of 95 % as numbers beside what is too narrow
-/// to be seen.
+/// Draws density, box of the quartiles and median, with the ends of the 95 % interval as numbers next to a violin that
+/// is too narrow to be seen.
 fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> Plotted {
     let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
     let name = item.name.as_deref();

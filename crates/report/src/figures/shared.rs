@@ -1,4 +1,4 @@
-//! What kinds of figure share: records, areas, lines of reference, marks that stand side by side.
+//! Parts shared by kinds of figure: records, areas, reference lines, marks side by side.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,19 +18,19 @@ pub(super) const PAD: f64 = 0.08;
 /// Free space left and right of lines.
 pub(super) const ACROSS_PAD: f64 = 0.02;
 
-/// More points than this in a panel run into each other and are drawn as a line.
+/// Maximum number of points of a panel that are drawn as dots; more are drawn as a line.
 const DENSE: usize = 400;
 
-/// More points than this are smaller, so that they stay apart.
+/// Maximum number of dots of full size; more are smaller, so that they stay separate.
 const MANY: usize = 150;
 
-/// The line of a dense record.
+/// Stroke of a recorded heading with too many points for dots; `None` for fewer points.
 fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
     let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };
     (heading.finite().count() > DENSE).then_some(stroke)
 }
 
-/// A recorded heading: dots, or a wide line under the fits where the record is dense.
+/// Draws a recorded heading: dots, or a wide line under the fits if there are too many points for dots.
 pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Plotted {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
@@ -41,13 +41,13 @@ pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: 
     }
 }
 
-/// How [`record`] looks in a legend.
+/// Sample of [`record`] in a legend.
 pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
     dense(heading, theme).map_or(KeySample::Dots(RECORD), KeySample::Line)
 }
 
-/// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:
-/// zig-zags of one rudder angle would hide each other.
+/// Places with neighbours nearer than `gap` spread about their common middle: zig-zags of one rudder angle would
+/// otherwise overlap.
 pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     let mut order: Vec<(usize, f64)> =
         places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
@@ -62,35 +62,34 @@ pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     moved
 }
 
-/// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves
-/// them.
+/// Reference value of results, such as the nominal 95 % of an interval, with the band of chance about it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Reference95 {
-    /// The value.
+    /// Reference value.
     pub value: f64,
-    /// The band.
+    /// Ends of the band.
     pub band: [f64; 2],
 }
 
 impl Reference95 {
-    /// A value without a band.
+    /// Reference value without a band.
     pub fn line(value: f64) -> Self {
         Self { value, band: [value; 2] }
     }
 
-    /// The value and the ends of the band.
+    /// Reference value and the ends of the band.
     pub(super) fn values(&self) -> [f64; 3] {
         [self.value, self.band[0], self.band[1]]
     }
 
-    /// Across a panel whose horizontal axis it belongs to.
+    /// Draws the reference across a panel, at values of the horizontal axis.
     pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Plotted {
         let (low, high) = chart.y.ends();
         chart.rectangle(self.band, [low, high], RECORD.mix(BAND))?;
         chart.vertical(None, self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 
-    /// Across a panel whose vertical axis it belongs to.
+    /// Draws the reference across a panel, at values of the vertical axis.
     pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Plotted {
         let (left, right) = chart.x.ends();
         chart.rectangle([left, right], self.band, RECORD.mix(BAND))?;
@@ -98,10 +97,10 @@ impl Reference95 {
     }
 }
 
-/// How dense the band of a reference is.
+/// Opacity of the band of a reference.
 const BAND: f64 = 0.22;
 
-/// The line of zero, about which errors and residuals scatter.
+/// Stroke of the line at zero, about which errors and residuals scatter.
 pub(super) fn zero_stroke(theme: &Theme) -> Stroke {
     Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) }
 }

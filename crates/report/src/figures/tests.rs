@@ -1,5 +1,5 @@
-//! Every kind of figure with ordinary, empty, wild and damaged data: labels are there, coordinates are numbers, strokes
-//! can be seen, what is cut is said.
+//! Every kind of figure with ordinary, empty, wild and damaged data: labels are present, coordinates are numbers,
+//! strokes are visible, cuts are noted.
 
 use super::*;
 use crate::backend::UNITS;
@@ -7,7 +7,7 @@ use crate::curve::PlotCurve;
 use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
 use crate::{Drawing, Theme};
 
-/// A sine of `n` points, `wild` among them.
+/// Sine of `n` points, `wild` among them.
 fn wave(n: usize, wild: f64, size: f64) -> PlotCurve {
     let x: Vec<f64> = (0..n).map(|k| 0.5 * k as f64).collect();
     let y = x.iter().enumerate().map(|(k, x)| if k == 1 { wild } else { size * (x / 20.0).sin() });
@@ -40,7 +40,7 @@ fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
     }
 }
 
-/// Panels of every layer, small multiples, and a figure whose names stand aside.
+/// Panels of every layer, small multiples, and a figure with names right of the frame.
 fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let look = CurveOrigin::After.look();
     let points =
@@ -114,7 +114,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     ]
 }
 
-/// Rows of everything that stands in one, and maps of both kinds.
+/// Rows of every kind of item, and maps of both kinds.
 fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let size = |k: usize| if k == 1 { wild } else { 0.1 * (1 + k) as f64 };
     let items = |row: usize| {
@@ -194,7 +194,7 @@ fn numbers<'a>(svg: &'a str, attribute: &str) -> Vec<&'a str> {
     svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
-/// The document without what is cut off at a frame.
+/// The document without the parts clipped at a frame.
 fn uncut(svg: &str) -> String {
     let group = |piece: &str| match piece.split_once('>').is_some_and(|(head, _)| head.contains("clip-path")) {
         true => piece.split_once("</g>").map_or("", |(_, after)| after).to_owned(),
@@ -203,7 +203,7 @@ fn uncut(svg: &str) -> String {
     svg.split("<g").map(group).collect()
 }
 
-/// Every corner of an area and of a line in the document, in its units.
+/// Corners of all areas and lines in the document, in its units.
 fn places(svg: &str) -> Vec<(i64, i64)> {
     let read = |text: &str| -> Vec<i64> { text.split([' ', ',']).filter_map(|number| number.parse().ok()).collect() };
     let pairs = |text: &str| read(text).chunks_exact(2).map(|pair| (pair[0], pair[1])).collect::<Vec<_>>();
@@ -220,7 +220,7 @@ fn places(svg: &str) -> Vec<(i64, i64)> {
     places
 }
 
-/// What every figure has to keep.
+/// Requirements of every figure.
 fn check(name: &str, figure: &Drawing) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
@@ -229,7 +229,7 @@ fn check(name: &str, figure: &Drawing) {
     for (x, y) in places(&uncut(svg)) {
         assert!((0..=right).contains(&x) && (0..=bottom).contains(&y), "{name}: {x},{y} is off the page");
     }
-    // Nothing may be thinner than 0.3 points.
+    // Minimum stroke width: 0.3 points.
     for stroke in numbers(svg, "stroke-width") {
         assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS, "{name}: stroke {stroke}");
     }
@@ -249,7 +249,7 @@ fn figures_are_well_formed_whatever_the_data() {
         }
     };
     are_drawn(&Theme::screen(), &[0, 1, 2, 40, 1000], &[0.3, 0.0, -0.3, 1e9, 1e300, f64::NAN, f64::INFINITY]);
-    // On paper there is less room.
+    // There is less room on paper.
     for width in [85.0, 60.0] {
         are_drawn(&Theme::paper(width, 300.0).unwrap(), &[0, 40], &[0.3, 1e9, f64::NAN]);
     }

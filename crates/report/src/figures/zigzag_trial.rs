@@ -1,6 +1,6 @@
-//! A zig-zag trial with its characteristic quantities drawn in, as in the textbook figure: heading over rudder, the
-//! executes, overshoot angles, initial turning time, times to check yaw and the period. All quantities are handed in;
-//! nothing is searched for in the curves.
+//! Zig-zag trial with its characteristic quantities, as in the textbook figure: heading over rudder, the executes,
+//! overshoot angles, initial turning time, times to check yaw and the period. All quantities are given; none is
+//! computed from the curves.
 
 use plotters::style::text_anchor::HPos;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ use crate::number;
 use crate::palette::{CurveOrigin, DIMENSION, HEADING, INK, Look, Marker, RUDDER, SOLID};
 use crate::theme::Theme;
 
-/// A point of the heading curve.
+/// Point of the heading curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigZagMark {
     /// Time, s.
@@ -26,10 +26,10 @@ pub struct ZigZagMark {
     pub heading_deg: f64,
 }
 
-/// A stretch of time.
+/// Interval of time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TimeSpan {
-    /// Begin, s.
+    /// Beginning, s.
     pub from_s: f64,
     /// End, s.
     pub to_s: f64,
@@ -41,51 +41,51 @@ impl TimeSpan {
     }
 }
 
-/// How far the heading runs on after the rudder is reversed.
+/// Overshoot: heading beyond that at the execute.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct OvershootMark {
-    /// Where the counter rudder is ordered.
+    /// Execute of the counter rudder.
     pub execute: ZigZagMark,
-    /// Where the heading turns back.
+    /// Extremum of the heading after the execute.
     pub extremum: ZigZagMark,
-    /// The overshoot angle, degrees, positive to either side.
+    /// Overshoot angle, degrees, positive to either side.
     pub angle_deg: f64,
 }
 
-/// What [`super::Plot::ZigZag`] draws.
+/// Data of [`super::Plot::ZigZag`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigzagTrial {
-    /// Heading, degrees over seconds.
+    /// Heading, degrees, against time, s.
     pub heading: PlotCurve,
     /// `true` if the heading is drawn as separate points (noisy or widely spaced) and not as a line.
     pub heading_as_points: bool,
-    /// Rudder angle, degrees over seconds.
+    /// Rudder angle, degrees, against time, s.
     pub rudder: PlotCurve,
-    /// Noise-free heading, degrees over seconds.
+    /// Noise-free heading, degrees, against time, s.
     pub truth: Option<PlotCurve>,
-    /// The executes: every order that puts the rudder over.
+    /// Executes: all orders that put the rudder over.
     pub executes: Vec<ZigZagMark>,
     /// The overshoots in order.
     pub overshoots: Vec<OvershootMark>,
     /// Initial turning time: from the first execute to the second.
     pub initial_turning: Option<TimeSpan>,
-    /// Times to check yaw: from an execute of counter rudder to the extremum that follows.
+    /// Times to check yaw: from an execute of counter rudder to the next extremum of the heading.
     pub check_yaw: Vec<TimeSpan>,
-    /// A full period of the manoeuvre.
+    /// One full period of the manoeuvre.
     pub period: Option<TimeSpan>,
 }
 
-/// Most executes that are marked: of more than that neither lines nor figures could be told apart.
+/// Maximum number of marked executes: with more, neither lines nor numbers could be distinguished.
 const MAX_MARKED: usize = 60;
 
 const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
 const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
 
-/// Height of the panel of the heading, as a share of the width.
+/// Height of the heading panel, as a share of the width.
 const HEIGHT: f64 = 0.36;
 
-/// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
-/// without its characteristic quantities, and a note says so.
+/// Drawing of a zig-zag trial: heading with its dimension lines above, rudder below. A trial with too many executes is
+/// drawn without its characteristic quantities, and a note states it.
 pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let count = data.executes.len();
     if count <= MAX_MARKED {
@@ -104,7 +104,7 @@ pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> 
 }
 
 impl ZigzagTrial {
-    /// The curves and the marked points, with room above and below the heading for overshoot angles and times.
+    /// Curves and marked points, with room above and below the heading for overshoot angles and times.
     fn panels(&self, theme: &Theme) -> Panels {
         let name = format!("heading {}", symbol("ψ"));
         let heading = match self.heading_as_points {
@@ -135,7 +135,7 @@ impl ZigzagTrial {
         Panels::of(Stack { marks, ..Stack::over(Ruler::time(), rows) })
     }
 
-    /// Draws overshoots, times and period; returns what they mean, with the times where they do not fit at their lines.
+    /// Draws overshoots, times and period; returns their meaning, with the times if they do not fit at their lines.
     fn annotate(&self, chart: &Chart, theme: &Theme) -> Plotted<Option<String>> {
         let size = theme.small_font;
         let draw = Dimensions { chart, theme };
@@ -175,14 +175,14 @@ const STRIP: f64 = 2.3;
 /// Length of an arrow head, in small-font sizes.
 const HEAD: f64 = 0.5;
 
-/// Draws dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
+/// Dimension lines as on a technical drawing: a line with an arrow at either end and the quantity next to it.
 struct Dimensions<'a> {
     chart: &'a Chart,
     theme: &'a Theme,
 }
 
 impl Dimensions<'_> {
-    /// The line between two places; when they are too close for two heads, the heads point at them from outside.
+    /// Draws the line between two places; if they are too close for two heads, the heads point at them from outside.
     fn between(&self, from: PagePoint, to: PagePoint) -> Plotted {
         let length = (to.0 - from.0).hypot(to.1 - from.1);
         if length == 0.0 || !length.is_finite() {
@@ -198,19 +198,20 @@ impl Dimensions<'_> {
         canvas.head(to, (side * along.0, side * along.1), size, DIMENSION)
     }
 
-    /// A thin line from a point of the data to its dimension line.
+    /// Draws a thin line from a point of the data to its dimension line.
     fn extension(&self, from: PagePoint, to: PagePoint) -> Plotted {
         let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION, 0.8 * self.theme.thin) };
         self.chart.canvas.line(&[from, to], stroke)
     }
 
-    /// The quantity at a dimension line.
+    /// Writes the quantity at a dimension line.
     fn label(&self, place: PagePoint, text: &str) -> Plotted {
         let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
         self.chart.canvas.text_on_ground(place, &text)
     }
 
-    /// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
+    /// Draws the vertical dimension line from the heading of the execute to the extremum, with its angle beyond the
+    /// curve.
     fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Plotted {
         let place = |mark: &ZigZagMark| self.chart.inside(mark.t_s, mark.heading_deg);
         let (Some(peak), Some(start)) = (place(&overshoot.extremum), place(&overshoot.execute)) else { return Ok(()) };
@@ -227,8 +228,8 @@ impl Dimensions<'_> {
         self.label((x, peak.1 + beyond), &text)
     }
 
-    /// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end;
-    /// returns its middle where it lies in the frame.
+    /// Draws the horizontal dimension line of a span, with lines to the curve if a marked point is at its end; returns
+    /// its middle if that is in the frame.
     fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> Plotted<Option<f64>> {
         let inside = |t: f64| self.chart.across(t).filter(|x| self.chart.rect.contains((*x, y)));
         let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };

@@ -1,5 +1,5 @@
-//! From Markdown to the body of a page: headings with names to link to, tables that can be read row by row, figures in
-//! the place of images.
+//! Conversion of Markdown to the body of a page: headings with names to link to, tables that can be read row by row,
+//! figures in place of images.
 
 use std::collections::HashSet;
 
@@ -8,7 +8,7 @@ use pulldown_cmark::{Alignment, CowStr, Event, HeadingLevel, Options, Parser, Ta
 use super::escape::escaped;
 use super::figures::{Images, Room};
 
-/// A heading that can be linked to.
+/// Heading that can be linked to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct PageHeading {
     pub level: u8,
@@ -16,36 +16,36 @@ pub(super) struct PageHeading {
     pub text: String,
 }
 
-/// The body and its headings in their order.
+/// Body and its headings in order.
 pub(super) struct Body {
     pub html: String,
     pub headings: Vec<PageHeading>,
 }
 
-/// What a link may lead to; anything else is only its words.
+/// Beginnings of permitted links; other links become plain text.
 const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
 
-/// What is known while a page is read from top to bottom.
+/// State while a page is read from top to bottom.
 struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> Images,
     /// Titles of the parts that are closed at first.
     folded: &'a [&'a str],
-    /// `true` if such a part is being read, and whether its headline is.
+    /// `true` if such a part is being read; `true` if its headline is being read.
     fold: (bool, bool),
     room: Room,
     out: Vec<Event<'m>>,
     headings: Vec<PageHeading>,
     ids: HashSet<String>,
-    /// Name of the heading that was passed last.
+    /// Name of the latest heading.
     section: String,
     alignments: Vec<Alignment>,
-    /// Number of the cell that is next, and whether it is one of a head.
+    /// Number of the next cell, and whether it is in a table head.
     cell: (usize, bool),
-    /// What ends the cell.
+    /// Closing tag of the cell.
     cell_end: &'static str,
 }
 
-/// The body of a page.
+/// Body of a page.
 pub(super) fn of(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
@@ -68,7 +68,7 @@ pub(super) fn of(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Image
     Body { html: text, headings: reader.headings }
 }
 
-/// The words from a place to the end of what is begun there, and the place behind it.
+/// Text from a place to the end of the element that begins there, and the place after it.
 fn words(events: &[Event], start: usize) -> (String, usize) {
     let (mut depth, mut text) = (0_usize, String::new());
     for (place, event) in events.iter().enumerate().skip(start) {
@@ -86,7 +86,7 @@ fn words(events: &[Event], start: usize) -> (String, usize) {
     (text, events.len())
 }
 
-/// The words of a paragraph that is emphasis from end to end, and the place behind it.
+/// Text of a paragraph that consists of emphasis alone, and the place after it.
 fn emphasis(events: &[Event], place: usize) -> Option<(String, usize)> {
     let is_begun = matches!(events.get(place)?, Event::Start(Tag::Paragraph))
         && matches!(events.get(place + 1)?, Event::Start(Tag::Emphasis));
@@ -104,7 +104,7 @@ impl<'m> BodyReader<'_, 'm> {
             }
             match &events[place] {
                 Event::Start(Tag::Heading { level, .. }) => self.heading(*level, words(&events, place).0),
-                // Words over several rows are written once: below them nothing is a head.
+                // Words over several rows are written once: no cell below them is a head.
                 Event::Start(Tag::TableCell) => {
                     self.begin_cell(matches!(events.get(place + 1), Some(Event::End(TagEnd::TableCell))));
                 }
@@ -115,7 +115,7 @@ impl<'m> BodyReader<'_, 'm> {
         self.end_fold();
     }
 
-    /// Ends a part that is closed at first, where one is being read.
+    /// Ends a part that is closed at first, if one is being read.
     fn end_fold(&mut self) {
         if std::mem::take(&mut self.fold).0 {
             self.html("</details>\n");
@@ -126,7 +126,7 @@ impl<'m> BodyReader<'_, 'm> {
         self.out.push(Event::Html(html.into()));
     }
 
-    /// A paragraph that is an image and nothing else, and the paragraph of emphasis after it, which is its caption.
+    /// Figure of a paragraph that is only an image, with the emphasised paragraph after it as its caption.
     fn figure(&mut self, events: &[Event], place: usize) -> Option<usize> {
         let (Event::Start(Tag::Paragraph), Event::Start(Tag::Image { dest_url, .. })) =
             (&events[place], events.get(place + 1)?)
@@ -214,9 +214,9 @@ impl<'m> BodyReader<'_, 'm> {
                 self.cell.0 += 1;
                 self.html(self.cell_end);
             }
-            // Shown, not obeyed.
+            // Shown as text, not interpreted.
             Event::Html(text) | Event::InlineHtml(text) => self.out.push(Event::Text(text)),
-            // An image in a line of words: nothing is fetched for it.
+            // An image in a line of words: no file is loaded for it.
             Event::Start(Tag::Image { dest_url, .. }) => self.html(format!("<a href=\"{}\">", target(&dest_url))),
             Event::End(TagEnd::Image) => self.html("</a>"),
             Event::Start(Tag::Link { dest_url, .. }) => self.html(format!("<a href=\"{}\">", target(&dest_url))),
@@ -226,7 +226,7 @@ impl<'m> BodyReader<'_, 'm> {
     }
 }
 
-/// Where a link leads: a place in the net, or a file beside the page; never a script.
+/// Target of a link: an address on the web, or a file next to the page; never a script.
 fn target(url: &str) -> String {
     let is_link = LINKS.iter().any(|link| url.starts_with(link));
     if is_link || !url.contains(':') { escaped(url) } else { String::from("#") }

@@ -1,6 +1,6 @@
-//! Words on their way into a page: nothing in them is a tag.
+//! Escaping of text for a page: no text becomes a tag.
 
-/// A text for the body of a page or for a value in double quotes.
+/// Text for the body of a page or for a value in double quotes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

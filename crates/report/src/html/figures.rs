@@ -1,4 +1,4 @@
-//! Figures inside a page: the drawing itself where it is small enough, otherwise its pixels, otherwise a link.
+//! Figures inside a page: the drawing itself if it is small enough, otherwise its pixels, otherwise a link.
 
 use std::fs;
 use std::path::Path;
@@ -8,31 +8,31 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::escape::escaped;
 
-/// Maximum drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
+/// Maximum size of a drawing that is embedded as SVG, bytes: larger ones are slow in browsers, and pixels are smaller.
 const MAX_DRAWING_BYTES: usize = 300_000;
 
-/// Most bytes of a file that is looked at for a figure.
+/// Maximum size of a file that is read for a figure, bytes.
 const MAX_FILE_BYTES: u64 = 1 << 26;
 
-/// Bytes that all figures of a page have together: the whole page stays below 2 MB.
+/// Maximum size of all figures of a page together, bytes: the whole page stays below 2 MB.
 const ROOM: usize = 1_850_000;
 
-/// A figure as it was written.
+/// Files of a written figure.
 #[derive(Debug, Clone, Default)]
 pub struct Images {
-    /// The SVG document, where there is one.
+    /// SVG document, if there is one.
     pub svg: Option<String>,
-    /// The PNG file, where there is one.
+    /// PNG file, if there is one.
     pub png: Option<Vec<u8>>,
 }
 
 impl Images {
-    /// What [`crate::Drawing::write`] has put into a folder under a stem; a file that cannot be read is none, because a
-    /// page can do without a figure.
+    /// Files that [`crate::Drawing::write`] wrote into a folder under a stem; `None` for a file that cannot be read,
+    /// because a page can do without a figure.
     pub fn written(folder: &Path, stem: &str) -> Self {
         let file = |kind: &str| {
             let path = folder.join(format!("{stem}.{kind}"));
-            // A pipe would be waited for without an end.
+            // Reading a pipe could wait forever.
             let is_figure = path.metadata().is_ok_and(|about| about.is_file() && about.len() <= MAX_FILE_BYTES);
             is_figure.then(|| fs::read(path).ok())?
         };
@@ -40,7 +40,7 @@ impl Images {
     }
 }
 
-/// The room that is left for figures, bytes, and the figures that were placed.
+/// Remaining size for figures, bytes, and the number of placed figures.
 pub(super) struct Room {
     bytes: usize,
     figures: usize,
@@ -51,7 +51,7 @@ impl Room {
         Self { bytes: ROOM, figures: 0 }
     }
 
-    /// The figure with its name and its caption, which stands in the page once; `file` is where its PNG is.
+    /// Figure with its name and its caption, which is in the page once; `file` is the path of its PNG.
     pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &Images) -> String {
         let id = format!("caption-{}", self.figures + 1);
         let drawn = images.svg.as_deref().and_then(|svg| inline(svg, &id));
@@ -78,13 +78,13 @@ impl Room {
     }
 }
 
-/// An SVG document as an element of a page, with the caption of an id: without the size and the name space that only a
+/// SVG document as an element of a page, with the caption of an id: without the size and the name space that only a
 /// file needs.
 fn inline(svg: &str, caption: &str) -> Option<String> {
     let (head, shapes) = svg.split_once('>')?;
     let attribute = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
     let (view, width) = (attribute("viewBox")?, attribute("width")?);
-    // What cuts a panel is found in its own figure, also where another one has such a panel.
+    // The clip rectangle of a panel must be that of its own figure, even if another figure has an equal panel.
     let shapes = shapes.replace("id=\"clip-", &format!("id=\"{caption}-clip-"));
     let shapes = shapes.replace("url(#clip-", &format!("url(#{caption}-clip-"));
     Some(format!(

@@ -1,5 +1,5 @@
-//! A report for a browser: the page that is written as Markdown, in one file that needs no other. Figures and tables
-//! stand in it; nothing is fetched. The Markdown stays the one source: nothing is said here that is not said there.
+//! Report for a browser: the page that is written as Markdown, in one file that needs no other. Figures and tables are
+//! embedded; no file is loaded. The Markdown is the only source: the page adds no statement of its own.
 
 mod body;
 mod escape;
@@ -13,7 +13,7 @@ use body::PageHeading;
 pub(crate) use escape::escaped;
 pub use figures::Images;
 
-/// What the page looks like, and what its tables and figures answer to.
+/// Style sheet of the page, including the interaction of tables and figures.
 const STYLE: &str = include_str!("../../templates/report.css");
 const SCRIPT: &str = include_str!("../../templates/report.js");
 
@@ -27,14 +27,14 @@ struct Page<'a> {
     body: &'a str,
 }
 
-/// The page of a report in Markdown (the GitHub flavour, tables included).
+/// Page of a report in Markdown (the GitHub flavour, tables included).
 ///
-/// `images` finds the drawing of a figure `![name](stem.png)` by its stem; where it has none, or where the page would
-/// grow beyond what can be mailed, a link to the file stands in its place. A paragraph of nothing but emphasis below it
-/// is its caption. Parts whose titles are among `folded` are closed until a reader opens them. HTML in the Markdown is
-/// shown, not obeyed.
+/// `images` finds the drawing of a figure `![name](stem.png)` by its stem. If there is none, or if the page would
+/// become too large to be mailed, it is replaced by a link to the file. A paragraph of emphasis alone below it is its
+/// caption. Parts whose titles are among `folded` are closed until a reader opens them. HTML in the Markdown is shown,
+/// not interpreted.
 ///
-/// Fails with [`ReportError::Page`] when the page cannot be filled in.
+/// Fails with [`ReportError::Page`] if the page cannot be filled in.
 pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
     let body = body::of(markdown, folded, images);
     let contents: Vec<PageHeading> =

@@ -1,5 +1,5 @@
-//! A table for other programs: CSV, after RFC 4180, and the values of a JSON document. Both have the same columns: an
-//! interval is two of them.
+//! Table for other programs: CSV, after RFC 4180, and the values of a JSON document. Both have the same columns: an
+//! interval is two columns.
 
 use std::borrow::Cow;
 
@@ -10,9 +10,9 @@ use super::width::Alignment;
 use crate::printable::escaped;
 
 impl Table {
-    /// As CSV (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
+    /// CSV text (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
     /// ASCII minus signs, so that numbers can be read back. An interval is two columns, `K lower 95` and `K upper 95`.
-    /// A text that a spreadsheet would take for a formula stands behind an apostrophe. The title is not part of it.
+    /// A text that a spreadsheet would read as a formula has an apostrophe before it. The title is not part of it.
     pub fn to_csv(&self) -> String {
         let line = |cells: Vec<String>| cells.join(",") + "\n";
         let heads = line(self.heads().iter().map(|head| quote(head)).collect());
@@ -20,7 +20,7 @@ impl Table {
         heads + &self.rows.iter().map(|row| of(row)).collect::<String>()
     }
 
-    /// The rows as JSON: one object each, by the headings of the CSV; numbers as numbers, missing cells as null.
+    /// Rows as JSON: one object each, keyed by the headings of the CSV; numbers as numbers, missing cells as null.
     pub fn to_records(&self) -> Vec<Value> {
         let heads = self.heads();
         let is_number = self.columns.iter().flat_map(|column| {
@@ -43,7 +43,7 @@ impl Table {
         self.rows.iter().map(|row| record(row)).collect()
     }
 
-    /// The rows as a JSON document.
+    /// Rows as a JSON document.
     pub fn to_json(&self) -> String {
         Value::from(self.to_records()).to_string()
     }
@@ -63,7 +63,7 @@ impl Table {
         heads
     }
 
-    /// The cells of a row as numbers are written for programs, two for an interval.
+    /// Cells of a row with numbers in the form for programs, two for an interval.
     fn flat<'a>(&'a self, row: &'a [Option<String>]) -> impl Iterator<Item = Option<Cow<'a, str>>> {
         self.cells(row).zip(&self.columns).flat_map(|(cell, column)| {
             let ends = cell.filter(|_| column.interval).and_then(|cell| {
@@ -80,7 +80,7 @@ impl Table {
     }
 }
 
-/// A cell with minus signs and powers of ten as other programs read them: `-1.3e-12` for `−1.3×10⁻¹²`.
+/// Cell with minus signs and powers of ten as other programs read them: `-1.3e-12` for `−1.3×10⁻¹²`.
 fn readable(cell: &str) -> Cow<'_, str> {
     let plain = match cell.contains('−') {
         true => Cow::Owned(cell.replace('−', "-")),

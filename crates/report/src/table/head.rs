@@ -1,19 +1,19 @@
-//! The columns of a table, from left to right.
+//! Columns of a table, from left to right.
 
 use serde::{Deserialize, Serialize};
 
 use super::width::Alignment;
 
-/// A column of a table.
+/// Column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct TableColumn {
-    /// What the column holds.
+    /// Heading of the column.
     pub heading: String,
-    /// Its unit, without brackets.
+    /// Unit of the column, without brackets.
     pub unit: Option<String>,
-    /// How its cells are aligned.
+    /// Alignment of the cells.
     pub alignment: Alignment,
-    /// `true` if its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
+    /// `true` if the cells are intervals of the column before, `[low, high]`; other programs read two columns.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub interval: bool,
 }
@@ -21,7 +21,7 @@ pub struct TableColumn {
 impl TableColumn {
     /// Heading and unit, as in `K [1/s]`.
     pub(super) fn head(&self) -> String {
-        // An interval stands beside the column whose unit it has.
+        // An interval is next to the column whose unit it has.
         if self.interval { self.heading.clone() } else { self.named(&self.heading) }
     }
 
@@ -31,11 +31,11 @@ impl TableColumn {
     }
 }
 
-/// Columns in the making. What is added last can be given a unit.
+/// Columns in the making. The columns added last can be given a unit.
 #[derive(Debug, Clone, Default)]
 pub struct TableHead {
     pub(super) columns: Vec<TableColumn>,
-    /// Columns before those that were added last.
+    /// Number of columns before those that were added last.
     before: usize,
 }
 
@@ -47,25 +47,25 @@ impl TableHead {
         self
     }
 
-    /// Further columns of words.
+    /// Adds columns of words.
     #[must_use]
     pub fn texts<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
         self.with(headings, Alignment::Left)
     }
 
-    /// Further columns of whole numbers.
+    /// Adds columns of whole numbers.
     #[must_use]
     pub fn counts<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
         self.with(headings, Alignment::Right)
     }
 
-    /// Further columns of numbers with decimals.
+    /// Adds columns of numbers with decimals.
     #[must_use]
     pub fn numbers<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
         self.with(headings, Alignment::Decimal)
     }
 
-    /// The 95 % intervals of the last column, in its unit.
+    /// Adds a column of 95 % intervals of the last column, in its unit.
     #[must_use]
     pub fn interval(mut self) -> Self {
         let unit = self.columns.last().and_then(|column| column.unit.clone());
@@ -73,7 +73,7 @@ impl TableHead {
         self
     }
 
-    /// The unit of the columns that were added last.
+    /// Sets the unit of the columns that were added last.
     #[must_use]
     pub fn unit(mut self, unit: &str) -> Self {
         self.columns[self.before..].iter_mut().for_each(|column| column.unit = Some(unit.to_owned()));

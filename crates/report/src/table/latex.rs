@@ -1,25 +1,25 @@
-//! A table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` below each other by their decimal point. On
-//! one page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape.
-//! Any LaTeX with the packages named in its first line compiles it.
+//! Table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` aligned by their decimal points. On one page it
+//! is scaled down to the width of the text; a longer table runs over pages, a wide one best in landscape. Any LaTeX
+//! with the packages named in its first line compiles it.
 
 use super::content::Table;
 use super::head::TableColumn;
 use super::latex_text::{escape, script, worded};
 use super::width::{Alignment, columns as characters};
 
-/// Rows that one page holds; more run over pages.
+/// Maximum number of rows on one page; longer tables run over pages.
 const PAGE: usize = 42;
 
-/// A heading is broken into lines of about so many characters.
+/// Approximate number of characters in a line of a heading.
 const HEADING: usize = 9;
 
-/// Words that are longer, in characters, are broken into lines.
+/// Maximum length of a text in one line, characters.
 const WORDS: usize = 40;
 
 impl Table {
-    /// As LaTeX that compiles with the packages named in its first line: caption and label where the table has a title
-    /// and a label, numbers in `S` columns of siunitx (`0.1003 ± 0.0007` as `0.1003(7)`), every other character escaped
-    /// or translated to mathematics; on one page, at most as wide as the text, up to 42 rows.
+    /// LaTeX that compiles with the packages named in its first line: caption and label if the table has a title and a
+    /// label, numbers in `S` columns of siunitx (`0.1003 ± 0.0007` as `0.1003(7)`), every other character escaped or
+    /// translated to mathematics; on one page, at most as wide as the text, up to 42 rows.
     pub fn to_latex(&self) -> String {
         if self.columns.is_empty() {
             return String::from("% A table without columns.\n");
@@ -47,9 +47,9 @@ impl Table {
     }
 }
 
-/// A column as it is set.
+/// Column in LaTeX.
 struct LatexColumn {
-    /// The specification in the head of the tabular.
+    /// Specification in the head of the tabular.
     format: String,
     /// Lines of the heading, the last one next to the cells.
     heading: Vec<String>,
@@ -86,7 +86,7 @@ impl LatexColumn {
     }
 }
 
-/// A heading in lines no longer than the cells below, as far as its words allow.
+/// Heading in lines no longer than the cells below, as far as its words allow.
 fn wrapped(heading: &str, body: usize) -> Vec<String> {
     let longest = heading.split(' ').map(characters).max().unwrap_or(0).max(body);
     let mut lines: Vec<String> = Vec::new();
@@ -102,17 +102,17 @@ fn wrapped(heading: &str, body: usize) -> Vec<String> {
     lines
 }
 
-/// A number as siunitx reads it, and its parts.
+/// Number as siunitx reads it, and its parts.
 struct LatexNumber {
     source: String,
     is_negative: bool,
-    /// Digits before and behind the decimal point, of the uncertainty and of the power of ten.
+    /// Digits before and after the decimal point, of the uncertainty and of the power of ten.
     digits: [usize; 4],
     has_small_power: bool,
 }
 
 impl LatexNumber {
-    /// Reads `−1.25`, `0.1003 ± 0.0007`, `1.3×10⁻⁵` and `(1.23 ± 0.04)×10⁻⁵`.
+    /// Number read from `−1.25`, `0.1003 ± 0.0007`, `1.3×10⁻⁵` or `(1.23 ± 0.04)×10⁻⁵`.
     fn parse(cell: &str) -> Option<Self> {
         let (mantissa, power) = match cell.split_once("×10") {
             Some((mantissa, power)) => {
@@ -142,7 +142,7 @@ impl LatexNumber {
     }
 }
 
-/// Digits before and behind the point of a plain decimal number.
+/// Digits before and after the point of a plain decimal number.
 fn decimal(text: &str) -> Option<[usize; 2]> {
     let (before, behind) = text.split_once('.').unwrap_or((text, ""));
     let is_whole = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
@@ -185,7 +185,7 @@ fn body(set: &[LatexColumn], rows: usize) -> String {
     let mut out = String::new();
     for row in 0..rows {
         let cells = set.iter().map(|column| column.cells[row].as_str()).collect::<Vec<_>>().join(" & ");
-        // A bracket or a star behind the end of the row before would belong to that.
+        // A bracket or a star after the end of the row before would belong to that row end.
         let guard = if cells.starts_with(['[', '*', '(']) { "{}" } else { "" };
         out += &format!("    {guard}{cells} \\\\\n");
     }

@@ -1,23 +1,23 @@
-//! Text as LaTeX that any engine sets without further packages: what this program writes (Greek, signs, accents, sub-
-//! and superscripts) becomes mathematics, letters with accents stay, and any other character is named by its number.
+//! Text as LaTeX that any engine sets without further packages: characters of this program (Greek, signs, accents, sub-
+//! and superscripts) become mathematics, letters with accents are kept, and any other character is named by its number.
 
 use crate::printable::escaped;
 
-/// What becomes of a character: whether it is a sign of mathematics, of text or an accent of mathematics, its code
-/// point and how LaTeX writes it.
+/// Translation of characters: the kind (sign of mathematics, sign of text, or accent of mathematics), the code point
+/// and the LaTeX code.
 const SIGNS: &str = include_str!("latex_signs.tsv");
 
-/// Letters that every LaTeX knows as they are.
+/// Letters that every LaTeX accepts directly.
 const LETTERS: &str =
     "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝàáâãäåæçèéêëìíîïñòóôõöøùúûüýÿĆćČčĎďĚěŁłŃńŇňŐőŒœŘřŚśŞşŠšŤťŮůŰűŸŹźŻżŽž";
 
 const SUPER: (&str, &str) = ("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿᵏᵖᵀᵗʰ", "0123456789+-nkpTth");
 const SUB: (&str, &str) = ("₀₁₂₃₄₅₆₇₈₉₊₋ᵢⱼₖₘₙₒₚₐₑₛ", "0123456789+-ijkmnopaes");
 
-/// Symbols that a heading or a caption writes as words of their own.
+/// Symbols that are separate words in a heading or a caption.
 const SYMBOLS: [&str; 3] = ["K", "T", "K/T"];
 
-/// Text that stands for itself.
+/// Literal text.
 pub(super) fn escape(text: &str) -> String {
     let text = escaped(text);
     let mut out = String::with_capacity(text.len() + 8);
@@ -36,7 +36,7 @@ pub(super) fn escape(text: &str) -> String {
             let letter = c.is_ascii_alphanumeric().then(|| c.to_string());
             match letter.or_else(|| found("math", c).map(str::to_owned)) {
                 Some(letter) => out.push_str(&format!("$\\{accent}{{{letter}}}$")),
-                // An accent on what is no letter says nothing.
+                // An accent on a character that is not a letter is written alone.
                 None => out.push_str(&alone(c)),
             }
         } else {
@@ -46,7 +46,7 @@ pub(super) fn escape(text: &str) -> String {
     out
 }
 
-/// A heading or a caption: as [`escape`], and symbols that are words in it are set as such.
+/// Heading or caption: as [`escape`], with symbols that are separate words set as symbols.
 pub(super) fn worded(text: &str) -> String {
     let word = |word: &str| match SYMBOLS.contains(&word) {
         true => format!("${word}$"),

@@ -1,4 +1,4 @@
-//! A table in Markdown (the GitHub flavour).
+//! Table in Markdown (the GitHub flavour).
 
 use super::content::Table;
 use super::head::TableColumn;
@@ -6,14 +6,14 @@ use super::width::{self, Alignment};
 use crate::markdown::text as escape;
 
 impl Table {
-    /// As a Markdown table, padded so that the source can be read too. Ends with a line break.
+    /// Markdown table, padded so that the source is legible too. Ends with a line break.
     pub fn to_markdown(&self) -> String {
         render(self)
     }
 }
 
 fn render(table: &Table) -> String {
-    // Escaping comes before padding, so that the columns of the source line up too.
+    // Escaping comes before padding, so that the columns of the source are aligned too.
     let escaped = Table {
         label: None,
         title: None,

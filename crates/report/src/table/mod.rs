@@ -1,6 +1,6 @@
 //! Tables of results: one table, four renderings (terminal, Markdown, CSV, LaTeX). Cells are text that is already
-//! rounded; [`crate::number`] does that. A cell that is missing is shown as "–" and is empty in CSV. Text stands for
-//! itself in each of them: nothing in a cell or a heading is markup, a formula or a command.
+//! rounded by [`crate::number`]. A missing cell is shown as "–" and is empty in CSV. Text is literal in each rendering:
+//! no cell or heading is markup, a formula or a command.
 
 mod content;
 mod csv;

@@ -1,11 +1,11 @@
-//! A table for the terminal.
+//! Table for the terminal.
 
 use super::content::Table;
 use super::width;
 use crate::printable::escaped;
 
 impl Table {
-    /// For a terminal: columns separated by two spaces, a rule under the headings. Ends with a line break.
+    /// Text for a terminal: columns separated by two spaces, a rule under the headings. Ends with a line break.
     pub fn to_text(&self) -> String {
         render(self)
     }

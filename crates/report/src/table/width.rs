@@ -1,11 +1,11 @@
-//! How wide a text is in a terminal, and padding by it. Combining accents take no column, wide East Asian characters
-//! take two; Greek and mathematical symbols take one.
+//! Width of a text in a terminal, and padding by it. Combining accents have no column, wide East Asian characters two;
+//! Greek and mathematical symbols have one.
 
 use serde::{Deserialize, Serialize};
 
 use crate::number::MISSING;
 
-/// Which side the cells of a column are pushed to.
+/// Alignment of the cells of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Alignment {
@@ -14,11 +14,11 @@ pub enum Alignment {
     Left,
     /// Whole numbers.
     Right,
-    /// Numbers with decimals: the decimal points of a column stand below each other.
+    /// Numbers with decimals: the decimal points of a column are below each other.
     Decimal,
 }
 
-/// Columns a text takes.
+/// Number of columns of a text.
 pub(super) fn columns(text: &str) -> usize {
     text.chars().map(of_char).sum()
 }
@@ -37,16 +37,16 @@ fn pad(text: &str, before: usize, after: usize) -> String {
     format!("{}{text}{}", " ".repeat(before), " ".repeat(after))
 }
 
-/// Columns before the decimal point: of the whole text when there is none. In `12.5 ± 0.1` the first point counts.
+/// Columns before the decimal point: of the whole text if there is none. In `12.5 ± 0.1` the first point counts.
 fn before_point(text: &str) -> usize {
     match text.split_once('.') {
         Some((before, _)) => columns(before),
-        // `12 ± 3` stands with its 2 before the point that is not there.
+        // `12 ± 3` is aligned with its 2 before the absent point.
         None => text.split_once(' ').map_or_else(|| columns(text), |(before, _)| columns(before)),
     }
 }
 
-/// Pads heading and cells of one column to the same width; the heading comes first.
+/// Heading and cells of one column padded to the same width; the heading comes first.
 pub(super) fn align(heading: &str, cells: &[&str], alignment: Alignment) -> Vec<String> {
     let numbers = || cells.iter().filter(|cell| alignment == Alignment::Decimal && **cell != MISSING);
     let point = numbers().map(|cell| before_point(cell)).max().unwrap_or(0);

@@ -6,8 +6,8 @@ use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prio
 use crate::angle::DEGREE;
 use estimation::number::Real;
 
-/// Backlash of half-width g: the acting rudder stays within ±g of the recorded one and moves only when the play is
-/// taken up. The other form of the effect, a dead band, is a row of the list.
+/// Backlash of half-width g: the acting rudder stays within ±g of the recorded rudder and moves only after the play is
+/// used up. The second form of the effect, a dead band, is a row of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Backlash;
 
@@ -15,7 +15,7 @@ impl Backlash {
     /// Half-width g, rad.
     pub(super) const HALF_WIDTH: Parameter = Parameter::even(["g", "g", "rad"], [0.0, 0.012], [0.0, 0.15]);
 
-    /// Prior mean, standard deviation and largest value of g, rad.
+    /// Prior mean, standard deviation and maximum of g, rad.
     pub(super) fn prior(records: &RecordScales) -> [f64; 3] {
         [0.0, 0.12 * records.rudder, 0.5 * records.rudder]
     }
@@ -50,7 +50,7 @@ impl<R: Real> Action<R> for Backlash {
         z.fill(now.rudder);
     }
 
-    /// Play operator: for a monotone rudder the previous angle clamped to [δ − g, δ + g], which is exact within a step.
+    /// Play operator: for a monotone rudder, the previous angle clamped to [δ − g, δ + g]; exact within a step.
     fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
         let g = p[0].at_least(0.0);
         z[0].between(rudder - g, rudder + g)

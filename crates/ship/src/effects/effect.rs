@@ -19,7 +19,7 @@ pub struct Parameter {
     pub symbol: &'static str,
     /// Unit, in SI and radians.
     pub unit: &'static str,
-    /// Neutral value, at which the effect is absent; of a shape parameter, the start of a search.
+    /// Neutral value, at which the effect is absent; start value of the search for a shape parameter.
     pub neutral: f64,
     /// Typical value, for scaling and for tests.
     pub typical: f64,
@@ -38,7 +38,7 @@ impl Parameter {
     pub const NO_UNIT: &'static str = "SI";
 
     /// Parameter that keeps its sign when port and starboard are exchanged, from key, symbol and unit, neutral and
-    /// typical value, smallest and largest value.
+    /// typical value, minimum and maximum.
     pub const fn even(
         [key, symbol, unit]: [&'static str; 3],
         [neutral, typical]: [f64; 2],
@@ -47,12 +47,12 @@ impl Parameter {
         Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, file: None }
     }
 
-    /// Parameter that changes its sign then.
+    /// Parameter that changes its sign when port and starboard are exchanged.
     pub const fn odd(names: [&'static str; 3], values: [f64; 2], range: [f64; 2]) -> Self {
         Self { odd: true, ..Self::even(names, values, range) }
     }
 
-    /// Parameter with its key in a scenario file, where it is required, and the size of its unit in SI.
+    /// Required parameter in a scenario file, with its key and the size of its unit in SI.
     pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
         Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
     }
@@ -114,7 +114,7 @@ pub struct Scale<R = f64> {
 }
 
 impl<R: Real> Scale<R> {
-    /// Factors of one.
+    /// Factors equal to one.
     pub fn none() -> Self {
         Self { damping: R::from(1.0), gain: R::from(1.0) }
     }
@@ -129,19 +129,19 @@ pub struct SwayCoupling<R = f64> {
     pub rudder_time: R,
 }
 
-/// Quantities on which an effect acts beside its own states; the others are not evaluated.
+/// Quantities on which an effect acts in addition to its own states; other quantities are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Targets {
-    /// It transforms the acting rudder.
+    /// `true` if the effect transforms the acting rudder.
     pub rudder: bool,
-    /// It scales damping and gain.
+    /// `true` if the effect scales damping and gain.
     pub scale: bool,
-    /// It adds a yaw acceleration.
+    /// `true` if the effect adds a yaw acceleration.
     pub moment: bool,
 }
 
 impl Targets {
-    /// None of these.
+    /// No quantity.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
     pub const RUDDER: Self = Self { rudder: true, ..Self::NONE };
@@ -166,7 +166,7 @@ pub struct Description {
 
 /// Effect that a first-order response lacks. Its equations are in [`Action`].
 ///
-/// `p` has the values of its parameters.
+/// `p` has the values of the parameters.
 pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
@@ -191,29 +191,29 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
         self.description().parameters
     }
 
-    /// Keys of its parameters in a scenario file; `None` for a form that needs a measured record.
+    /// Keys of the parameters in a scenario file; `None` for a form that needs a measured record.
     fn in_file(&self) -> Option<Vec<FileNumber>> {
         self.parameters().iter().map(|parameter| parameter.file).collect()
     }
 
-    /// Measured channel that it requires; without it the effect is zero.
+    /// Measured channel that the effect requires; without this channel the effect is zero. `None` if it requires no
+    /// channel.
     fn needs(&self) -> Option<Regressor> {
         None
     }
 
-    /// `true` if it uses a measured channel where there is one.
+    /// `true` if the effect uses this channel when it is measured.
     fn uses(&self, channel: Regressor) -> bool {
         self.needs() == Some(channel)
     }
 
-    /// Candidate effect with its priors in records of these manoeuvres; `None` if it is not identifiable from them,
-    /// as without its channel.
+    /// Candidate effect with its priors in these records; `None` if they do not identify it, e.g. without its channel.
     fn proposal(&self, records: &RecordScales) -> Option<Proposal>;
 
-    /// Quantities on which it acts.
+    /// Quantities on which the effect acts.
     fn targets(&self) -> Targets;
 
-    /// Number of its states.
+    /// Number of states of the effect.
     fn states(&self) -> usize {
         0
     }
@@ -229,7 +229,8 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
         None
     }
 
-    /// `true` for a moment that depends on time alone; it then belongs to one record and does not apply to others.
+    /// `true` for a moment that depends on time alone; it then belongs to one record and does not apply to other
+    /// records.
     fn is_time_dependent(&self) -> bool {
         false
     }
@@ -239,12 +240,12 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
         false
     }
 
-    /// `true` if one of its parameters is an instant of the record.
+    /// `true` if a parameter is an instant of the record.
     fn has_instant(&self) -> bool {
         false
     }
 
-    /// `true` if it depends on the absolute heading, so that a rotated record gives another response.
+    /// `true` if the effect depends on the absolute heading, so that a rotated record gives another response.
     fn is_heading_dependent(&self) -> bool {
         false
     }
@@ -255,7 +256,8 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
         self.random_heading(&typical).is_some()
     }
 
-    /// Spectrum of a random heading that is added to the observed one; the deterministic response ignores it.
+    /// Spectrum of a random heading that is added to the observed heading; the deterministic response ignores it.
+    /// `None` for an effect that is not random.
     fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
         None
     }
@@ -273,7 +275,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
 
 /// Equations of an effect, for every number type.
 ///
-/// `p` has the values of its parameters, `z` its states.
+/// `p` has the values of the parameters, `z` the states.
 pub trait Action<R: Real> {
     /// States on a straight approach.
     fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
@@ -290,7 +292,7 @@ pub trait Action<R: Real> {
         rudder
     }
 
-    /// Rates of its states; `before` is the rudder before this effect, rad.
+    /// Rates of the states; `before` is the rudder before this effect, rad.
     fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, _rate: &mut [R]) {}
 
     /// Update of memory that follows no differential equation, once a step.
@@ -306,7 +308,7 @@ pub trait Action<R: Real> {
         R::from(0.0)
     }
 
-    /// Time constants of the second order, for the effect that raises the order of the response.
+    /// Time constants of the second order; `None` except for the effect that raises the order of the response.
     fn sway_coupling(&self, _p: &[R]) -> Option<SwayCoupling<R>> {
         None
     }
@@ -335,21 +337,21 @@ impl EffectReal for Tangent {
 /// Scales of the manoeuvres in given records, from which priors follow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordScales {
-    /// Ship-length time L/U, s; where length or speed is unknown, (K/T)^(−1/2) of the base, which is of that order.
+    /// Ship-length time L/U, s; if length or speed is unknown, (K/T)^(−1/2) of the base, which is of the same order.
     pub time: f64,
     /// Maximum rudder angle, rad.
     pub rudder: f64,
-    /// Duration of the longest record, s.
+    /// Maximum over the durations of the records, s.
     pub duration: f64,
     /// Usual time between rows, s.
     pub spacing: f64,
-    /// Approach speed, m/s, where all records have a measured speed.
+    /// Approach speed, m/s, if all records have a measured speed.
     pub speed: Option<f64>,
-    /// Approach speed, m/s, where all records have a measured sway velocity.
+    /// Approach speed, m/s, if all records have a measured sway velocity.
     pub sway: Option<f64>,
-    /// Mean square relative wind speed, m²/s², where all records have it.
+    /// Mean square relative wind speed, m²/s², if all records have it.
     pub wind_square: Option<f64>,
-    /// Root mean square propeller revolutions, 1/s, where all records have them and they change.
+    /// Root mean square propeller revolutions, 1/s, if all records have them and they change.
     pub propeller: Option<f64>,
     /// First and last time, s, of the record in which an effect that depends on time would act.
     pub span: [f64; 2],
@@ -366,21 +368,20 @@ pub struct Prior {
     pub lowest: f64,
     /// Maximum value.
     pub highest: f64,
-    /// `true` for a shape parameter, which has no meaning where the amplitudes are neutral.
+    /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
-    /// Index of the parameter of the same effect from which it is measured: value and prior are those of the
-    /// difference.
+    /// Index of a reference parameter of the effect: value and prior are those of the difference from this parameter.
     pub beside: Option<usize>,
 }
 
 impl Prior {
-    /// Normal distribution truncated to the physical range of a parameter.
+    /// Normal prior truncated to the physical range of a parameter.
     pub fn normal(parameter: &Parameter, mean: f64, sd: f64) -> Self {
         let Parameter { lowest, highest, .. } = *parameter;
         Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, beside: None }
     }
 
-    /// Uniform distribution on a range, for a shape parameter.
+    /// Uniform prior on a range, for a shape parameter.
     pub fn uniform([lowest, highest]: [f64; 2]) -> Self {
         let mean = 0.5 * (lowest + highest);
         Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, beside: None }
@@ -391,7 +392,7 @@ impl Prior {
         Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, beside: None }
     }
 
-    /// Prior truncated to another range. Where a record sets the upper end below the lower one, the lower one holds.
+    /// Prior truncated to another range. If a record sets the upper end below the lower end, the lower end holds.
     #[must_use]
     pub fn within(self, [lowest, highest]: [f64; 2]) -> Self {
         let highest = highest.max(lowest);
@@ -404,7 +405,7 @@ impl Prior {
         Self { is_shape: true, ..self }
     }
 
-    /// `true` if it is fitted.
+    /// `true` if the parameter is fitted.
     pub fn is_fitted(&self) -> bool {
         self.sd > 0.0
     }

@@ -8,10 +8,10 @@ pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
 /// Inverse of a square degree, 1/rad².
 pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 
-/// Entry of a parameter in a scenario file.
+/// Entry of a scenario file that sets a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FileNumber {
-    /// Key below the effect, which ends in the unit.
+    /// Key below the effect; it ends in the unit.
     pub key: &'static str,
     /// Size of that unit in SI and radians.
     pub unit: f64,
@@ -26,11 +26,11 @@ pub struct FileNumber {
 /// Conversion from an entry of a scenario file to a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileRole {
-    /// The entry itself.
+    /// Entry used directly as the parameter.
     Value,
-    /// Entry over T: files write T r' + r, models r'.
+    /// Entry divided by T: files use T r' + r, models r'.
     OverT,
-    /// Direction ψ_w of a strength that is the entry before: strength sin 2(ψ_w − ψ), whose components along cos 2ψ and
+    /// Direction ψ_w of the strength in the preceding entry: strength sin 2(ψ_w − ψ), whose components along cos 2ψ and
     /// sin 2ψ are the two parameters.
     Direction,
 }

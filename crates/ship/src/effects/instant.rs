@@ -8,5 +8,5 @@ pub const INSTANT: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100
 /// Width w of an edge, in rows.
 pub const EDGE_ROWS: f64 = 2.0;
 
-/// Distance from an instant, in widths, at which tanh is 1 to 10⁻¹³.
+/// Distance from an instant, in widths, at which 1 − tanh is 10⁻¹³.
 pub const REACH: f64 = 15.0;

@@ -1,5 +1,5 @@
-//! List of effects, in the order of reports. An effect that is algebraic in the signals is a row with a formula; one
-//! with memory or states is written in Rust.
+//! List of effects, in the order of reports. An effect that is algebraic in the signals is a row with a formula; an
+//! effect with memory or states is written in Rust.
 
 use std::sync::{Arc, LazyLock};
 
@@ -24,11 +24,11 @@ pub(super) enum ListedEffect {
     Rust(fn() -> Arc<dyn Effect>),
 }
 
-/// Row: identifier, form and equation; the quantity on which it acts, and the formula; its parameters in the order in
-/// which the formula names them, with their keys in scenario files; their prior (mean, standard deviation and largest
-/// value) in given records.
+/// Row: identifier, form and equation; quantity on which the effect acts, and its formula; parameters in the order in
+/// which the formula names them, with their keys in scenario files; prior (mean, standard deviation and maximum) in
+/// given records.
 ///
-/// At [`Targets::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; at [`Targets::MOMENT`] a yaw
+/// With [`Targets::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; with [`Targets::MOMENT`] a yaw
 /// acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
 const fn row(
     [id, form, equation]: [&'static str; 3],
@@ -52,10 +52,10 @@ const fn weather(
     Row(ListedFormula { description, acts: Targets::MOMENT, formula, prior, of_weather: true })
 }
 
-/// Maximum value of a prior that is limited by the range of the parameter alone.
+/// Maximum of a prior that is limited by the range of its parameter alone.
 const UNBOUNDED: f64 = f64::INFINITY;
 
-/// List of effects. The order of factors in a formula is part of the published numbers to the last bit.
+/// List of effects. The order of factors in a formula determines the last bit of the published numbers.
 #[rustfmt::skip]
 pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(SecondOrder)),
@@ -98,15 +98,15 @@ pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(SteeringLag::DeadTime)),
     Rust(|| Arc::new(SteeringLag::FirstOrder)),
     // A rudder that loses lift at large angles. Half of sin 2δ, the side force of a rudder whose lift is normal to its
-    // blade, is δ − ⅔ δ³; a hull that turns takes some of the angle away. A larger rudder has the larger effect as far
-    // as the records go: c₃ < 1/(3 δ²).
+    // blade, is δ − ⅔ δ³; the yaw rate of the hull reduces that angle. Within the rudder angles of the records the
+    // effect grows with the angle: c₃ < 1/(3 δ²).
     row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
         Targets::RUDDER, "delta - c3 * delta * delta * delta",
         &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])
             .in_file("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
         |records| Some([0.0, 0.4, (records.rudder * records.rudder * 3.0).recip()])),
     Rust(|| Arc::new(Backlash)),
-    // Angles below g do not act, larger ones act less g.
+    // Angles below g have no effect; larger angles act with g subtracted.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
         Targets::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
         &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Width of a dead band.")],
@@ -117,15 +117,15 @@ pub(super) static LIST: [ListedEffect; 22] = [
         &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])
             .in_file("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
         |_| Some([0.0, 0.12, UNBOUNDED])),
-    // A moment that is even in the yaw rate, and so in the drift that goes with it. A rudder whose inflow is
-    // straightened differently on either side has it (Yasukawa and Yoshimura 2015, γ_R).
+    // Moment that is even in the yaw rate, and so in the drift that accompanies it. A rudder whose inflow is
+    // straightened differently on either side causes it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
         Targets::MOMENT, "K_over_T * c_r * abs(r)",
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])
             .in_file("moment-by-drift-s", 1.0,
                      "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
         |records| Some([0.0, 0.1 * records.time, UNBOUNDED])),
-    // The start of a record keeps the trend apart from δ_r.
+    // The trend starts with the record, which separates it from δ_r.
     weather(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
         "K_over_T * m * (t - start)",
         &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])
@@ -134,8 +134,8 @@ pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(TransientDisturbance::Passing)),
     Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
     Rust(|| Arc::new(WaveYaw)),
-    // The moment of a drifting hull is N_v u v, so it falls with the measured speed. N_v/N_δ of hulls is −3 ± 1.5
-    // without dimension.
+    // The moment of a drifting hull is N_v u v, so it falls with the measured speed. For hulls N_v/N_δ is −3 ± 1.5,
+    // nondimensional.
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
         Targets::MOMENT, "K_over_T * c_v * (q * v)",
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
@@ -175,7 +175,7 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
     ALL.clone()
 }
 
-/// Meaning of an effect, without a full stop; empty for one that no scenario can add.
+/// Meaning of an effect, without a full stop; empty for an effect that no scenario can add.
 pub fn meaning(id: &str) -> &'static str {
     MEANINGS.iter().find(|(other, _)| *other == id).map_or("", |(_, meaning)| meaning)
 }
@@ -183,7 +183,7 @@ pub fn meaning(id: &str) -> &'static str {
 /// Effect of the list with this identifier and form.
 ///
 /// # Panics
-/// If there is none: a mistake of the caller, not of a user.
+/// If there is none: a programming error, not a user's error.
 pub fn listed(id: &str, form: &str) -> Arc<dyn Effect> {
     let effect = ALL.iter().find(|effect| (effect.id(), effect.form()) == (id, form));
     Arc::clone(effect.unwrap_or_else(|| panic!("no effect of the list is {id} ({form})")))

@@ -7,7 +7,7 @@
 //! An effect can transform the acting rudder (with memory), add states, scale damping and gain, add a yaw acceleration,
 //! and add to the observed heading; all are optional. To add an effect, add a row to `list.rs`.
 //!
-//! The sources of an effect stand beside its equation.
+//! The sources of an effect are given with its equation.
 
 mod backlash;
 mod effect;
@@ -43,7 +43,7 @@ use crate::particulars::Dimension;
 /// Effect of a line `name = formula`, optionally followed by expectations of constants, `; k about 5` or
 /// `; k from 1 to 20`.
 ///
-/// Fails with the position and what was expected there, and for the name of an effect of the list.
+/// Fails with the position and the expected symbols, and for the name of an effect of the list.
 pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     let formula = Formula::read(line)?;
     if all().iter().any(|effect| effect.id() == formula.id()) {
@@ -53,8 +53,8 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     Ok(formula)
 }
 
-/// Effect with this identifier, form and constants ([`Effect::constants`]); `None` if there is none, or if the number
-/// of constants differs. An identifier that is not on the list belongs to a formula, whose text is the form.
+/// Effect with this identifier, form and constants ([`Effect::constants`]); `None` if there is no such effect, or if
+/// the number of constants differs. An identifier that is not on the list belongs to a formula, whose text is the form.
 ///
 /// A constant with a positive neutral value must be positive: an approach speed (m/s), a propeller rate (1/s), a length
 /// (m), an edge (s).
@@ -77,7 +77,7 @@ pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>>
 mod tests {
     use super::*;
 
-    /// Identifier, form and constants restore an effect.
+    /// Round trip: identifier, form and constants restore an effect.
     #[test]
     fn every_effect_is_found_by_what_is_written_of_it() {
         for effect in all() {

@@ -7,7 +7,7 @@ use estimation::number::Real;
 
 /// Second-order response T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
 ///
-/// Absent at T₂ = T₃, where zero and pole cancel.
+/// The effect vanishes at T₂ = T₃, at which zero and pole cancel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SecondOrder;
 
@@ -28,7 +28,7 @@ impl Effect for SecondOrder {
         }
     }
 
-    /// Priors of T₂ and of T₃ − T₂, which is the amplitude: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.
+    /// Priors of T₂ and of T₃ − T₂, which is the amplitude: T₂U/L of hulls is 0.1 to 0.5 and T₃U/L 0.3 to 1.
     fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
         let time = records.time;
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);

@@ -1,4 +1,4 @@
-//! Speed loss in the turn, with which gain and damping of the yaw response fall.
+//! Speed loss in a turn, which reduces gain and damping of the yaw response.
 //!
 //! Source: K = K' U/L and T = T' L/U of the prime system (Norrbin 1971).
 
@@ -14,26 +14,26 @@ use estimation::number::Real;
 
 /// Speed loss: K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
 ///
-/// A propeller at constant revolutions sustains the inflow to the rudder, so the exponent of b can be below two and is
+/// A propeller at constant revolutions sustains the inflow to the rudder, so the exponent of b can be below two; it is
 /// a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpeedLoss {
     /// Speed ratio q = U/U₀ as a state: q' = (1 − q)/T_u − c r².
     Modelled,
-    /// Speed ratio q from the measured speed; 1 where the record has none.
+    /// Speed ratio q from the measured speed; 1 if the record has none.
     Measured {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
     },
-    /// Damping and rudder inflow from the measured speed and, where available, the measured revolutions n:
-    /// a ~ 1 + m_a (q − 1), b ~ (1 + e (q − 1) + e_n (n/n₀ − 1))². The propeller sustains the share e_n of the inflow.
+    /// Damping and rudder inflow from the measured speed and, where available, the measured revolutions n: a ~ 1 + m_a
+    /// (q − 1), b ~ (1 + e (q − 1) + e_n (n/n₀ − 1))². e_n is the share of the inflow that the propeller sustains.
     Inflow {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
         /// Revolutions n₀ of the approach, 1/s.
         approach_rate: f64,
     },
-    /// Rudder inflow from the measured propeller revolutions n: b ~ (n/n₀)^m; unchanged where there are none.
+    /// Rudder inflow from the measured propeller revolutions n: b ~ (n/n₀)^m; unchanged if there are none.
     Propeller {
         /// Revolutions n₀ of the approach, 1/s.
         approach_rate: f64,
@@ -117,7 +117,7 @@ impl Effect for SpeedLoss {
             None => Prior::fixed(0.0),
         };
         match self {
-            // A measured speed is not modelled.
+            // With a measured speed, the speed loss is not modelled.
             Self::Modelled if records.speed.is_some() => None,
             Self::Modelled => {
                 let recovery = Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
@@ -187,7 +187,7 @@ impl<R: Real> Action<R> for SpeedLoss {
         match self {
             Self::Modelled => {
                 let q = z[0].at_least(MIN_SPEED_RATIO);
-                // The exponent of the free stream is not fitted and needs no power function.
+                // The free-stream exponent is not fitted and requires no power function.
                 let gain = if p[2] == R::from(Self::FREE_STREAM[1]) { q * q } else { q.powf(p[2]) };
                 Scale { damping: q, gain }
             }

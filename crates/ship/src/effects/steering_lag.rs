@@ -1,9 +1,9 @@
-//! Steering lag: a rudder that acts later than the recorded one, by dead time, first-order lag or a clock offset.
+//! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
 use estimation::number::Real;
 
-/// Lag of the acting rudder behind the recorded one.
+/// Lag of the acting rudder behind the recorded rudder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SteeringLag {
     /// Dead time: δ_e(t) = δ(t − τ); a negative τ is a clock offset, never a steering gear.
@@ -20,7 +20,7 @@ const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.
     "Time constant of a first-order lag.",
 )];
 
-/// Minimum lag, s: a shorter one is below the resolution of any record and is neglected.
+/// Minimum lag, s; a shorter lag is below the resolution of any record and is neglected.
 const MIN_LAG_S: f64 = 0.02;
 
 impl Effect for SteeringLag {
@@ -41,7 +41,7 @@ impl Effect for SteeringLag {
                 Proposal::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
-                // Records sampled more coarsely cannot show the lag of a ship.
+                // Records with a coarser sampling interval do not resolve the lag of a ship.
                 let shortest = Some(MIN_LAG_S.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 Proposal::new(
                     *self,

@@ -13,7 +13,7 @@ use estimation::number::Real;
 pub enum TransientDisturbance {
     /// Pulse with smooth edges: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
     Passing,
-    /// Step at an instant: m/2 [1 + tanh((t − t₀)/w)], such as a change of loading or wind, or a pump that starts.
+    /// Step at an instant: m/2 [1 + tanh((t − t₀)/w)], such as a change of loading or wind, or the start of a pump.
     Lasting {
         /// Width w of the edge, s.
         edge: f64,
@@ -30,13 +30,13 @@ const PASSING: [Parameter; 3] = [
 
 const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
 
-/// Width of an edge over the duration.
+/// Width of an edge relative to the duration.
 const EDGE_SHARE: f64 = 0.1;
 
-/// Prior standard deviation of the moment as equivalent rudder angle, rad: that of a strong squall.
+/// Prior standard deviation of the moment as equivalent rudder angle, rad: the moment of a strong squall.
 const MOMENT_SD_RAD: f64 = 0.05;
 
-/// Maximum duration of a pulse over that of its record.
+/// Maximum duration of a pulse relative to the duration of its record.
 const MAX_DURATION_SHARE: f64 = 0.2;
 
 /// Share of a record at either end in which no step is fitted, because only a few rows would determine it.

@@ -1,4 +1,4 @@
-//! Yaw from first-order waves: a random narrow-band heading, added to the observed one.
+//! Yaw from first-order waves: a random narrow-band heading, added to the observed heading.
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
@@ -31,7 +31,7 @@ impl Effect for WaveYaw {
         }
     }
 
-    /// None: wave yaw is no part of the response and is identified as part of the noise law.
+    /// `None`: wave yaw is not part of the response; it is identified as part of the noise law.
     fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
         None
     }

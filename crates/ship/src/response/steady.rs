@@ -13,8 +13,8 @@ const MAX_RUDDER_RAD: f64 = 1.0;
 const STEPS: usize = 50;
 
 impl Response {
-    /// Rudder angle (rad) of a steady turn at `yaw_rate` (rad/s) on heading 0, with settled speed and memory; `None`
-    /// where no rudder within 1 rad keeps that rate. Of several rudders (beyond stall) the one nearest to amidships.
+    /// Rudder angle (rad) of a steady turn at `yaw_rate` (rad/s) on heading 0, with settled speed and memory; `None` if
+    /// no rudder within 1 rad keeps that rate. Of several rudder angles (beyond stall) the one nearest to amidships.
     ///
     /// Because the yaw rate is given and the rudder is the unknown, the unstable branch is found, too (reversed spiral,
     /// Bech 1968).
@@ -68,7 +68,7 @@ struct Memory {
     rate: Vec<f64>,
 }
 
-/// Root of a function between two arguments, by bisection; `first` is its value at the first one.
+/// Root of a function between two arguments, by bisection; `first` is the value at the first argument.
 fn root([mut near, mut far]: [f64; 2], first: f64, function: &mut impl FnMut(f64) -> f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (near + far);
@@ -95,7 +95,7 @@ mod tests {
         ResponseModel::new(vec![effect]).with(values)
     }
 
-    /// −a r − n r³ + b (δ + δ_r) = 0, by hand; a < 0 is a course-unstable ship with an unstable loop.
+    /// −a r − n r³ + b (δ + δ_r) = 0, re-derived by hand; a < 0 for a course-unstable ship with an unstable loop.
     #[test]
     fn the_steady_curve_holds_its_unstable_branch() {
         for inverse_time in [0.06, -0.02] {
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(ship(0.06, listed("nonlinear_damping", "r³"), &[300.0]).steady_rudder(1.0), None);
     }
 
-    /// Lag and sway coupling change the way to a steady turn, not the turn.
+    /// Lag and sway coupling change the approach to a steady turn, not the steady turn.
     #[test]
     fn memory_does_not_change_the_steady_curve() {
         for ship in

@@ -9,7 +9,7 @@ use approx::assert_relative_eq;
 
 const BASE_VALUES: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.01];
 
-/// A zig-zag-like rudder: ramps of 2.5 deg/s between ±10 deg.
+/// Zig-zag-like rudder: ramps of 2.5 deg/s between ±10 deg.
 fn rudder(sign: f64) -> Polyline {
     let d = sign * crate::angle::from_deg(10.0);
     let time = vec![0.0, 4.0, 20.0, 28.0, 60.0, 68.0, 100.0];
@@ -130,7 +130,7 @@ fn an_effect_acts_where_it_says() {
     }
 }
 
-/// A replay in dual numbers has the values of the plain replay, and the derivatives of finite differences.
+/// Replay in dual numbers: values of the plain replay, and derivatives by finite differences.
 #[test]
 fn a_replay_carries_its_derivatives() {
     let signal = rudder(1.0);
@@ -190,8 +190,8 @@ fn small_steps_are_taken_where_motion_is_fast() {
     assert!(squall < 1.5 * base, "{squall:e} rad, {base:e} rad without the squall");
 }
 
-/// The predicates of an effect agree with its equations: only an effect of the heading changes when the record is
-/// rotated, only an effect of time when it begins later, and the constants are those of its equations.
+/// Predicates of an effect against its equations: rotation of the record changes only effects of the heading, a later
+/// start only effects of time, and the constants are the constants of the equations.
 #[test]
 fn an_effect_is_what_it_says() {
     for effect in effects::all().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {

@@ -1,7 +1,8 @@
 //! Two Norrbin responses with a cubic term: the recreational craft Zeefakkel and a frigate of 100 m.
 //!
-//! In the source n₃ belongs to yaw rates in deg/s. At 5 m/s and 30° of rudder that gives the Zeefakkel 3.1 deg/s;
-//! read in radians the term would vanish beside r and the craft would turn at 15 deg/s. Here n₃ = 0.4 (180/π)² s²/rad².
+//! In the source n₃ belongs to yaw rates in deg/s. At 5 m/s and 30° of rudder that gives the Zeefakkel 3.1 deg/s; read
+//! in radians the term would be negligible against r and the craft would turn at 15 deg/s. Here n₃ = 0.4 (180/π)²
+//! s²/rad².
 //!
 //! Copies of the set give the length of the Zeefakkel as 45 m and as 13.7 m (45 ft), so the ship has no particulars
 //! here. The source also gives the frigate a lag of 1 s of the steering gear, which is not part of the ship.

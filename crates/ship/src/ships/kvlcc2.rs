@@ -1,11 +1,11 @@
 //! Tanker KVLCC2 at full scale and as the 7 m model L7: the MMG benchmark hull.
 //!
-//! Both share one set of hull, propeller and rudder coefficients; they differ in size and in the wake of the straight
-//! approach (0.35 and 0.40), so the model is not an exact miniature. The hull is neutrally stable to within rounding,
-//! so its linear indices are meaningless.
+//! Ship and model share one set of hull, propeller and rudder coefficients; they differ in size and in the wake of the
+//! straight approach (0.35 and 0.40), so the model is not an exact miniature. The hull is neutrally stable to within
+//! rounding, so its linear indices are meaningless.
 //!
 //! Sources: Yasukawa and Yoshimura (2015); coefficients agree between three published implementations of that article
-//! (the open-water coefficient k2 is printed as −0.1359 in one of them; −0.1385 is right). Rudder rates: SIMMAN 2020,
+//! (the open-water coefficient k2 is printed as −0.1359 in one of them; −0.1385 is correct). Rudder rates: SIMMAN 2020,
 //! case 1.2 (2.32 deg/s at full scale, 15.68 deg/s for the model). Radius of gyration: 0.25 L.
 
 use std::sync::Arc;
@@ -72,8 +72,8 @@ pub const FULL_SCALE: Parameters = Parameters {
     rudder: RUDDER,
 };
 
-/// Parameters of the 7 m model, with the draught as published; the scale of the ship would give 0.455 m, and with it a
-/// second 10/10 overshoot 0.2° larger.
+/// Parameters of the 7 m model, with the draught as published; the scale of the ship would give 0.455 m, which
+/// increases the second 10/10 overshoot by 0.2°.
 pub const MODEL_L7: Parameters = Parameters {
     Lpp: 7.0,
     d: 0.46,

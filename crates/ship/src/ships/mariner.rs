@@ -1,7 +1,7 @@
 //! Mariner-class cargo ship at 15 kn, as a hull and as the second-order response of that hull.
 //!
-//! The hull carries a constant sway force and yaw moment (Y0, N0), the asymmetry of its single propeller: with the
-//! rudder amidships it does not keep a straight course. The tabulated x_G' = −0.023 is prime and used as it stands.
+//! The hull has a constant sway force and yaw moment (Y0, N0), the asymmetry of its single propeller: with the rudder
+//! amidships the hull does not keep a straight course. The tabulated x_G' = −0.023 is prime and used as printed.
 
 use std::sync::Arc;
 

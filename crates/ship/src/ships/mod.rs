@@ -1,4 +1,4 @@
-//! Ships of the project, one file each, with the source of every number.
+//! Ships of the project, one file each, with a source for every number.
 //!
 //! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees of
 //! freedom. Only parameter sets whose source was seen are included. [`user`] makes ships from the numbers of a user.
@@ -41,11 +41,11 @@ pub struct Ship {
     pub name: Cow<'static, str>,
     /// Author and year of the numbers.
     pub source: Cow<'static, str>,
-    /// Length and approach speed, where they are known.
+    /// Length and approach speed; `None` if they are unknown.
     pub particulars: Option<Particulars>,
-    /// Rudder rate of the steering gear, rad/s, where the source gives one.
+    /// Rudder rate of the steering gear, rad/s; `None` if the source gives none.
     pub rudder_rate: Option<f64>,
-    /// Maximum rudder angle to either side, rad, where the source gives one.
+    /// Maximum rudder angle to either side, rad; `None` if the source gives none.
     pub largest_rudder: Option<f64>,
     /// Equations.
     pub model: Model,

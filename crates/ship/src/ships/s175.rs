@@ -1,7 +1,7 @@
 //! Container ship S175 of 175 m as a hull with three degrees of freedom: the published equations without heel.
 //!
 //! The source has a fourth degree of freedom, roll. Roll angle and roll rate are zero here, and their terms are left
-//! out; the real ship heels in a turn, so this hull is not S175 to the last digit. Forces are prime, by ½ρL²U² with the
+//! out; the real ship heels in a turn, so this hull approximates S175. Forces are prime, by ½ρL²U² with the
 //! instantaneous speed U; the rudder is positive to starboard.
 //!
 //! Source: Son and Nomoto (1982), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2022).
@@ -15,7 +15,7 @@ use crate::dynamics::Input;
 use crate::particulars::Particulars;
 use crate::vessel::{Hull, MIN_SPEED_SHARE};
 
-/// Length and speed; the speed is that of the linear equations in the Marine Systems Simulator.
+/// Length and speed; the speed is taken from the linear equations in the Marine Systems Simulator.
 const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
 
 /// m' and the added masses m_x', m_y'; I_z' + J_z', and m_y' α_y with the centre α_y' = 0.05 of m_y'.
@@ -39,7 +39,7 @@ const XP: f64 = -0.526;
 const DEDUCTION: f64 = 0.175;
 const THRUST: [f64; 2] = [0.527, -0.455];
 
-/// Rudder area, m², and aspect ratio; κ and ε of its inflow; flow straightening of v', r', r'³ and r'² v'.
+/// Rudder area, m², and aspect ratio; κ and ε of the rudder inflow; flow straightening of v', r', r'³ and r'² v'.
 const AREA: f64 = 33.0376;
 const ASPECT: f64 = 1.8219;
 const KAPPA: f64 = 0.631;

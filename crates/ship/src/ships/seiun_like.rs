@@ -1,13 +1,13 @@
 //! Training ship similar to SEIUN MARU, 105 m, as an MMG hull; contains estimates.
 //!
-//! No number was verified in a publication of measurements on SEIUN MARU. Of the twelve derivatives of sway
-//! force and yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, what the
-//! regression of Yoshimura and Masumoto (2012) gives for L/B = 5.86, C_b = 0.508 and d/L: they are regression values,
-//! Nv = −2d/L for one. So are Xvv and Xvr; m_y' is the regression of Zhou (1983), and w_P0 = 0.5 C_b − 0.05. The other
-//! five (Yv, Yr, Yvvv, Nr, Nrrr) differ from that regression; according to the compiler of the set they were published
-//! for SEIUN MARU, which was not verified. Thrust deduction, the linear thrust curve, resistance and several rudder
-//! coefficients are estimates or regressions of the compiler. The formulas are those of [`crate::vessel::prior`]. The
-//! hull moves plausibly for a ship of its size; it does not represent SEIUN MARU.
+//! No number was verified in a publication of measurements on SEIUN MARU. Of the twelve derivatives of sway force and
+//! yaw moment seven (Yvvr, Yvrr, Yrrr, Nv, Nvvv, Nvvr, Nvrr) equal, to the printed digits, the regression of Yoshimura
+//! and Masumoto (2012) for L/B = 5.86, C_b = 0.508 and d/L: they are regression values, e.g. Nv = −2d/L. Xvv and Xvr
+//! are regression values, too; m_y' is the regression of Zhou (1983), and w_P0 = 0.5 C_b − 0.05. The remaining five
+//! (Yv, Yr, Yvvv, Nr, Nrrr) differ from that regression; according to the compiler of the set they were published for
+//! SEIUN MARU, which was not verified. Thrust deduction, the linear thrust curve, resistance and several rudder
+//! coefficients are estimates or regressions of the compiler. The formulas are in [`crate::vessel::prior`]. The hull
+//! moves plausibly for a ship of its size; it does not represent SEIUN MARU.
 
 use std::sync::Arc;
 

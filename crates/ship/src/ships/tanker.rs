@@ -42,7 +42,7 @@ pub struct TankerHull {
 }
 
 impl TankerHull {
-    /// Hull without the asymmetry of the thrust.
+    /// Tanker hull without the asymmetry of the thrust.
     pub fn evened(self) -> Self {
         Self { by_thrust: [0.0; 2], ..self }
     }

@@ -1,4 +1,4 @@
-//! One suite over every ship, and the numbers of single ships against an independent computation.
+//! Test suite over every ship, and numbers of single ships against an independent computation.
 
 #![expect(non_snake_case, reason = "L and U, M and N are the symbols of the field")]
 
@@ -79,7 +79,7 @@ fn a_straight_approach_stays_finite_and_a_rudder_turns_to_its_own_side() {
     }
 }
 
-/// Rates stay finite at standstill, in drift and astern, because a search may visit any state.
+/// Accelerations at standstill, in drift and astern: they stay finite, because a search may visit any state.
 #[test]
 fn rates_are_finite_wherever_the_state_is() {
     for ship in all() {
@@ -109,8 +109,8 @@ fn rates_are_finite_wherever_the_state_is() {
     }
 }
 
-/// The disturbance is an equivalent rudder: at the first instant it gives the yaw acceleration of its moment, with the
-/// sign of the rudder. (A rudder also pushes sideways, so of a hull only the larger part of its acceleration is left.)
+/// Disturbance as equivalent rudder: at the first instant it gives the yaw acceleration of its moment, with the sign of
+/// the rudder. (A rudder also causes a sway force, so for a hull only the larger part of its acceleration remains.)
 #[test]
 fn a_disturbance_acts_like_the_rudder_it_is_equivalent_to() {
     for ship in all() {
@@ -127,7 +127,7 @@ fn a_disturbance_acts_like_the_rudder_it_is_equivalent_to() {
                 let share = by_disturbance / by_rudder;
                 assert!((0.8..1.25).contains(&share), "{}: {share}", ship.id);
             }
-            // T3 puts the rudder, not the disturbance, straight into the yaw acceleration.
+            // T3 is a direct path from the rudder, not from the disturbance, to the yaw acceleration.
             Model::Response(_) => assert!(by_disturbance >= 0.0 && by_rudder > 0.0, "{}", ship.id),
         }
     }
@@ -152,7 +152,7 @@ fn heading_after_reversals(dynamics: &dyn Dynamics, unit: f64, largest_step: f64
     heading
 }
 
-/// An eighth of the largest step must not move the final heading by 0.0001°.
+/// Change of the final heading with an eighth of the maximum step: less than 0.0001°.
 #[test]
 fn the_largest_step_is_small_enough() {
     for ship in all() {
@@ -168,7 +168,7 @@ fn the_largest_step_is_small_enough() {
 
 // --- single ships --------------------------------------------------------------------------------------------------
 
-/// The linear equations of a hull against central differences of its accelerations on the straight approach.
+/// Linear equations of a hull against central differences of its accelerations on the straight approach.
 #[test]
 fn linear_equations_are_the_slopes_of_the_hull() {
     let mut tanker = kvlcc2::FULL_SCALE;
@@ -200,8 +200,8 @@ fn linear_equations_are_the_slopes_of_the_hull() {
     }
 }
 
-/// Pairs of revolutions and speed of an independent implementation; tolerance: one unit of the last digit (a knot of
-/// 0.5144 m/s instead of 1852 m an hour moves the fourth digit).
+/// Revolutions and speed of an independent implementation, in pairs; tolerance: one unit of the last digit (a knot of
+/// 0.5144 m/s instead of 1852 m an hour changes the fourth digit).
 #[test]
 fn revolutions_and_speed_of_the_straight_approach_agree() {
     for (parameters, speed_kn, revolutions) in

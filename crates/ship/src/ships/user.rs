@@ -23,12 +23,12 @@ pub enum ShipError {
     Value {
         /// Symbol of the number.
         symbol: &'static str,
-        /// The number.
+        /// Value of the number.
         value: f64,
         /// Reason, a sentence.
         reason: &'static str,
     },
-    /// Number that gives a parameter of the response outside the range of ships.
+    /// Error of a number that gives a parameter of the response outside the range of ships.
     #[error(
         "{symbol} gives {} = {}, outside the range {} to {} {}",
         .parameter.symbol, ShortNumber(*.value), ShortNumber(.parameter.lowest), ShortNumber(.parameter.highest), .parameter.unit
@@ -36,9 +36,9 @@ pub enum ShipError {
     Range {
         /// Symbol of the number.
         symbol: &'static str,
-        /// The parameter of the response.
+        /// Parameter of the response.
         parameter: &'static Parameter,
-        /// Its value, in SI and radians.
+        /// Value of the parameter, in SI and radians.
         value: f64,
     },
 }
@@ -59,8 +59,9 @@ fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> 
     check("K", K, K / T > 0.0, "K and T must have the same sign, or the ship turns away from its rudder")
 }
 
-/// Checks the parameters of a response against their ranges; `symbols` are the numbers it was made from, in the order
-/// of its parameters. A time constant of a nanosecond is not a ship, and its simulation would not end.
+/// Check of the parameters of a response against their ranges; `symbols` are the numbers that gave them, in the same
+/// order. Fails with the first parameter outside its range. A time constant of a nanosecond, for example, would make a
+/// simulation endless.
 fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), ShipError> {
     let values = response.model().parameters().zip(response.parameters()).zip(symbols);
     for ((parameter, &value), symbol) in values {
@@ -79,8 +80,8 @@ fn ship(name: String, source: &'static str, particulars: Option<Particulars>, mo
 /// First-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
 ///
 /// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
-/// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and where 1/T, K/T or
-/// δ_r lies outside the range that [`crate::response::BASE`] declares.
+/// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and if 1/T, K/T or δ_r
+/// lies outside the range that [`crate::response::BASE`] declares.
 pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
     check_indices(K, T, "T")?;
     check("rudder bias", rudder_bias, true, "it must be finite")?;
@@ -93,8 +94,8 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
 
 /// Second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
 ///
-/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite, and where they
-/// lie outside the range that [`SecondOrder`] declares.
+/// Fails if [`first_order`] fails for K and T1, if T2 is not positive, if T3 is not finite, and if T2 or T3 lies
+/// outside the range that [`SecondOrder`] declares.
 pub fn second_order(
     indices: SecondOrderIndices,
     rudder_bias: f64,
@@ -123,7 +124,7 @@ pub enum HullError {
     Mmg(#[from] MmgError),
 }
 
-/// MMG hull from particulars, with the identifier `user`: every coefficient is the mean of its prior.
+/// MMG hull from particulars, with the identifier `user`: every coefficient has its prior mean.
 ///
 /// Fails for particulars outside the range of ships.
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {

@@ -2,7 +2,7 @@
 //!
 //! K and T are printed there without units; 1/s and s are the only plausible units for a ship of this size. Length and
 //! speed are not in the paper and were not found in a source that could be checked: 105 m and 16.7 kn (8.59 m/s) are
-//! nominal values, for nondimensional figures only (K' = 1.22, T' = 1.33). Rudder rate and rudder bias are not given.
+//! nominal values, for nondimensional numbers only (K' = 1.22, T' = 1.33). Rudder rate and rudder bias are not given.
 
 use super::{KNOT, Model, Ship};
 use crate::first_order::FirstOrder;
@@ -11,8 +11,8 @@ use crate::response::Response;
 
 /// YUKUN with K = 0.1 1/s and T = 16.3 s.
 ///
-/// Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Particulars not
-/// verified.
+/// Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. The particulars are
+/// not verified.
 pub fn ship() -> Ship {
     Ship {
         id: "yukun".into(),

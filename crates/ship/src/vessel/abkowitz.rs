@@ -4,7 +4,7 @@
 //! L/U. The series is that of Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr
 //! holds −m', Xrv holds m'), so mass appears on the left only.
 //!
-//! The rudder of the source is positive to port. Its sign is changed here and nowhere else; [`Abkowitz::new`] takes the
+//! The rudder of the source is positive to port. Its sign is changed here only; [`Abkowitz::new`] takes the
 //! coefficients as printed.
 //!
 //! Sources: Abkowitz (1964); Chislett and Strøm-Tejsen (1965).
@@ -44,7 +44,7 @@ pub struct Derivatives {
     pub N: Lateral,
 }
 
-/// Derivatives of the sway force or of the yaw moment, which have the same terms.
+/// Derivatives of the sway force or of the yaw moment, with the same terms for either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the index of a derivative: vvr multiplies v'² r'")]
 pub struct Lateral {
@@ -81,7 +81,7 @@ impl Lateral {
     }
 }
 
-/// Hull described by one polynomial in u', v', r' and δ.
+/// Hull described by a single polynomial in u', v', r' and δ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Abkowitz {
     particulars: Particulars,
@@ -113,7 +113,7 @@ impl Hull for Abkowitz {
 
     /// Accelerations from m' a' = F'(u', v', r', δ), a = a' U²/L (r' by U²/L²).
     ///
-    /// The disturbance adds the yaw moment N_δ δ at approach speed. The polynomial was fitted near that speed.
+    /// The disturbance adds the yaw moment N_δ δ at approach speed. The polynomial was fitted near the approach speed.
     fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
         let p = &self.derivatives;
         let Particulars { length: L, speed: U0 } = self.particulars;

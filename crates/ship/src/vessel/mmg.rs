@@ -6,8 +6,8 @@
 //! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)² (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
 //! (I_z' + x_G'² m' + J_z') L² r' + x_G' m' L v' = N − x_G' m' u (rL)
 //!
-//! β = atan(−v/u) and v are taken at midship. The rudder is positive to starboard, as everywhere here. The wake and the
-//! flow straightening switch with the sign of an inflow angle: accelerations are continuous, their slopes are not.
+//! β = atan(−v/u) and v are taken at midship. The rudder is positive to starboard. Wake and flow straightening change
+//! with the sign of an inflow angle: accelerations are continuous, their slopes are not.
 //!
 //! Source of the model: H. Yasukawa and Y. Yoshimura (2015), Introduction of MMG standard method for ship maneuvering
 //! predictions, Journal of Marine Science and Technology 20, 37–52.
@@ -37,7 +37,7 @@ pub enum MmgError {
         /// Value.
         value: f64,
     },
-    /// Inertia in sway and yaw that is not positive, by the determinant of the prime mass matrix.
+    /// Inertia in sway and yaw that is not positive, given by the determinant of the prime mass matrix.
     #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {0})")]
     Inertia(f64),
     /// Thrust that balances the resistance at no advance ratio.
@@ -146,7 +146,7 @@ impl<R: Real> Mmg<R> {
     fn rudder_inflow(&self, uP: R, revolutions: R) -> R {
         let rudder = &self.parameters.rudder;
         let nD = revolutions * self.parameters.propeller.DP;
-        // A windmilling propeller (K_T < 0) can slow the stream to rest, not turn it round.
+        // A windmilling propeller (K_T < 0) can stop the stream, but not reverse it.
         let thrust = self.thrust_coefficient(uP, revolutions) * 8.0 * nD * nD / PI;
         let stream = (uP * uP + thrust).at_least(f64::MIN_POSITIVE).sqrt();
         let behind = uP + rudder.kappa * (stream - uP);
@@ -167,7 +167,7 @@ impl<R: Real> Mmg<R> {
     }
 
     /// Accelerations (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad);
-    /// `turning` is the propeller rate over that of the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
+    /// `turning` is the propeller rate relative to the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
     /// δ of the straight approach.
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, turning: f64, disturbance: f64) -> [R; 3] {
         let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
@@ -236,10 +236,10 @@ fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
     if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MmgError::NotPositive { symbol, value }) }
 }
 
-/// Steady speed over revolutions, m; the advance ratio at which thrust balances resistance does not depend on n.
+/// Ratio of steady speed to revolutions, m; the advance ratio at which thrust balances resistance does not depend on n.
 ///
-/// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J whose left side grows from zero, so
-/// for falling thrust there is one positive root.
+/// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J. The left side increases from zero,
+/// so for decreasing thrust there is one positive root. Fails if there is none, or if a parameter is not positive.
 fn speed_per_revolution<R: Real>(p: &Parameters<R>) -> Result<R, MmgError> {
     let propeller = &p.propeller;
     let [past_wake, past_hull] = [-propeller.wP0 + 1.0, -propeller.tP + 1.0];
@@ -281,7 +281,7 @@ mod tests {
     use crate::ships::kvlcc2::FULL_SCALE;
     use approx::assert_relative_eq;
 
-    /// The textbook form of u_R, which divides by J, in a state where it is defined.
+    /// Textbook form of u_R, which divides by J, in a state with J ≠ 0.
     #[test]
     fn rudder_inflow_is_the_published_formula() {
         let hull = Mmg::at_speed(FULL_SCALE, 8.0).expect("balances");

@@ -1,4 +1,5 @@
-//! Hulls with three degrees of freedom (surge, sway, yaw): a truth that no response model matches exactly.
+//! Hulls with three degrees of freedom (surge, sway, yaw), which serve as true ships that match no response model
+//! exactly.
 //!
 //! A hull defines its accelerations ([`Hull`]); heading, position and the implementation of [`Dynamics`] are here.
 //! [`mmg`] models hull, propeller and rudder separately, [`abkowitz`] uses one polynomial for the whole ship.
@@ -86,10 +87,10 @@ impl<H: Hull> Dynamics for H {
         Motion { heading, yaw_rate, yaw_acceleration, speed: Some(surge.hypot(sway)), sway: Some(sway) }
     }
 
-    /// Hundredth of the ship-length time L/U, so that a model has as many steps as its ship.
+    /// Hundredth of the ship-length time L/U, so that a model has as many steps as its full-scale ship.
     ///
-    /// After five reversals of a 20° rudder the heading is then within 0.0001° of that of a far smaller step; the error
-    /// comes from the kinks of an MMG hull.
+    /// After five reversals of a 20° rudder the heading then differs by less than 0.0001° from the heading at a far
+    /// smaller step; the error comes from the kinks of an MMG hull.
     fn largest_step(&self) -> f64 {
         self.particulars().time() / 100.0
     }

@@ -1,16 +1,16 @@
 //! Nondimensional hulls whose coefficients are identified: surge, sway and yaw in units of L and U₀, in three forms.
 //!
-//! Lengths in L, speeds in the approach speed U₀, times in L/U₀; n is the propeller rate over that of the approach, δ
-//! the rudder, positive to starboard. Two forms are polynomials of the whole ship:
+//! Lengths in L, speeds in the approach speed U₀, times in L/U₀; n is the propeller rate relative to the approach, δ
+//! the rudder angle, positive to starboard. Two forms are polynomials of the whole ship:
 //!
 //! r' = N_v u v + N_r u r + N_δ q δ_e + … v' = Y_v u v + Y_r u r + Y_δ q δ_e + …
 //! u' = x₀ [(n² − k n u)/(1 − k) − u|u|] + X_vr v r + X_rr r² − X_δδ q δ_e²
 //!
 //! with the rudder inflow w = e u + (1 − e) n, q = w², and δ_e = δ + δ_r − b |r|/w (b: flow straightening that differs
-//! by side). "…" stands for N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and for terms of
-//! third order over u in the cubic form. The third form is the MMG model with hull, propeller and rudder.
+//! by side). "…" denotes N_rr r|r| + N_vv v|v| and Y_rr r|r| + Y_vv v|v| in the quadratic form, and terms of third
+//! order over u in the cubic form. The third form is the MMG model with hull, propeller and rudder.
 //!
-//! Every form has a wind coefficient Y_w. The priors of the polynomials follow from those of the MMG model.
+//! Every form has a wind coefficient Y_w. The priors of the polynomials follow from the priors of the MMG model.
 //!
 //! Sources: Abkowitz (1964) and Norrbin (1971) for the polynomials; Yasukawa and Yoshimura (2015) for the MMG model.
 
@@ -38,14 +38,15 @@ pub struct HullCoefficient {
     pub mean: f64,
     /// Prior standard deviation.
     pub sd: f64,
-    /// Minimum and largest value.
+    /// Minimum and maximum value.
     pub ends: [f64; 2],
 }
 
 /// Prior standard deviation of δ_r, rad: 1.7°.
 const RUDDER_BIAS_SD_RAD: f64 = 0.03;
 
-/// Coefficients of the MMG model that are fitted to records of rudder and heading; the others stay at their prior mean.
+/// Coefficients of the MMG model that are fitted to records of rudder and heading; other coefficients keep their prior
+/// mean.
 const FREE: [&str; 23] = [
     "Nv",
     "Nr",
@@ -72,7 +73,7 @@ const FREE: [&str; 23] = [
     "gammaR-port",
 ];
 
-/// Bounds of a free coefficient of the MMG model.
+/// Bounds, lower and upper, of a free coefficient of the MMG model.
 fn ends_of(key: &str) -> [f64; 2] {
     match key {
         "R0" => [0.002, 0.2],
@@ -115,7 +116,7 @@ pub fn is_windage(key: &str) -> bool {
     key == wind::WINDAGE.key
 }
 
-/// `true` if a coefficient depends on friction and so on the scale (Reynolds number): resistance and wake.
+/// `true` if a coefficient depends on friction (resistance and wake) and therefore on the scale (Reynolds number).
 pub fn is_frictional(key: &str) -> bool {
     matches!(key, "x0" | "k" | "R0" | "wP0")
 }
@@ -141,7 +142,7 @@ pub struct HullForm {
 
 impl HullForm {
     /// Candidate forms for a ship, with priors from the particulars: the two polynomials, and the MMG model. Without
-    /// particulars only the polynomials, with the priors of any ship.
+    /// particulars, only the polynomials with the priors of any ship.
     pub fn candidates(particulars: Option<&HullParticulars>) -> Vec<Self> {
         let prior = particulars.and_then(|particulars| priors(particulars).ok());
         let polynomials = prior.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
@@ -251,7 +252,7 @@ impl HullForm {
 mod tests {
     use super::*;
 
-    /// For all accepted particulars, the prior of every form is a normal distribution whose mean is a valid ship.
+    /// Prior of every form for all accepted particulars: a normal distribution whose mean is a valid ship.
     #[test]
     fn every_ship_has_an_expected_hull_of_every_form() {
         let any = HullParticulars { length: 100.0, speed: 6.0, ..HullParticulars::default() };

@@ -4,7 +4,7 @@
 //! A missing particular is replaced by a typical ratio of ships, whose spread widens the prior: every formula is
 //! evaluated at the ratio one standard deviation higher and lower, and half of the difference is added in quadrature.
 //!
-//! The sources of the formulas stand in their table.
+//! The table of the formulas contains their sources.
 
 mod formulas;
 mod likeness;
@@ -100,7 +100,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
 }
 
-/// Parameters with another value of one coefficient.
+/// Parameters with one coefficient replaced.
 fn with(mut parameters: Parameters, formula: &CoefficientFormula, value: f64) -> Parameters {
     *parameters.named(formula.key).expect("every coefficient has its place") = value;
     parameters

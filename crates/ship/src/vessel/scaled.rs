@@ -13,8 +13,7 @@ const STEPS: f64 = 25.0;
 
 /// Hull with three degrees of freedom: states ψ (rad), r (rad/s), u and v (m/s).
 ///
-/// ψ' = r; (u', v', r') are those of the [`PrimeHull`], with the propeller and the relative wind where they were
-/// recorded.
+/// ψ' = r; (u', v', r') follow from the [`PrimeHull`], with the propeller rate and the relative wind, if recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScaledHull<R = f64> {
     /// Nondimensional hull.
@@ -65,7 +64,7 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
 }
 
 impl<R: Real> Replayable<R> for ScaledHull<R> {
-    /// Initial state with measured surge and sway, or those of the approach.
+    /// Initial state with measured surge and sway, or with surge and sway of the approach.
     fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         let sway = input.measured.sway.unwrap_or(0.0);
         let surge = input.measured.speed.map_or(self.speed, |speed| (speed * speed - sway * sway).max(0.0).sqrt());
@@ -85,7 +84,7 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
     }
 }
 
-/// Search of a steady turn: largest number of steps, first step in L/U₀, growth factor of the step, and tolerance of
+/// Search of a steady turn: maximum number of steps, first step in L/U₀, growth factor of the step, and tolerance of
 /// the accelerations.
 const MAX_STEPS: usize = 60;
 const FIRST_STEP: f64 = 0.5;
@@ -97,8 +96,7 @@ const MAX_RUDDER_RAD: f64 = 1.2;
 
 impl ScaledHull {
     /// Rudder (rad) of a steady turn at a yaw rate (rad/s): speed and drift settle while the rudder keeps the rate
-    /// (reversed spiral, Bech 1968), so the unstable branch is found, too. `None` if no rudder within 1.2 rad keeps
-    /// it.
+    /// (reversed spiral, Bech 1968), which also finds the unstable branch. `None` if no rudder within 1.2 rad keeps it.
     ///
     /// Implicit Euler steps of growing length, which become Newton steps (pseudo-transient continuation).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
@@ -144,7 +142,7 @@ mod tests {
         ScaledHull { hull, length: 320.0, speed: 7.97, propeller: None }
     }
 
-    /// The hull as expected, and KVLCC2.
+    /// Mean hull of the prior, and KVLCC2.
     fn hulls() -> [ScaledHull; 2] {
         let form = &HullForm::candidates(None)[0];
         let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
@@ -154,7 +152,7 @@ mod tests {
         [quadratic, mmg].map(scaled)
     }
 
-    /// A ship that is left to her rudder comes to the rate that this rudder is said to keep.
+    /// Released at its steady rudder, a ship settles at the yaw rate of that rudder.
     #[test]
     fn a_steady_turn_is_where_the_hull_settles() {
         for (hull, side) in hulls().into_iter().zip([1.0, -1.0]) {

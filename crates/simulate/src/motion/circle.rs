@@ -1,4 +1,4 @@
-//! Track over ground from velocities, and the figures of a turning circle.
+//! Track over ground from velocities, and the characteristics of a turning circle.
 //!
 //! Sources: IMO MSC.137(76) (2002); ITTC 7.5-04-02-01.
 
@@ -6,7 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Track: positions (north, east; m) from heading (rad), surge and sway (m/s) at increasing times (s), from the origin.
 ///
-/// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. Cut to the shortest column.
+/// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. Rows beyond the shortest column are
+/// dropped.
 pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let over_ground = |(heading, [surge, sway]): (&f64, &[f64; 2])| {
         let (sin, cos) = heading.sin_cos();
@@ -24,22 +25,23 @@ pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 
     (0..ways.len().min(time.len())).map(step).collect()
 }
 
-/// First crossing of a level after row `first`: the row before, and the share of the interval to the next row.
+/// First crossing of a level after row `first`: the row before, and the share of the interval to the next row; `None`
+/// without a crossing.
 pub(crate) fn reached(value: impl Fn(usize) -> f64, first: usize, rows: usize, level: f64) -> Option<(usize, f64)> {
     let row = (first + 1..rows).find(|&row| value(row) >= level)?;
     Some((row - 1, (level - value(row - 1)) / (value(row) - value(row - 1))))
 }
 
-/// Figures of a turning circle; `None` for a figure that was not reached.
+/// Characteristics of a turning circle; `None` for a characteristic that was not reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TurningCircleFigures {
-    /// Advance: distance in the direction of the approach from the execute to a heading change of 90°, m.
+    /// Advance, m: distance in the direction of the approach from the execute to a heading change of 90°.
     pub advance: Option<f64>,
-    /// Transfer: distance across, to the side of the turn, from the execute to a heading change of 90°, m.
+    /// Transfer, m: distance across the approach, to the side of the turn, from the execute to a heading change of 90°.
     pub transfer: Option<f64>,
-    /// Tactical diameter: distance across from the execute to a heading change of 180°, m.
+    /// Tactical diameter, m: distance across the approach from the execute to a heading change of 180°.
     pub tactical_diameter: Option<f64>,
-    /// Speed in the steady turn over that at the execute.
+    /// Ratio of the speed in the steady turn to the speed at the execute.
     pub speed_ratio: Option<f64>,
     /// Drift angle β = atan2(−v, u) in the steady turn at the reference point of the sway, rad.
     pub drift_angle: Option<f64>,
@@ -47,20 +49,20 @@ pub struct TurningCircleFigures {
     pub pivot_ahead: Option<f64>,
 }
 
-/// Heading change from which a turn counts as steady, rad.
+/// Heading change after which a turn is taken as steady, rad.
 const STEADY: f64 = TAU;
 
 /// Minimum heading change of the steady part, rad; over half a circle a current and waves nearly cancel.
 const MIN_STEADY_CHANGE: f64 = PI;
 
-/// Figures of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),
+/// Characteristics of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),
 /// positions (m, north and east: measured, or of [`track`]; empty if unknown), surge and sway at the same point (m/s),
 /// and yaw rates (rad/s).
 ///
-/// The course of the approach is the heading at the execute; the last heading gives the side of the turn. The heading
-/// is interpolated linearly between rows. The steady turn is the part after a heading change of 360°, if it turns by at
-/// least half a circle more; the series should end with the turn. All figures are `None` if columns differ in length, a
-/// number in time, heading or track is not finite, or the execute is outside the series.
+/// The course of the approach is the heading at the execute; the last heading determines the side of the turn. The
+/// heading is interpolated linearly between rows. The steady turn is the part after a heading change of 360°, if it
+/// turns by at least half a circle more; the series should end with the turn. All characteristics are `None` if columns
+/// differ in length, a number in time, heading or track is not finite, or the execute is outside the series.
 pub fn turning_circle(
     [time, heading, yaw_rate]: [&[f64]; 3],
     [track, velocity]: [&[[f64; 2]]; 2],
@@ -85,7 +87,7 @@ pub fn turning_circle(
     let side = (heading[rows - 1] - course).signum();
     let change = |row: usize| side * (heading[row] - course);
     let (sin, cos) = course.sin_cos();
-    // Ahead of the execute and to the side of the turn, when the heading has changed by an angle.
+    // Distance ahead of the execute and to the side of the turn, at a heading change of an angle.
     let way = |angle: f64| {
         let (origin, (row, share)) = (origin?, reached(change, begin, rows, angle)?);
         let now = at(track, row, share);

@@ -9,25 +9,25 @@ use ship::angle::to_deg;
 
 use super::circle::reached;
 
-/// Heading change from which a turn counts as steady, rad.
+/// Heading change after which a turn is taken as steady, rad.
 const STEADY: f64 = PI;
 
-/// Minimum heading change of a turn, rad: it gives 180° of pairs one round apart.
+/// Minimum heading change of a turn, rad: it contains pairs one round apart over 180°.
 const MIN_CHANGE: f64 = 2.0 * TAU;
 
-/// Heading between successive pairs, rad (10°).
+/// Heading difference between successive pairs, rad (10°).
 const PAIR_SPACING: f64 = PI / 18.0;
 
-/// Current over ground, including the drift of the ship by wind, from which a turn cannot distinguish it.
+/// Current over ground, including the drift of the ship due to wind, which a turn cannot separate from it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Current {
     /// Speed.
     pub speed_m_s: f64,
     /// Direction towards which it sets, clockwise from north, 0 to 360.
     pub set_deg: f64,
-    /// Towards north.
+    /// Component towards north.
     pub north_m_s: f64,
-    /// Towards east.
+    /// Component towards east.
     pub east_m_s: f64,
     /// Standard deviation of the component towards north, from the scatter of the pairs.
     pub north_sd_m_s: f64,
@@ -35,14 +35,14 @@ pub struct Current {
     pub east_sd_m_s: f64,
 }
 
-/// Current from a turn: the mean displacement over ground between instants with the same heading, one round apart, over
-/// the time between them,
+/// Current from a turn: mean of the displacement over ground between two instants with equal heading, one round apart,
+/// divided by the time between them,
 ///
-/// V = [x(ψ + 2π) − x(ψ)] / [t(ψ + 2π) − t(ψ)], ψ from 180° of heading change on.
+/// V = [x(ψ + 2π) − x(ψ)] / [t(ψ + 2π) − t(ψ)], for ψ from a heading change of 180° on.
 ///
-/// Heading in rad, not wrapped; track north and east in m; time in s, all of one length, from the execute on. `None`
-/// for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current that
-/// changes within a round, and wind, are included in the result.
+/// Heading in rad, not wrapped; track north and east in m; time in s; columns of equal length, from the execute on.
+/// `None` for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current
+/// that changes within a round, and wind, are included in the result.
 pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
     let rows = time.len();
     if rows < 2 || heading.len() != rows || track.len() != rows {
@@ -51,7 +51,7 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let side = (heading[rows - 1] - heading[0]).signum();
     let change = |row: usize| side * (heading[row] - heading[0]);
     let whole = change(rows - 1);
-    // First instant with that heading change: time, north and east.
+    // First instant with this heading change: time, north and east.
     let instant = |angle: f64| {
         let (row, share) = reached(change, 0, rows, angle)?;
         let at = |row: usize| [time[row], track[row][0], track[row][1]];

@@ -1,8 +1,8 @@
 //! Motion of a turning ship over ground.
 //!
-//! A response model describes the yaw of a ship; the track also depends on speed loss and drift. This module joins
-//! equations of surge and sway with a yaw response to a ship for scenarios, integrates tracks, and computes the figures
-//! of a turning circle. Speed and drift of records are identified with a hull ([`ship::vessel`]).
+//! A response model describes the yaw of a ship; the track also depends on speed loss and drift. This module combines
+//! equations of surge and sway with a yaw response into a ship for scenarios, integrates tracks, and computes the
+//! characteristics of a turning circle. Speed and drift of records are identified by a hull ([`ship::vessel`]).
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -13,7 +13,7 @@
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
 //! | current from two rounds | [`current`](current()) |
 //!
-//! Propeller revolutions are constant, as trial procedures require; engine manoeuvres are not described. Water is deep
+//! Propeller revolutions are constant, as trial procedures require; engine manoeuvres are not modelled. Water is deep
 //! and at rest apart from a uniform current, which only shifts positions.
 
 mod circle;

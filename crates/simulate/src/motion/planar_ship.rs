@@ -6,8 +6,8 @@ use super::planar::Planar;
 
 /// Yaw response completed by surge and sway.
 ///
-/// The states are those of the response, then surge u and sway v (m/s). Effects of the response that use measured speed
-/// or sway receive √(u² + v²) and v of this ship. The planar equations use the rudder after the dead time; other
+/// The states are the states of the response, then surge u and sway v (m/s). Effects of the response that use measured
+/// speed or sway receive √(u² + v²) and v of this ship. The planar equations use the rudder after the dead time; other
 /// effects on the rudder (lag, saturation) belong to the yaw response alone.
 #[derive(Debug, Clone)]
 pub struct PlanarShip {
@@ -63,7 +63,7 @@ impl Dynamics for PlanarShip {
         self.response.dead_time()
     }
 
-    /// Minimum of the step of the response and a hundredth of the ship-length time L/U.
+    /// Minimum of the maximum step of the response and a hundredth of the ship-length time L/U.
     fn largest_step(&self) -> f64 {
         self.response.largest_step().min(self.planar.length / self.planar.approach_speed / 100.0)
     }

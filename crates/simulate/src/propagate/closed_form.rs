@@ -9,7 +9,8 @@ use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
 
-/// Maximum step, s, and largest step in units of |T|, so that a course-unstable ship is stopped before it overflows.
+/// Maximum step, s, and maximum step in units of |T|, so that a course-unstable ship is stopped before its state
+/// overflows.
 const MAX_STEP_S: f64 = 60.0;
 const MAX_STEP_OVER_T: f64 = 30.0;
 
@@ -99,11 +100,12 @@ impl Propagator for ClosedForm {
         if slope == 0.0 {
             return to;
         }
-        // r' = e^(−at) r'₀ + slope φ₁(t) vanishes at most once; the step ends there, so that r is monotone within it.
+        // r' = e^(−at) r'₀ + slope φ₁(t) vanishes at most once; the step ends at this zero, so that r is monotone
+        // within the step.
         let a = self.ship.inverse_T;
         let ratio = -(u0 - a * self.state.yaw_rate) / slope;
         let turn = if (a * ratio).abs() < 1e-8 { ratio } else { (a * ratio).ln_1p() / a };
-        // A step that has just ended there leaves a rounding error.
+        // A step that has just ended at this zero leaves a rounding error.
         if turn > 1e-9 && self.time + turn < to { self.time + turn } else { to }
     }
 
@@ -141,7 +143,7 @@ impl Propagator for ClosedForm {
             }
             let from = self.state;
             let to = step.advance(from, u0, 0.0);
-            // The yaw rate is monotone: a heading crossed twice within the step has an extremum there.
+            // The yaw rate is monotone: a heading crossed twice within the step has an extremum between the crossings.
             let crossed = limits.watch.is_some_and(|watch| {
                 let turns = watch.side * from.yaw_rate > 0.0 && watch.side * to.yaw_rate < 0.0;
                 turns || watch.excess(from.heading) >= 0.0 || watch.excess(to.heading) >= 0.0

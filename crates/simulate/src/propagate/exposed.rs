@@ -12,7 +12,7 @@ pub(crate) struct ShipInWeather<'a, D: ?Sized> {
     wind: Option<Wind>,
     /// Approach speed of the ship, m/s, for equations without a speed.
     approach_speed: Option<f64>,
-    /// Time constant of the gyrocompass, s; 0 for none.
+    /// Time constant of the gyrocompass, s; 0 without lag.
     gyro_lag: f64,
     /// Weather; its cell changes between steps only.
     pub weather: Weather,
@@ -62,7 +62,7 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
         let (ship, gyro) = state.split_at_mut(self.ship.dimension());
         self.ship.approach(heading, yaw_rate, ship);
-        // In a steady turn a lagging compass is behind by τ r.
+        // In a steady turn a compass with lag τ is behind by τ r.
         gyro.fill(heading - self.gyro_lag * yaw_rate);
     }
 
@@ -92,7 +92,7 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     }
 }
 
-/// Maximum step, s, of a ship with largest step `ship_step` s and a compass with time constant `gyro_lag` s.
+/// Maximum step, s, of a ship with maximum step `ship_step` s and a compass with time constant `gyro_lag` s.
 pub(crate) fn largest_step(ship_step: f64, gyro_lag: f64) -> f64 {
     // A quarter of the time constant keeps the compass state stable and accurate.
     if gyro_lag > 0.0 { ship_step.min(0.25 * gyro_lag) } else { ship_step }

@@ -27,7 +27,7 @@ fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
 }
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
-    /// Ship at time 0 on its approach; `step` is the largest step, s, or `None` for that of the ship.
+    /// Ship at time 0 on its approach; `step` is the maximum step, s; `None` for the maximum step of the ship.
     pub fn new(ship: ShipInWeather<'a, D>, approach: State, step: Option<f64>) -> Self {
         let dimension = ship.dimension();
         let mut state = vec![0.0; dimension];

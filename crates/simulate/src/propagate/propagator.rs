@@ -27,23 +27,23 @@ pub(crate) trait Propagator {
     /// Sample at the current time.
     fn sample(&mut self, path: &RudderPath) -> Sample;
 
-    /// Records rows up to the first event, bit for bit as step by step; stops before the first row that needs the
-    /// stepwise search, which can be the next one.
+    /// Records rows up to the first event, bit for bit equal to single steps; stops before the first row that requires
+    /// the stepwise search, which can be the next row.
     fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Sampler) {}
 }
 
-/// Events that end a stretch of rows.
+/// Events that end a sequence of rows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     /// Latest end, s.
     pub before: f64,
-    /// Awaited heading whose crossing ends it.
+    /// Awaited heading whose crossing ends the sequence.
     pub watch: Option<AwaitedHeading>,
     /// Base course, rad, for the check of divergence.
     pub base: f64,
 }
 
-/// Maximum deviation from the base course, rad, before a run has diverged: a hundred turns.
+/// Maximum deviation from the base course, rad: a hundred turns; beyond it a run has diverged.
 const MAX_DEVIATION_RAD: f64 = 100.0 * std::f64::consts::TAU;
 
 /// `true` if the motion has diverged from the base course (rad).
@@ -55,7 +55,7 @@ pub(crate) fn has_diverged(state: State, base: f64) -> bool {
 /// Acting segment at time `t` after the dead time, found by moving `cursor` forward.
 pub(crate) fn acting<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
     let segments = path.segments();
-    // The same sum as the end of a stride, so that a stride never has zero length.
+    // Same sum as the end of a stride, so that a stride never has zero length.
     while segments[*cursor].end + dead_time <= t {
         *cursor += 1;
     }
@@ -73,18 +73,18 @@ pub(crate) struct AwaitedHeading {
     pub angle: f64,
 }
 
-/// Width, s, of the bracket at which an event counts as located.
+/// Width of the bracket, s, below which an event is located.
 const EVENT_TOLERANCE: f64 = 1e-13;
 
 impl AwaitedHeading {
-    /// Excess of the deviation over the awaited one, rad.
+    /// Excess of the deviation over the awaited deviation, rad.
     pub fn excess(&self, heading: f64) -> f64 {
         self.side * (heading - self.base) - self.angle
     }
 
-    /// Time from the beginning of a step to the first crossing in it, s; `None` without a crossing.
+    /// Time from the beginning of a step to the first crossing in it, s; `None` if there is none.
     ///
-    /// The step leads from `from`, which has not crossed, to `end` in `h` seconds, and the yaw rate is monotone in it:
+    /// The step leads from `from`, before the crossing, to `end` in `h` seconds. The yaw rate is monotone in the step,
     /// so the heading has at most one extremum, which is located when the yaw rate changes sign.
     pub fn locate(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
         let before = (0.0, self.excess(from.heading));

@@ -1,4 +1,4 @@
-//! Every way to fail, with its numbers.
+//! All errors of a simulation, with their numbers.
 
 use ship::FirstOrder;
 use ship::angle::from_deg;
@@ -63,7 +63,7 @@ fn an_unstable_ship_that_runs_away_is_an_error() {
 #[test]
 fn a_heading_that_is_never_reached_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 3000.0);
-    // A bias that outweighs the port rudder: the ship can only turn to starboard.
+    // A bias larger than the port rudder: the ship turns to starboard only.
     simulation.vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
     simulation.longest_wait = 500.0;
     match failure(&simulation) {
@@ -84,8 +84,8 @@ fn a_record_that_starts_at_no_execute_is_an_error() {
     assert_eq!((refused.key, refused.expected), ("recording.after-execute", Expected::Execute(3)));
 }
 
-/// What no estimate foresees: a helmsman who reverses the rudder at every breath of the heading, and a record that
-/// nothing but the last execute ends.
+/// Costs that no estimate includes: a helmsman who reverses the rudder at every small heading change, and a record that
+/// only the last execute ends.
 #[test]
 fn a_run_that_takes_too_much_is_given_up() {
     let mut simulation = zig_zag(10.0, 1e-290, f64::INFINITY, 100.0);
@@ -103,7 +103,7 @@ fn a_run_that_takes_too_much_is_given_up() {
 fn a_record_with_too_few_rows_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 3.0);
     assert!(matches!(failure(&simulation), SimulateError::Record(_)));
-    // Enough rows, of which every fiftieth has a heading.
+    // Enough rows, but a heading only in every fiftieth.
     simulation = zig_zag(10.0, 10.0, 2.5, 300.0);
     simulation.sensors.heading_every_rows = Some(50);
     assert_eq!(failure(&simulation), SimulateError::Record(TrialError::TooShort { needed: 8, found: 7 }));

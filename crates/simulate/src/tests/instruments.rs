@@ -1,4 +1,4 @@
-//! Every instrument does what its specification says, at a fixed key and within its own sampling error.
+//! Instruments against their specification, at a fixed key and within the sampling error.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::{from_deg, to_deg};
@@ -30,7 +30,7 @@ fn statistics(measured: &[f64], truth: &[f64]) -> (f64, f64) {
     (mean, (square / (count - 1.0)).sqrt())
 }
 
-/// Three standard errors of an sd estimated from all rows, relative.
+/// Relative tolerance of an sd estimated from all rows: three standard errors.
 fn sd_tolerance() -> f64 {
     3.0 / (2.0 * ROWS).sqrt()
 }
@@ -59,7 +59,7 @@ fn quantisation_is_uniform_and_declared_so() {
     let Simulated { trial, truth } = run(&simulation);
     let (_, sd) = statistics(trial.heading(), &truth.heading);
     let uniform = quantum / 12.0_f64.sqrt();
-    // Not independent draws but samples of a periodic motion: the sd is met within five per cent.
+    // The samples are not independent but belong to a periodic motion: the sd agrees within 5 %.
     assert_relative_eq!(sd, uniform, max_relative = 0.05);
     assert_relative_eq!(trial.noise().heading.expect("declared"), uniform, max_relative = 1e-12);
     for (psi, delta) in trial.heading().iter().zip(trial.rudder()) {
@@ -95,7 +95,8 @@ fn rudder_noise_has_its_sd_and_the_order_has_none() {
     assert_eq!(order[0], from_deg(10.0));
 }
 
-/// A lag τ in a motion slow against τ: ψ_g(t) ≈ ψ(t − τ), and the error ψ_g − ψ obeys its own equation.
+/// Lag τ in a motion that is slow compared with τ: ψ_g(t) ≈ ψ(t − τ), and the error ψ_g − ψ satisfies its differential
+/// equation.
 #[test]
 fn gyro_lag_trails_the_heading() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 270.0);
@@ -119,7 +120,7 @@ fn a_delayed_heading_is_the_heading_of_then() {
     let prompt = run(&simulation);
     simulation.sensors.heading_delay = 2.0;
     let late = run(&simulation);
-    // The delay is a whole number of rows; the first two rows look back before the execute.
+    // The delay is a whole number of rows; the first two rows have headings from before the execute.
     assert_eq!(late.trial.time(), prompt.trial.time());
     for (late, prompt) in late.trial.rudder().iter().zip(prompt.trial.rudder()) {
         assert_abs_diff_eq!(late, prompt, epsilon = 1e-12);
@@ -142,7 +143,7 @@ fn jitter_moves_heading_and_rudder_by_the_same_instants() {
     let jitter = 0.2;
     simulation.sensors.jitter = jitter;
     let Simulated { trial, truth } = run(&simulation);
-    // Δψ = r j + r' j²/2, so that j can be read back where the ship turns.
+    // Δψ = r j + r' j²/2, so that j can be computed while the ship turns.
     let (mut instants, mut agreeing) = (Vec::new(), 0);
     for row in 1..trial.len() {
         if truth.yaw_rate[row].abs() > from_deg(1.2) {
@@ -157,7 +158,7 @@ fn jitter_moves_heading_and_rudder_by_the_same_instants() {
     let zeros = vec![0.0; instants.len()];
     let (mean, sd) = statistics(&instants, &zeros);
     let count = instants.len() as f64;
-    // The cut at 0.45 s (2.25 sd) takes 3 % off the sd.
+    // Truncation at 0.45 s (2.25 sd) reduces the sd by 3 %.
     assert_relative_eq!(sd, 0.97 * jitter, max_relative = 3.0 / (2.0 * count).sqrt());
     assert_abs_diff_eq!(mean, 0.0, epsilon = 3.0 * jitter / count.sqrt());
     assert!(agreeing >= 10, "{agreeing}");
@@ -183,7 +184,7 @@ fn lost_headings_are_nan_and_lost_rows_are_gone() {
     assert_eq!(rows.trial.heading(), rows.truth.heading);
 }
 
-/// w' = −w/τ + white noise: standard deviation σ, autocorrelation exp(−h/τ), and none of it in the truth.
+/// w' = −w/τ + white noise: standard deviation σ, autocorrelation exp(−h/τ), and absent from the truth.
 #[test]
 fn the_coloured_error_has_its_sd_and_its_correlation() {
     let (mut wandering, mut calm) = (long(), long());
@@ -209,7 +210,8 @@ fn the_coloured_error_has_its_sd_and_its_correlation() {
     assert_eq!(wandering.trial.noise().heading, Some(from_deg(0.1)), "what is white is declared, and nothing else");
 }
 
-/// A helmsman who reads the display sees the error of the compass, and his readings lie on the path of the record.
+/// A helmsman who reads the display sees the error of the compass, and the readings lie on the error path of the
+/// record.
 #[test]
 fn a_display_shows_the_coloured_error() {
     let mut simulation = long();
@@ -248,7 +250,8 @@ fn spikes_are_as_many_and_as_large_as_asked_for() {
     assert_eq!(spiked.truth, calm.truth);
     assert_eq!(spiked.trial.noise(), calm.trial.noise());
 
-    // They come after the display: no helmsman acts on one, and what is recorded is still a multiple of its quantum.
+    // Spikes come after the display: they do not trigger an order, and the recorded heading is still a multiple of its
+    // quantum.
     simulation.helmsman.reads_display_every = Some(1.0);
     simulation.sensors.heading_quantum = from_deg(1.0);
     let seen = run(&simulation);
@@ -272,7 +275,7 @@ fn a_heading_in_every_fifth_row_leaves_the_others_their_rudder() {
     assert_eq!(rare.trial.noise(), full.trial.noise());
     assert_eq!(rare.truth, full.truth);
 
-    // Rows are counted before any is lost.
+    // Rows are counted before drop-outs.
     simulation.sensors.drop_out.probability = 0.2;
     simulation.sensors.drop_out.whole_row = true;
     let lossy = run(&simulation).trial;
@@ -293,13 +296,13 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
     for execute in &truth.executes[1..] {
         assert_eq!(execute.time, execute.time.round());
         let row = execute.time as usize;
-        // The reading at the execute has reached the heading asked for, the one before has not.
+        // The reading at the execute has reached the required heading, the reading before it has not.
         let side = -execute.order.signum();
         assert!(to_deg(side * trial.heading()[row]) >= 10.0 - 1e-6);
         assert!(to_deg(side * trial.heading()[row - 1]) < 10.0);
         off += usize::from((to_deg(side * execute.heading) - 10.0).abs() > 0.05);
     }
-    // What he sees is not what is: noise and sampling move the executes.
+    // The displayed heading is not the true heading: noise and sampling shift the executes.
     assert!(off >= 4, "{off}");
 
     simulation.helmsman.reaction_time = 0.6;
@@ -360,7 +363,7 @@ fn wind_acts_by_heading_and_is_recorded() {
 #[test]
 fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 60.0);
-    // She weathercocks: her yaw moment is the relative wind direction that she is given.
+    // A ship with a weathervane moment: its yaw moment is proportional to the relative wind direction in the input.
     let vane = |r: f64, input: &Input| 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * r;
     simulation.vessel = TestShip::vessel(vane, |_| 6.0, 0.0);
     simulation.longest_wait = 1e3;

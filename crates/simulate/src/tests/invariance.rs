@@ -1,4 +1,4 @@
-//! What must not matter, and what must: solver, step, side, repetition, sources of noise.
+//! Invariance of a simulation, or the required change, under solver, step, side, repetition and sources of noise.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::sensor::{DropOut, Spikes};
 use crate::vessel::Solver;
 use crate::{Manoeuvre, PreparedSimulation, Sensors, Side, Simulated, Simulation, StreamKey, Truth, Vessel};
 
-/// A ship with cubic damping and a rudder that acts late.
+/// Ship with cubic damping and a dead time of the rudder.
 fn cubic(dead_time: f64) -> Vessel {
     let base = training_ship();
     let acceleration = move |r: f64, input: &Input| {
@@ -43,7 +43,7 @@ fn assert_same(left: &Truth, right: &Truth, tolerance: f64) {
     }
 }
 
-/// Manoeuvres of every kind, with disturbances that leave the closed form in force.
+/// Manoeuvres of every kind, with disturbances for which the closed form remains valid.
 fn variety() -> Vec<Simulation> {
     let mut list = Vec::new();
     for (delta_deg, psi_deg, rate) in [(10.0, 10.0, 2.32), (20.0, 20.0, 3.0), (10.0, 20.0, 2.5), (5.0, 1.0, 4.0)] {
@@ -96,7 +96,7 @@ fn port_first_is_the_exact_mirror() {
         let mut port = starboard.clone();
         port.manoeuvre = port.manoeuvre.to(Side::Port);
         let (starboard, port) = (starboard.run(&KEY).expect("a zig-zag"), port.run(&KEY).expect("a zig-zag"));
-        // What instruments add knows no side.
+        // Instrument errors are independent of the side.
         let errors = |simulated: &Simulated| {
             let headings = simulated.trial.heading().iter().zip(&simulated.truth.heading);
             headings.map(|(psi, truth)| psi - truth).collect::<Vec<f64>>()
@@ -125,19 +125,19 @@ fn runge_kutta_is_of_order_four_and_events_with_it() {
     let with = |step| {
         let mut simulation = zig_zag(20.0, 20.0, 2.32, 200.0);
         simulation.vessel = cubic(0.6);
-        // Rows coarser than the step, or the rows would set the step.
+        // Rows are coarser than the step; otherwise the rows would determine the step.
         simulation.recording.period = 20.0;
         truth(&Simulation { solver: Solver::RungeKutta(step), ..simulation })
     };
     let exact = with(0.02);
     let error = |step| {
         let rough = with(step);
-        // The first crossing: later ones also carry the steps that were cut at earlier events.
+        // The first crossing: later crossings also contain the steps shortened at earlier events.
         let event = (rough.executes[1].time - exact.executes[1].time).abs();
         let heading = (rough.heading[10] - exact.heading[10]).abs();
         (event, heading)
     };
-    // Half the step, a sixteenth of the error.
+    // Half of the step gives a sixteenth of the error.
     for step in [0.5, 0.25] {
         let (coarse, fine) = (error(step), error(0.5 * step));
         assert!((14.0..18.0).contains(&(coarse.0 / fine.0)), "events {coarse:?} {fine:?}");
@@ -188,7 +188,7 @@ fn the_record_starts_after_the_execute_and_has_its_rows() {
     assert_abs_diff_eq!(simulated.trial.time()[0], 36.31 + 1.2, epsilon = 0.01);
     assert_eq!(simulated.trial.heading(), simulated.truth.heading);
     assert_eq!(simulated.trial.rudder(), simulated.truth.rudder);
-    // +10 deg less 1.2 s at 2.5 deg/s.
+    // +10 deg minus 1.2 s at 2.5 deg/s.
     assert_abs_diff_eq!(to_deg(simulated.trial.rudder()[0]), 7.0, epsilon = 1e-9);
     assert_eq!(simulated.truth.speed, None);
     assert!(simulated.trial.noise().heading.is_none());
@@ -221,12 +221,12 @@ fn a_turning_circle_ends_at_its_heading_and_a_pull_out_comes_to_rest() {
     assert_eq!(pull_out.executes.len(), 2);
     assert_eq!(pull_out.executes[1].time, 80.5);
     assert_eq!(pull_out.executes[1].order, 0.0);
-    // 60 s are 3.7 time constants, less the time the rudder needs.
+    // 60 s are 3.7 time constants, minus the time of the rudder motion.
     let last = pull_out.yaw_rate.len() - 1;
     assert!(pull_out.yaw_rate[last] < 0.1 * pull_out.yaw_rate[80]);
 }
 
-/// A compass with every error that chance brings.
+/// Compass with all random errors.
 fn spoilt() -> Sensors {
     Sensors {
         heading_noise: from_deg(0.2),
@@ -237,7 +237,7 @@ fn spoilt() -> Sensors {
     }
 }
 
-/// Everything that is random at once.
+/// Simulation with all random inputs at once.
 fn noisy() -> Simulation {
     let mut simulation = variety().swap_remove(5);
     simulation.disturbances.wind = Some(Wind {
@@ -271,8 +271,8 @@ fn the_same_key_gives_the_same_bits() {
     }
 }
 
-/// Rows between which nothing happens are gone through at once; a heading that is late by a microsecond has every row
-/// looked at. The instants of the helm differ by rounding.
+/// Rows without events between them are computed at once; with a heading that is late by a microsecond, every row is
+/// searched. The instants of the helm differ by rounding.
 #[test]
 fn going_on_without_looking_changes_nothing() {
     for (case, simulation) in variety().into_iter().enumerate() {
@@ -283,7 +283,7 @@ fn going_on_without_looking_changes_nothing() {
     }
 }
 
-/// What is kept for all keys must not be what one key has drawn: every way in which chance comes in, alone and
+/// Quantities kept for all keys must not depend on the random numbers of one key: every random input, alone and
 /// together.
 #[test]
 fn a_prepared_simulation_gives_the_same_bits() {

@@ -1,4 +1,4 @@
-//! Tests of whole runs: numbers from elsewhere, invariances, instruments and failures.
+//! Tests of whole runs: independent numbers, invariances, instruments and failures.
 
 mod failures;
 mod instruments;
@@ -11,12 +11,12 @@ use ship::{Dynamics, FirstOrder, Input, Motion};
 
 use crate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 
-/// The training ship of the reference numbers: K = 0.1 1/s, T = 16.3 s.
+/// Training ship of the reference numbers: K = 0.1 1/s, T = 16.3 s.
 fn training_ship() -> FirstOrder {
     FirstOrder::from_indices(0.1, 16.3, 0.0)
 }
 
-/// A zig-zag (degrees) of the training ship with a rudder rate (deg/s), until the record is full.
+/// Zig-zag (degrees) of the training ship with a rudder rate (deg/s), until the record is full.
 pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simulation {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(delta_deg), from_deg(psi_deg));
     let mut simulation = Simulation::new(Vessel::from_first_order(training_ship()), manoeuvre);
@@ -25,9 +25,9 @@ pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f
     simulation
 }
 
-/// A ship of two states by her yaw acceleration, for which nothing has a closed form.
+/// Ship of two states, defined by its yaw acceleration, without a closed form.
 struct TestShip<F> {
-    /// Yaw acceleration, rad/s², from the yaw rate and what acts.
+    /// Yaw acceleration, rad/s², from the yaw rate and the input.
     acceleration: F,
     /// Speed, m/s, from the yaw rate.
     speed: fn(f64) -> f64,

@@ -1,5 +1,5 @@
-//! `study bench`: the benchmark on measured and simulated trials. Its studies run like any other and
-//! `campaign::benchmark` computes its scores; this module writes tables, figures and files.
+//! `study bench`: the benchmark on measured and simulated trials. Its studies run like any other study, and
+//! `campaign::benchmark` computes the scores; this module writes tables, figures and files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,10 +28,10 @@ use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_page, bench_tables};
 
-/// One row for every answer.
+/// Name of the table with one row for every answer.
 const ROWS: &str = "answers.csv";
 
-/// The leaderboards as one table.
+/// Name of the table of all leaderboards.
 const LEADERBOARD: &str = "leaderboard.csv";
 
 /// Folder with a page for every method.
@@ -54,7 +54,7 @@ pub struct BenchRequest {
     /// Names of the scenarios to run [default: all]
     #[arg(long = "set", value_name = "NAME")]
     pub sets: Vec<String>,
-    /// Discard rows of an earlier run in the folder instead of going on with them
+    /// Discard rows of an earlier run in the folder instead of continuing them
     #[arg(long)]
     pub restart: bool,
     /// How figures are drawn
@@ -69,13 +69,13 @@ fn task(name: &str) -> Result<BenchTask, String> {
     })
 }
 
-/// Methods of the caller with their labels.
+/// Methods of the caller, each with its label.
 pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
 
-/// Runs the studies of a benchmark, or what is missing of them, below a folder, or in a temporary one; `entrants`
-/// answer beside the methods of the scenarios.
+/// Results of a benchmark: runs its missing studies below a folder, or in a temporary one; `entrants` are identified in
+/// addition to the methods of the scenarios.
 ///
-/// Fails if a scenario is at fault, and when nothing can be asked.
+/// Fails if a scenario is invalid, or if no task remains to be scored.
 pub fn measure(
     request: &BenchRequest,
     seed: Option<u64>,
@@ -140,7 +140,7 @@ fn are_known<'a>(
 
 /// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
 ///
-/// Fails as [`measure`] does, and when the results cannot be written.
+/// Fails as [`measure`] does, or if the results cannot be written.
 pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| PathBuf::from("results/bench"));
@@ -166,12 +166,13 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
     screen::tell(common, &output, &[] as &[&str])
 }
 
-/// A record that was not used, in a line.
+/// One line on a record that was not used.
 pub fn skipped(record: &Skipped) -> String {
     format!("{}, {}: {}", record.set, record.record, record.reason)
 }
 
-/// Writes everything; what an earlier run left and this one does not make goes away. The text of the document.
+/// Writes all files, removes files of an earlier run that this one does not write, and returns the text of the
+/// document.
 fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
     let text = results.json().on("describe", &folder.path().join(BENCH))?;
     folder.write_synced(BENCH, &text)?;

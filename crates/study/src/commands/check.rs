@@ -24,8 +24,8 @@ pub struct CheckRequest {
     pub resolved: bool,
 }
 
-/// Resolves every file and prints one line for each that is right, with a note where its rudder moves instantly; with
-/// `resolved` the whole scenario below it. All that are wrong are in the message.
+/// Resolves every file and prints one line for each valid one, with a note if its rudder moves instantly; with
+/// `resolved` the whole scenario below it. Fails with a message that lists all invalid files.
 pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
     let resolved = request.resolved;
     let (mut wrong, mut right) = (Vec::new(), Vec::new());
@@ -50,7 +50,7 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
     Err(Failure { message: format!("{}{more}", first.message), ..first })
 }
 
-/// A scenario that is right, for a program.
+/// Document entry of a valid scenario.
 fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> CheckedScenario {
     CheckedScenario {
         file: path.display().to_string(),
@@ -66,7 +66,7 @@ fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> CheckedScenario {
     }
 }
 
-/// The size of a scenario, and below it a note on a rudder that moves instantly, which few mean and no real ship has.
+/// Size of a scenario, and a note below it if the rudder moves instantly, which is rarely intended and true of no ship.
 fn summary(path: &Path, scenario: &Scenario) -> String {
     let size = format!(
         "{}: {}, {}, {} each",

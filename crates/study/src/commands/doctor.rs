@@ -1,4 +1,4 @@
-//! `study doctor`: what the program finds on this machine, for a person whose study is slow or cannot be written.
+//! `study doctor`: properties of this machine that make a study slow or prevent it from being written.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -13,12 +13,12 @@ use crate::documents::answers::DoctorAnswer;
 use crate::options::Common;
 use crate::{screen, threads};
 
-/// A file that is written and removed again.
+/// Name of a test file that is written and removed again.
 const PROBE: &str = ".study-doctor";
 
-/// Tells what there is.
+/// Prints the properties of the machine.
 ///
-/// Fails if no file can be written to the folder where results go.
+/// Fails if no file can be written to the folder of results.
 pub fn run(common: &Common) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(Path::new("."));
     let written = probe(folder);
@@ -49,7 +49,7 @@ pub fn run(common: &Common) -> Result<(), Failure> {
     written
 }
 
-/// Writes a file as results are written, and removes it.
+/// Writes a file in the way results are written, and removes it.
 fn probe(folder: &Path) -> Result<(), Failure> {
     let folder = ResultFolder::make(folder)?;
     folder.write(PROBE, "written and read\n")?;

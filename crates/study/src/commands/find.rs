@@ -17,7 +17,7 @@ use campaign::failure::Failure;
 
 /// The logs of a request.
 ///
-/// Fails if a folder of them cannot be listed, and when a file is to be joined with several.
+/// Fails if a folder of logs cannot be listed, or if a file is to be joined with several logs.
 fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     let files = expand(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
@@ -26,7 +26,7 @@ fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// The manoeuvres of every log, for other programs.
+/// Manoeuvres of every log, for other programs.
 ///
 /// Fails if a log cannot be read.
 pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<FindAnswer, Failure> {

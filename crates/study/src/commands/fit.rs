@@ -1,5 +1,5 @@
-//! `study fit`: identify measured records with every method, replay the answers on them and on others. The document and
-//! the curves are written first, and everything else is made of what they hold.
+//! `study fit`: identify measured records with every method, replay the estimates on these and on other records. The
+//! document and the curves are written first; all other output is made from them.
 
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -20,7 +20,7 @@ use crate::work::fit::{fit, methods};
 
 /// Identifies the records, prints the table, writes `fit.json`, the curves, figures, `report.md` and `report.html`.
 ///
-/// Fails if a record cannot be read, and when no method can identify the records.
+/// Fails if a record cannot be read, or if no method identifies the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     if request.each {
         return fit_each::run(request, common);
@@ -45,7 +45,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     show(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
 }
 
-/// Draws a fit into a folder and tells what it says; `text` is that of `fit.json`.
+/// Writes the figures and the page of a fit into a folder and prints its table; `text` is that of `fit.json`.
 ///
 /// Fails if a file cannot be written.
 pub fn show(
@@ -66,10 +66,10 @@ pub fn show(
     screen::tell(common, &output, &shortened(document.answer_warnings()))
 }
 
-/// Warnings that stand on the screen.
+/// Maximum number of warnings on the screen.
 const MAX_SCREEN_WARNINGS: usize = 3;
 
-/// The first warnings, and how many there are beside them.
+/// The first warnings, and the number of further ones.
 fn shortened<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<String> {
     let mut lines: Vec<String> = warnings.map(Warning::to_string).collect();
     let more = lines.len().saturating_sub(MAX_SCREEN_WARNINGS);

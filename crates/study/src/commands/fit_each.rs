@@ -1,4 +1,4 @@
-//! `study fit --each`: every log alone, a row or a line of JSON each on standard output, and no folder.
+//! `study fit --each`: every log alone, one row or one line of JSON each on standard output, without a folder.
 
 use campaign::failure::Failure;
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ use crate::work::each::LogFit;
 use crate::work::fit::methods;
 use crate::{progress, screen};
 
-/// Logs that are fitted before lines of JSON are written.
+/// Number of logs that are fitted before their lines of JSON are written.
 const CHUNK_LOGS: usize = 64;
 
 /// Identifies every log alone and prints a row for it, in the order in which they were named.
 ///
-/// Fails if no log can be read; a log that cannot be read is a row.
+/// Fails if no log can be read; a single log that cannot be read is a row.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let files = expand(&request.trials)?;
@@ -45,7 +45,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     }
 }
 
-/// A log as a line of JSON. Fails if it cannot be written so.
+/// One log as a line of JSON. Fails if it cannot be written as JSON.
 fn line(LogFit { file, verdict, warnings, error, .. }: &LogFit) -> Result<String, Failure> {
     let error = error.as_ref().map(ErrorEntry::of);
     let (file, verdict) = (file.display().to_string(), verdict.as_ref());

@@ -1,4 +1,4 @@
-//! `study inspect`: what a log holds, channel by channel, before anything is fitted.
+//! `study inspect`: content of a log, channel by channel, before a fit.
 
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ pub struct InspectRequest {
     pub with_columns: Vec<PathBuf>,
 }
 
-/// Prints every channel of the log, and what the reader warns of. A log that contradicts itself is shown all the same.
+/// Prints every channel of the log and the warnings of the reader. A log that contradicts itself is still shown.
 ///
 /// Fails if the log cannot be read.
 pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
@@ -47,7 +47,7 @@ pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     screen::tell(common, &output, &answer.warnings)
 }
 
-/// Warnings of the log read as one record; the reason where it cannot be.
+/// Warnings of the log read as one record; the reason if it cannot be read so.
 fn doubts(log: Log) -> Vec<Warning> {
     let refused =
         |problem: String| vec![WarningCode::Implausible.warning(format!("not usable as one record: {problem}"))];
@@ -61,7 +61,7 @@ fn doubts(log: Log) -> Vec<Warning> {
 fn table(channels: &[ChannelEntry]) -> Table {
     let head = TableHead::default().texts(["channel", "source"]).numbers(["readings"]);
     let head = head.numbers(["every", "longest gap", "from"]).unit("s").numbers(["lowest", "highest", "step"]);
-    let head = head.texts(["unit"]).numbers(["wraps"]).texts(["positive turns to", "compared with"]);
+    let head = head.texts(["unit"]).numbers(["crossings of north"]).texts(["positive turns to", "compared with"]);
     let mut table = Table::new(head.numbers(["scale"]).numbers(["lag"]).unit("s"));
     let text = |text: &Option<String>| text.clone().unwrap_or_else(|| MISSING.to_owned());
     let three = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 3);

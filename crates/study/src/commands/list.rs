@@ -77,7 +77,7 @@ fn identifiers() -> Result<Table, Failure> {
     Ok(table)
 }
 
-/// The default settings as one line of TOML.
+/// Default settings as one line of TOML.
 fn keys(settings: &IdentifierSettings) -> String {
     let text = toml::Value::try_from(settings).map(|value| value.to_string()).unwrap_or_default();
     text.replace('\n', " ")
@@ -122,19 +122,19 @@ fn ships() -> Table {
     table
 }
 
-/// Keys of a trial whose name begins with `part`, without it.
+/// Keys of a trial whose name begins with `part`, listed without that part.
 fn keys_below(part: &str) -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "unit", "default", "meaning"]));
     for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
         if let Some(key) = key.strip_prefix(part) {
-            // A table shows the marks of code as they are.
+            // A table shows backquotes as they are.
             table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
         }
     }
     table
 }
 
-/// Names of columns by channel.
+/// Names of columns, by channel.
 fn columns() -> Table {
     let mut table = Table::new(TableHead::default().texts(["holds", "names", "understood as well"]));
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {

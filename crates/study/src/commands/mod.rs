@@ -1,5 +1,5 @@
-//! The commands, one file each: they read options, have the work done by [`crate::work`] or the crates below, and hand
-//! the answer to [`crate::views`].
+//! The commands, one file each: they read options, call [`crate::work`] or the crates below for the computation, and
+//! hand the results to [`crate::views`].
 
 pub mod bench;
 pub mod check;
@@ -25,7 +25,8 @@ use crate::documents::answers::CommandAnswer;
 use crate::options::{Common, Format};
 use crate::{documents, screen};
 
-/// Answers in a line, or as a document where a program reads; not at all where nothing is to be said.
+/// Prints a reply as a line of text, or as a JSON document with `--format json`; prints nothing if the output is
+/// silent.
 ///
 /// Fails as [`screen::say`] does.
 fn reply(common: &Common, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {

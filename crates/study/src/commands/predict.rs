@@ -1,5 +1,5 @@
-//! `study predict`: what an identified ship will do. The prediction is that of the crate [`mod@predict`]; here models
-//! are read, and its words, tables, figures and files are made.
+//! `study predict`: predicted manoeuvres of an identified ship. The crate [`mod@predict`] computes the prediction; this
+//! module reads the models and makes texts, tables, figures and files.
 
 use std::path::{Path, PathBuf};
 
@@ -21,12 +21,12 @@ use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 
-/// The form of MSC/Circ.1053.
+/// Name of the form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";
 
-/// Predicts, prints what was found, writes `predict.json`, `report.md`, `report.html`, tables and figures.
+/// Predicts, prints the results, writes `predict.json`, `report.md`, `report.html`, tables and figures.
 ///
-/// Fails if a model or a record cannot be read, and when hardly any drawn ship comes to the end of a manoeuvre.
+/// Fails if a model or a record cannot be read, or if hardly any sampled ship completes a manoeuvre.
 pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     if !request.ballast.is_empty() && request.replays.is_empty() {
@@ -59,7 +59,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 
-/// Draws a prediction into a folder and tells what it says; `text` is that of `predict.json`.
+/// Writes the figures and the page of a prediction into a folder and prints it; `text` is that of `predict.json`.
 ///
 /// Fails if a file cannot be written.
 pub fn show(
@@ -85,7 +85,7 @@ pub fn show(
     screen::tell(common, &output, warnings)
 }
 
-/// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
+/// Default folder of the results, named after the folder of the model, which has the name of its record.
 fn default_folder(model: &Path) -> PathBuf {
     let model = display_path(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -95,7 +95,7 @@ fn default_folder(model: &Path) -> PathBuf {
     PathBuf::from(format!("{name}-predict"))
 }
 
-/// The current that a record shows.
+/// Current estimated from a record.
 fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Current, Failure> {
     let records = read_for_replay(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
     records.first().and_then(turn::current_of).ok_or_else(|| {

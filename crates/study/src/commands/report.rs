@@ -1,5 +1,5 @@
 //! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark, from
-//! its stored files alone. For several studies also the page over them.
+//! stored files alone. For several studies also one page over them.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -36,9 +36,9 @@ pub struct ReportRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Makes tables, figures and the pages of a finished study, a fit, a trace, a prediction or a benchmark where it is
-/// stored, or in `--out`; with `open` shows the page in a browser. Several studies are each made where they are stored,
-/// and the page over them where all of them lie, or in `--out`.
+/// Makes tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark in its folder, or
+/// in `--out`; with `open` shows the page in a browser. Several studies are each made in their own folders, and the
+/// page over them in the folder that holds them all, or in `--out`.
 pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let folders = &request.folders[..];
     if let [folder] = folders {
@@ -55,7 +55,7 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     if common.quiet { Ok(()) } else { screen::say(&format!("page over {} studies: {}", folders.len(), page.display())) }
 }
 
-/// The folder that holds all of some folders. Fails if they lie in different ones.
+/// Common parent folder of some folders. Fails if they lie in different ones.
 fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
     let holding = |folder: &PathBuf| match folder.file_name().and(folder.parent()) {
         Some(parent) if parent == Path::new("") => Some(PathBuf::from(".")),
@@ -67,7 +67,7 @@ fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
     first.ok_or_else(|| Failure::input(problem))
 }
 
-/// Makes all there is of one folder.
+/// Makes all output of one folder.
 fn report(stored: &Path, request: &ReportRequest, common: &Common) -> Result<(), Failure> {
     let ReportRequest { open, style, .. } = request;
     let folder = common.out.as_deref().unwrap_or(stored);
@@ -114,7 +114,7 @@ const OPENER: (&str, &[&str]) = ("cmd", &["/C", "start", ""]);
 #[cfg(not(any(target_os = "macos", windows)))]
 const OPENER: (&str, &[&str]) = ("xdg-open", &[]);
 
-/// Shows a page in a browser. Fails if there is no page, and when nothing can open it.
+/// Shows a page in a browser. Fails if there is no page, or if no program can open it.
 fn show(page: &Path) -> Result<(), Failure> {
     let shown = page.display();
     if !page.is_file() {

@@ -1,4 +1,4 @@
-//! `study SCENARIO.toml`: run what is missing, then publish what is stored.
+//! `study SCENARIO.toml`: run the missing trials, then publish the stored rows.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
-/// Runs a scenario and publishes it as `study report` would, or a shard of it.
+/// Runs a scenario, or one shard of it, and publishes it as `study report` does.
 pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
     if !scenario.unknown_output.is_empty() && !common.quiet {

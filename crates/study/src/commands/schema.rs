@@ -42,7 +42,7 @@ pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &Common) -> Result<(), Fa
     screen::say_document(&text)
 }
 
-/// The schema of a file, in draft 7, which editors of TOML understand as well.
+/// JSON schema of a file, in draft 7, which editors of TOML understand as well.
 pub fn schema(what: Described) -> Schema {
     match what {
         Described::Scenario => campaign::scenario::schema::schema(),
@@ -71,12 +71,12 @@ pub fn schema(what: Described) -> Schema {
     }
 }
 
-/// The schema of what the program reads.
+/// Schema of a type that the program reads.
 fn read<T: JsonSchema>() -> Schema {
     SchemaSettings::draft07().for_deserialize().into_generator().into_root_schema_for::<T>()
 }
 
-/// The schema of an answer with its version.
+/// Schema of a command's JSON output, with its version.
 fn answer<A: CommandAnswer>() -> Schema {
     let mut schema = of::<Versioned<A>>();
     if let Some(version) = schema.pointer_mut("/properties/schema").and_then(Value::as_object_mut) {
@@ -85,7 +85,7 @@ fn answer<A: CommandAnswer>() -> Schema {
     schema
 }
 
-/// The schema of what the program writes.
+/// Schema of a type that the program writes.
 fn of<T: JsonSchema>() -> Schema {
     SchemaSettings::draft07().for_serialize().into_generator().into_root_schema_for::<T>()
 }

@@ -23,13 +23,13 @@ pub struct ScoreRequest {
     /// optional: delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed; for several methods: method
     #[arg(value_name = "ANSWERS.csv")]
     pub answers: PathBuf,
-    /// Scenario of the trials [default: that in trials.toml beside the answers]
+    /// Scenario of the trials [default: that in trials.toml next to the answers]
     #[arg(long, value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
     /// Name of the method if the table has no column `method` [default: the name of the file]
     #[arg(long, value_name = "NAME")]
     pub label: Option<String>,
-    /// Discard rows of an earlier run in the folder instead of going on with them
+    /// Discard rows of an earlier run in the folder instead of continuing them
     #[arg(long)]
     pub restart: bool,
     /// How figures are drawn, and which
@@ -40,9 +40,9 @@ pub struct ScoreRequest {
 /// Description of trials: a scenario and a few keys.
 const LIST: Kind = Kind { name: "a description of trials", max_bytes: 1 << 22 };
 
-/// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` would.
+/// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` does.
 ///
-/// Fails if the answers are to other trials than those of the scenario.
+/// Fails if the answers belong to trials other than those of the scenario.
 pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     let scenario = scenario_of(request, common)?;
     let theme = request.style.style.theme()?;
@@ -59,7 +59,7 @@ pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
     publish(&stored, &folder, &theme, request.style.figures, common)
 }
 
-/// The scenario of the answers, with the seed of their trials.
+/// Scenario of the answers, with the seed of their trials.
 fn scenario_of(request: &ScoreRequest, common: &Common) -> Result<Scenario, Failure> {
     let beside = request.answers.with_file_name(TRIALS);
     let scenario = match &request.scenario {

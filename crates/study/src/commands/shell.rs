@@ -38,7 +38,7 @@ pub fn completions(
     clap_complete::generate(shell, &mut command, &name, &mut script);
     let script = String::from_utf8_lossy(&script).into_owned();
     if common.format != Format::Json {
-        // A script is not shown but read.
+        // A script is read by a shell, not shown to a person.
         return screen::say_document(&script);
     }
     reply(common, &CompletionsAnswer { shell: shell.to_string(), script }, "")
@@ -57,7 +57,7 @@ pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Co
     for (name, command) in std::iter::once((program.clone(), command.clone())).chain(below) {
         let file = format!("{name}.1");
         let path = folder.join(&file);
-        // `man` has no word for a blank in a name.
+        // `man` accepts no blank in a name.
         let page = clap_mangen::Man::new(command.name(name));
         let mut text = Vec::new();
         page.render(&mut text).on("make", &path)?;

@@ -1,4 +1,4 @@
-//! `study sidecar`: a first description of a table for a person to check.
+//! `study sidecar`: a first description of a table, to be checked by a person.
 
 use std::path::{Path, PathBuf};
 
@@ -21,12 +21,12 @@ pub struct SidecarRequest {
     pub log: PathBuf,
 }
 
-/// Writes the description beside the table; that of a table on standard input to standard output.
+/// Writes the description next to the table; for a table on standard input, to standard output.
 ///
-/// Fails if the table cannot be read, and when it has a description.
+/// Fails if the table cannot be read, or if it already has a description.
 pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(), Failure> {
     if log == Path::new(STDIN) {
-        // There is nothing beside which it could be put.
+        // Standard input has no folder for the description.
         return tell(&reader::describe(log).map_err(Failure::input)?, None, common);
     }
     let path = match &common.out {
@@ -45,7 +45,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
     tell(&text, Some((&path, log)), common)
 }
 
-/// Tells where the description is; itself where it is in no file or a program reads.
+/// Prints the path of the description; prints the description itself if it is in no file or JSON is requested.
 fn tell(text: &str, written: Option<(&Path, &Path)>, common: &Common) -> Result<(), Failure> {
     let described: toml::Table = text.parse().map_err(Failure::work)?;
     let file = written.map(|(path, _)| path.display().to_string());

@@ -1,5 +1,5 @@
-//! `study simulate`: the trials of a scenario as records that `study fit` reads, with the truth beside each, and in a
-//! folder a list of them that `study score` knows.
+//! `study simulate`: the trials of a scenario as records that `study fit` reads, with the true values of each, and in a
+//! folder a list of the records that `study score` reads.
 
 use std::path::Path;
 
@@ -19,10 +19,10 @@ use crate::progress;
 use crate::views::page_files::run_all;
 use crate::work::simulate::{RecordFiles, records, tasks};
 
-/// Simulates the trials that are requested and writes them, with the truth of each.
+/// Simulates the requested trials and writes them, with the true values of each.
 ///
-/// Fails if no such cell or trial is there, when several records are to become one file, and with the first trial
-/// that cannot be made.
+/// Fails if no such cell or trial exists, if several records are to become one file, or at the first trial that cannot
+/// be simulated.
 pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(&request.scenario, common.seed)?;
     let Some(out) = &common.out else {
@@ -58,7 +58,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     reply(common, &SimulateAnswer { records: count, files }, &line)
 }
 
-/// Writes which record is of which trial, and what it takes to make the trials again.
+/// Writes the list that assigns records to trials, with all data needed to simulate the trials again.
 fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
     let mut table = Table::new(TableHead::default().texts(["record", "cell", "label", "replicate", "also"]));
     for (task, name) in tasks.iter().zip(names) {
@@ -76,7 +76,7 @@ fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFo
 /// First line of the description of the trials.
 const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials that lie beside this file.\n";
 
-/// Writes the records of a trial, the sidecar of each where there is something to say in it, and its truth.
+/// Writes the records of a trial, the sidecar of each record that needs one, and the true values.
 fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
     for RecordFiles { name, table, sidecar, truth } in records(scenario, task, name)? {
         folder.write(&format!("{name}.csv"), table)?;

@@ -1,5 +1,5 @@
-//! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; its document and
-//! curves are written first, and everything else is made from them.
+//! `study trace`: effects that a first-order model lacks on measured records. The crate [`mod@trace`] does the
+//! analysis; its document and curves are written first, and all other output is made from them.
 
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -19,10 +19,9 @@ use crate::work::earlier::EarlierModel;
 use crate::work::steady;
 use crate::work::trace::{STOPPED, settings, trace, without};
 
-/// Analyses the records, prints what was found, writes `trace.json`, the curves, `report.md`, `report.html` and
-/// figures.
+/// Analyses the records, prints the results, writes `trace.json`, the curves, `report.md`, `report.html` and figures.
 ///
-/// Fails if a record cannot be read, and when the base cannot be fitted.
+/// Fails if a record cannot be read, or if the base cannot be fitted.
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let (theme, settings) = (request.style.theme()?, settings(request)?);
     let priors = EarlierModel::of_files(&request.priors)?;
@@ -43,7 +42,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     if interrupt::is_asked() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
 }
 
-/// Draws a trace into a folder and tells what it says; `text` is that of `trace.json`.
+/// Writes the figures and the page of a trace into a folder and prints its results; `text` is that of `trace.json`.
 ///
 /// Fails if a file cannot be written.
 pub fn show(

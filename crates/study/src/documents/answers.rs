@@ -1,4 +1,4 @@
-//! Answers of commands that write no file, as `--format json` prints them.
+//! JSON output of commands that write no file, as `--format json` prints it.
 
 use std::collections::BTreeMap;
 
@@ -8,32 +8,32 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// A document without a file of its own.
+/// JSON document of a command that has no file of its own.
 pub trait CommandAnswer: Serialize + JsonSchema {
-    /// Its name and version, such as `list/1`.
+    /// Name and version of the document, such as `list/1`.
     const SCHEMA: &'static str;
 }
 
-/// An answer with its version before it.
+/// Document preceded by its version.
 #[derive(Serialize, JsonSchema)]
 pub struct Versioned<T> {
     /// Name and version of the document.
     pub schema: &'static str,
-    /// The answer.
+    /// Body of the document.
     #[serde(flatten)]
     pub body: T,
 }
 
-/// A list.
+/// A list of `study list`.
 #[derive(Serialize, JsonSchema)]
 pub struct ListAnswer {
     /// Name of the list.
     pub what: String,
-    /// The lines of the list, each by the heads of its columns.
+    /// Rows of the list, each an object keyed by the column heads.
     pub entries: Vec<Value>,
 }
 
-/// Scenarios that were resolved.
+/// Result of `study check`.
 #[derive(Serialize, JsonSchema)]
 pub struct CheckAnswer {
     /// Valid scenarios.
@@ -42,93 +42,93 @@ pub struct CheckAnswer {
     pub wrong: usize,
 }
 
-/// A scenario that is right.
+/// A valid scenario.
 #[derive(Serialize, JsonSchema)]
 pub struct CheckedScenario {
     /// The file as it was named.
     pub file: String,
-    /// Its name.
+    /// Name of the scenario.
     pub name: String,
     /// Question of the scenario.
     pub question: String,
-    /// The seed of a run.
+    /// Seed of a run.
     pub seed: u64,
-    /// SHA-256 of all that decides the rows.
+    /// SHA-256 of all settings that determine the rows.
     pub design_sha256: String,
-    /// Trials of a cell.
+    /// Number of trials of a cell.
     pub replicates: u64,
     /// Labels of every cell.
     pub cells: Vec<Vec<String>>,
-    /// The methods.
+    /// Methods of the scenario.
     pub methods: Vec<MethodName>,
     /// Assumptions for values left open that can affect the result.
     pub assumptions: Vec<String>,
-    /// The scenario with nothing left out, where it was requested.
+    /// The scenario with all defaults, if requested.
     #[schemars(with = "Option<Map<String, Value>>")]
     pub resolved: Option<toml::Table>,
 }
 
-/// A finished study.
+/// Result of a finished study.
 #[derive(Serialize, JsonSchema)]
 pub struct StudyAnswer<'a> {
-    /// Where it is.
+    /// Path of the folder.
     pub folder: String,
     /// Manifest of the run.
     pub manifest: &'a Manifest,
-    /// A line for every cell and method, by the heads of the columns of `summary.csv`.
+    /// One object for every cell and method, keyed by the column heads of `summary.csv`.
     pub summary: Vec<Value>,
-    /// Failed answers with their reasons.
+    /// Failed identifications with their reasons.
     pub failures: Vec<String>,
 }
 
-/// A part of a study.
+/// Result of a part of a study.
 #[derive(Serialize, JsonSchema)]
 pub struct ShardAnswer<'a> {
-    /// Where it is.
+    /// Path of the folder.
     pub folder: String,
     /// Manifest of the run.
     pub manifest: &'a Manifest,
 }
 
-/// Simulated records.
+/// Result of `study simulate`.
 #[derive(Serialize, JsonSchema)]
 pub struct SimulateAnswer {
     /// Number of records.
     pub records: u64,
-    /// The first of every trial.
+    /// The first file of every trial.
     pub files: Vec<String>,
 }
 
-/// Manual pages.
+/// Result of `study man`.
 #[derive(Serialize, JsonSchema)]
 pub struct ManAnswer {
-    /// The pages.
+    /// Paths of the pages.
     pub files: Vec<String>,
 }
 
-/// A completion script.
+/// Result of `study completions`.
 #[derive(Serialize, JsonSchema)]
 pub struct CompletionsAnswer {
-    /// The shell.
+    /// Name of the shell.
     pub shell: String,
-    /// The script.
+    /// Text of the script.
     pub script: String,
 }
 
 /// A first description of a table.
 #[derive(Serialize, JsonSchema)]
 pub struct SidecarAnswer {
-    /// The file; none if it was not written.
+    /// Path of the file; `null` if it was not written.
     pub file: Option<String>,
     /// Keys and values of the description.
     #[schemars(with = "Map<String, Value>")]
     pub sidecar: toml::Table,
 }
 
-/// The machine.
+/// Properties of the machine.
 #[derive(Serialize, JsonSchema)]
 pub struct DoctorAnswer {
-    /// Results of the checks, by their names.
+    /// Results of the checks, by name.
     #[serde(flatten)]
     pub found: BTreeMap<String, String>,
 }

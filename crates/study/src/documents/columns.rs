@@ -1,12 +1,12 @@
-//! Named columns of numbers as CSV: the curves of figures, from which they can be drawn again.
+//! Named columns of numbers as CSV: the curves of figures, from which they can be plotted again.
 
 use std::collections::BTreeMap;
 
-/// Columns of one length, each with its name and unit.
+/// Columns of equal length, each with a name that includes the unit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CurveTable(Vec<(String, Vec<f64>)>);
 
-/// Up to seven significant digits, without trailing zeros; empty for a value that is not finite.
+/// Number with up to seven significant digits, without trailing zeros; empty if it is not finite.
 fn digits(value: f64) -> String {
     let shown = format!("{value:.6e}").parse::<f64>().ok().filter(|value| value.is_finite());
     shown.map_or_else(String::new, |value| value.to_string())
@@ -18,7 +18,7 @@ impl CurveTable {
         self.0.push((name.into(), values));
     }
 
-    /// The table. The first column has all of its digits, the others seven.
+    /// CSV text of the table. The first column has all digits, the others seven significant ones.
     pub fn text(&self) -> String {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
         let rows = self.0.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
@@ -30,7 +30,7 @@ impl CurveTable {
         [names.join(",")].into_iter().chain((0..rows).map(line)).map(|line| line + "\n").collect()
     }
 
-    /// Columns of a table by their names; an empty cell is NaN. `None` if a cell is no number or a row is short.
+    /// Columns of a table by name; an empty cell is NaN. `None` if a cell is not a number or a row is short.
     pub fn read(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next()?.split(',').collect();

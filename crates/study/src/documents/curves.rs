@@ -1,5 +1,5 @@
-//! Curves of a trace beside `trace.json`: every record with the replays before and after, its innovations, and the
-//! moment that the base lacks. They are written after the analysis; figures are drawn from the tables read back.
+//! Curves of a trace, stored with `trace.json`: every record with the replays before and after, its innovations, and
+//! the moment that the base lacks. They are written after the analysis; figures are made from the tables read back.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,35 +18,35 @@ use trial::{Channel, Columns as Channels, Origin, Trial};
 use super::columns::CurveTable;
 use crate::records::names;
 
-/// A record with its replays by both models.
+/// Record with its replays by both models.
 pub struct TracedRecord {
     /// The record.
     pub trial: Trial,
-    /// Its rudder replayed through the base and through the average of the structures.
+    /// Replays of the recorded rudder by the base and by the average of the structures.
     pub replays: [Replay; 2],
-    /// Half the width of the 95 % band of the second at its rows, rad.
+    /// Half width of the 95 % band of the second replay at its rows, rad.
     pub band: Option<Vec<f64>>,
-    /// Times, s, of the innovations of the most probable structure, and these in standard deviations, where it was
-    /// fitted.
+    /// Times, s, of the innovations of the most probable structure, and the innovations in standard deviations, if it
+    /// was fitted.
     pub innovations: Option<[Vec<f64>; 2]>,
 }
 
 /// All curves of a trace.
 pub struct TraceCurves {
-    /// The records, in their order.
+    /// Records in the order of the document.
     pub records: Vec<TracedRecord>,
     /// Tables of the missing moments: over time, and over the channels.
     pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
-    /// Times, s, and what every step of the staircase leaves of the heading of the first record, deg.
+    /// Times, s, and the heading residual of the first record after every step of the staircase, deg.
     pub staircase: [Vec<Vec<f64>>; 2],
 }
 
-/// Unique slugs of record names for file names: two names may make one slug.
+/// Unique slugs of record names for file names; equal slugs are numbered.
 pub fn slugs(record_names: &[String]) -> Vec<String> {
     names(record_names.iter().map(|name| slug(name)))
 }
 
-/// Suffix of the files of a record: empty for the first.
+/// File name suffix of a record: empty for the first.
 pub fn suffix(names: &[String], number: usize) -> String {
     if number == 0 { String::new() } else { format!("-{}", slugs(names)[number]) }
 }
@@ -54,7 +54,7 @@ pub fn suffix(names: &[String], number: usize) -> String {
 /// Column prefixes of the models before and after.
 const MODELS: [&str; 2] = ["before", "after"];
 
-/// The table of a record.
+/// CSV table of a record and its replays.
 pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     let mut columns = CurveTable::default();
     columns.push("t_s", trial.time().to_vec());
@@ -63,7 +63,7 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     if let Some(rate) = trial.yaw_rate() {
         columns.push("yaw_rate_deg_s", degrees(rate));
     }
-    // A replay begins with the first heading.
+    // A replay begins at the first recorded heading.
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = |values: &[f64]| [vec![f64::NAN; first], degrees(values)].concat();
     for (model, on) in MODELS.iter().zip([&comparison.before, &comparison.after]) {
@@ -82,12 +82,12 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
 /// Name of the table of the staircase.
 const STAIRCASE: &str = "staircase.csv";
 
-/// The column of a step.
+/// Name of the column of a step.
 fn column_of(step: usize) -> String {
     format!("step_{step}_residual_deg")
 }
 
-/// Entries of a staircase, and the named table of the residuals of the first record after its steps.
+/// Entries of a staircase, and the named table of the residuals of the first record after each step.
 pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
     let Some(staircase) = staircase else { return (Vec::new(), None) };
     let mut columns = CurveTable::default();
@@ -103,10 +103,10 @@ pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(Stri
     (staircase.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.text())))
 }
 
-/// Columns of [`innovations`].
+/// Names of the columns of [`innovations`].
 const INNOVATIONS: [&str; 2] = ["t_s", "innovation_sd"];
 
-/// The table of the innovations of a record.
+/// CSV table of the innovations of a record.
 pub fn innovations(series: &Innovations) -> String {
     let mut columns = CurveTable::default();
     for (name, values) in INNOVATIONS.into_iter().zip([&series.time, &series.values]) {
@@ -115,7 +115,7 @@ pub fn innovations(series: &Innovations) -> String {
     columns.text()
 }
 
-/// The record of a table. `None` if the table is not one of [`table`].
+/// Record read from a table; `None` if the table does not have the form of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     let columns = CurveTable::read(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
@@ -145,16 +145,16 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     Some(TracedRecord { trial, replays, band, innovations: None })
 }
 
-/// Content of a table of a trace. Fails for a table in another form; `place` is its path in messages.
+/// Content of a table of a trace. Fails if the table has another form; `place` is its path in messages.
 fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Result<T, Failure> {
     let again = "this is not a table of a trace; run `study trace` again";
     parse(text).ok_or_else(|| Failure::input(format!("{place}: {again}")))
 }
 
 impl TraceCurves {
-    /// Curves of a document, from the files in its folder.
+    /// Curves of a document, read from the files in its folder.
     ///
-    /// Fails if one cannot be read.
+    /// Fails if a file cannot be read.
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);

@@ -1,4 +1,4 @@
-//! Draws for other programs, `draws.parquet`: ships of a prediction and estimates of a fit or a trace, one row each.
+//! Samples for other programs, `draws.parquet`: ships of a prediction, or estimates of a fit or a trace, one row each.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,8 @@ use predict::{DrawnEstimate, DrawnParameters, EstimateDraws, PredictDocument};
 /// Name of the file.
 pub const DRAWS: &str = "draws.parquet";
 
-/// Columns of a prediction: number of the ship, its parameters, and its figures in every manoeuvre; missing where a
-/// structure or a ship lacks them.
+/// Columns of a prediction: number of the ship, its parameters, and its characteristics in every manoeuvre; missing if
+/// a structure or a ship lacks them.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
     let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
@@ -38,7 +38,7 @@ fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     .collect()
 }
 
-/// A column for every parameter of some rows.
+/// One column for every parameter of some rows.
 fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (String, Values)> {
     let mut columns: BTreeMap<String, Vec<Option<f64>>> = BTreeMap::new();
     for (row, parameters) in rows.iter().enumerate() {
@@ -50,7 +50,7 @@ fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (Strin
     columns.into_iter().map(|(name, values)| (name, Values::Numbers(values)))
 }
 
-/// A draw of an answer.
+/// One sample of an estimate.
 struct EstimateRow<'a> {
     number: u32,
     method: &'a str,
@@ -58,14 +58,14 @@ struct EstimateRow<'a> {
 }
 
 impl EstimateRow<'_> {
-    /// What the first three parameters make, 1/T, K/T and δ_r; missing where it is infinite.
+    /// A function of the first three parameters, 1/T, K/T and δ_r; missing if it is infinite.
     fn number(&self, of: fn([f64; 3]) -> f64) -> Option<f64> {
         let base = std::array::from_fn(|place| self.drawn.parameters[place].1);
         Some(of(base)).filter(|value| value.is_finite())
     }
 }
 
-/// The columns of answers: which draw of which method it is, K, T and δ_r, and every parameter.
+/// Columns of estimates: number of the sample, method, K, T and δ_r, and every parameter.
 fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
     let texts = |of: fn(&EstimateRow) -> String| Values::Texts(rows.iter().map(|row| Some(of(row))).collect());
     let numbers = |of: fn([f64; 3]) -> f64| Values::Numbers(rows.iter().map(|row| row.number(of)).collect());
@@ -84,9 +84,9 @@ fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
     .collect()
 }
 
-/// Writes so many draws of every answer, each under the name of its method, with this seed.
+/// Writes the given number of samples of every estimate, under the name of its method, with this seed.
 ///
-/// Fails if an answer cannot be drawn from, and when the file cannot be written.
+/// Fails if an estimate cannot be sampled, or if the file cannot be written.
 pub fn keep_estimates<'a>(
     folder: &ResultFolder,
     answers: impl Iterator<Item = (&'a str, &'a IdentifiedShip)>,
@@ -101,7 +101,7 @@ pub fn keep_estimates<'a>(
     keep_columns(folder, estimate_columns(&rows))
 }
 
-/// Writes the ships of a prediction. Fails if the file cannot be written.
+/// Writes the sampled ships of a prediction. Fails if the file cannot be written.
 pub fn keep(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
     keep_columns(folder, columns(predicted))
 }

@@ -1,4 +1,4 @@
-//! Answer of `study fit --each` for a log: one line of JSON.
+//! Result of `study fit --each` for one log: one line of JSON.
 
 use document::Warning;
 use document::fit::VerdictEntry;
@@ -15,10 +15,10 @@ pub struct LogFitEntry<'a> {
     pub schema: &'static str,
     /// The file as it was named.
     pub file: String,
-    /// The answer to take; `null` where there is an error.
+    /// Recommended estimate; `null` if there is an error.
     pub verdict: Option<&'a VerdictEntry>,
-    /// Warnings of the record and of that answer, the worst first.
+    /// Warnings of the record and of that estimate, the worst first.
     pub warnings: &'a [Warning],
-    /// Why there is no answer.
+    /// Reason why there is no estimate.
     pub error: Option<ErrorEntry<'a>>,
 }

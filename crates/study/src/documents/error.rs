@@ -5,26 +5,26 @@ use serde::Serialize;
 
 use crate::screen;
 
-/// A command that failed.
+/// Failure of a command.
 #[derive(Serialize, schemars::JsonSchema)]
 pub struct ErrorDocument<'a> {
     /// Version of the document.
     pub schema: &'static str,
-    /// The failure.
+    /// Entry of the failure.
     pub error: ErrorEntry<'a>,
-    /// Exit code of the program: 1 where the work could not be done, 2 where the input is wrong, 130 after Ctrl-C.
+    /// Exit code of the program: 1 if the work could not be done, 2 if the input is wrong, 130 after Ctrl-C.
     pub exit_code: u8,
 }
 
-/// The failure.
+/// Entry of a failure.
 #[derive(Serialize, schemars::JsonSchema)]
 pub struct ErrorEntry<'a> {
-    /// `error`: there is no answer, whatever the `severity` of warnings.
+    /// `error`: there is no result, whatever the `severity` of warnings.
     #[schemars(extend("const" = "error"))]
     pub severity: &'static str,
-    /// `true` if the input is wrong, the work could not be done, or somebody asked to stop.
+    /// Kind of failure: the input is wrong, the work could not be done, or it was stopped on request.
     pub blame: Blame,
-    /// The whole message, as a person reads it.
+    /// The whole message, for a person.
     pub message: &'a str,
     /// Parts of the message.
     #[serde(flatten)]
@@ -32,13 +32,13 @@ pub struct ErrorEntry<'a> {
 }
 
 impl<'a> ErrorEntry<'a> {
-    /// The entry of a failure.
+    /// Entry of a failure.
     pub fn of(Failure { blame, message, parts }: &'a Failure) -> Self {
         Self { severity: "error", blame: *blame, message, parts }
     }
 }
 
-/// The document of a failure in one line. Fails if it cannot be written as JSON.
+/// Document of a failure in one line. Fails if it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
     let exit_code = screen::exit_code(failure.blame);
     let document = ErrorDocument { schema: "error/1", error: ErrorEntry::of(failure), exit_code };

@@ -1,4 +1,4 @@
-//! The manoeuvres of logs for other programs.
+//! Manoeuvres of logs for other programs.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use trial::find::DetectedManoeuvre;
 use super::answers::CommandAnswer;
 use super::log::LogEntry;
 
-/// The manoeuvres of some logs.
+/// Manoeuvres of some logs.
 #[derive(Serialize, JsonSchema)]
 pub struct FindAnswer {
-    /// The logs in the order they were named.
+    /// The logs in the order in which they were given.
     pub logs: Vec<SearchedLog>,
     /// Warnings of the reader, the worst first.
     pub warnings: Vec<Warning>,
@@ -25,20 +25,20 @@ impl CommandAnswer for FindAnswer {
     const SCHEMA: &'static str = "find/1";
 }
 
-/// A log with its manoeuvres.
+/// Log with its manoeuvres.
 #[derive(Serialize, JsonSchema)]
 pub struct SearchedLog {
     /// The log.
     #[serde(flatten)]
     pub log: LogEntry,
-    /// Its manoeuvres in order of time.
+    /// Manoeuvres in order of time.
     pub manoeuvres: Vec<ManoeuvreEntry>,
 }
 
-/// A manoeuvre inside a log.
+/// Manoeuvre inside a log.
 #[derive(Serialize, JsonSchema)]
 pub struct ManoeuvreEntry {
-    /// Its number, as `--trial` takes it.
+    /// Number of the manoeuvre, as in `--trial`.
     pub trial: usize,
     /// Name, such as `zig-zag 10/10`.
     pub kind: String,
@@ -52,14 +52,14 @@ pub struct ManoeuvreEntry {
     pub executes: usize,
     /// Rudder angle, deg.
     pub rudder_deg: Option<f64>,
-    /// Heading angle at which it is put over, deg.
+    /// Heading angle at which the rudder is put over, deg.
     pub heading_deg: Option<f64>,
-    /// Remarks on its quality.
+    /// Remarks on the quality of the manoeuvre.
     pub remarks: Vec<String>,
 }
 
 impl SearchedLog {
-    /// A log with its manoeuvres.
+    /// Entry of a log with its manoeuvres.
     pub fn of(file: &Path, log: &Log, manoeuvres: &[DetectedManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
         let manoeuvre = |(trial, manoeuvre): (usize, &DetectedManoeuvre)| {

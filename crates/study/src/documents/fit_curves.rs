@@ -1,4 +1,4 @@
-//! The curves of a fit beside `fit.json`.
+//! Curves of a fit, stored with `fit.json`.
 
 use std::collections::BTreeMap;
 
@@ -7,39 +7,39 @@ use report::PlotCurve;
 use report::figures::ZigzagTrial;
 use serde::{Deserialize, Serialize};
 
-/// `curves.json`: what the figures of a fit show, so that they can be drawn again.
+/// `curves.json`: the curves of the figures of a fit, from which they can be plotted again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitCurves {
-    /// The records, first the fitted ones.
+    /// Records, the fitted ones first.
     pub records: Vec<FitRecord>,
-    /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
+    /// Outline of the 95 % region of K (1/s) and T (s) of every method whose region is bounded.
     pub regions: BTreeMap<String, PlotCurve>,
-    /// Median track of the turning circle that is predicted, east and north in ship lengths from the execute on, where
-    /// the course is north.
+    /// Median track of the predicted turning circle, east and north in ship lengths from the execute; north is the
+    /// approach course.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub predicted_circle: Option<PlotCurve>,
 }
 
-/// A record with its replays, in degrees.
+/// Record with its replays, in degrees.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitRecord {
-    /// A name that no other record has.
+    /// Unique name of the record.
     pub name: String,
-    /// Its file.
+    /// Path of the file.
     pub file: String,
-    /// `true` if another record has the name that it came with.
+    /// `true` if another record had the same name, so that this one was renamed.
     pub is_renamed: bool,
-    /// `true` if it was kept for validation.
+    /// `true` if the record was held out for validation.
     pub validation: bool,
     /// The zig-zag with its characteristic points.
     pub zigzag: Option<ZigzagTrial>,
     /// Record and replays of all methods.
     pub replays: Replays,
-    /// The rudder.
+    /// Rudder angle.
     pub rudder: PlotCurve,
-    /// The track of a turning circle, east and north in ship lengths from the execute on, where the course is north.
+    /// Track of a turning circle, east and north in ship lengths from the execute; north is the approach course.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub circle: Option<PlotCurve>,
-    /// Headings and rudder angles that are left out or doubtful, where there are some.
+    /// Headings and rudder angles that are excluded or doubtful, if there are any.
     pub rejected: Option<[PlotCurve; 2]>,
 }

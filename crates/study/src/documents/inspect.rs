@@ -1,4 +1,4 @@
-//! Answer of `study inspect`: the channels of a log.
+//! Result of `study inspect`: the channels of a log.
 
 use std::path::Path;
 
@@ -11,16 +11,16 @@ use trial::{Channel, Log};
 use super::answers::CommandAnswer;
 use super::log::LogEntry;
 
-/// Time between two readings, in usual intervals, beyond which it is a gap.
+/// Minimum time between two readings that counts as a gap, in median intervals.
 const MIN_GAP: f64 = 1.5;
 
-/// A log.
+/// Result for one log.
 #[derive(Serialize, JsonSchema)]
 pub struct InspectAnswer {
     /// The log.
     #[serde(flatten)]
     pub log: LogEntry,
-    /// Its channels.
+    /// Channels of the log.
     pub channels: Vec<ChannelEntry>,
     /// Warnings of the reader, the worst first.
     pub warnings: Vec<Warning>,
@@ -30,38 +30,38 @@ impl CommandAnswer for InspectAnswer {
     const SCHEMA: &'static str = "inspect/1";
 }
 
-/// A channel of a log.
+/// Channel of a log.
 #[derive(Serialize, JsonSchema)]
 pub struct ChannelEntry {
     /// Name, such as `yaw rate`.
     pub channel: String,
-    /// The column or instrument it comes from; none if it was made of others.
+    /// Column or instrument that is the source; `null` if the channel was computed from others.
     pub source: Option<String>,
-    /// Readings.
+    /// Number of readings.
     pub readings: usize,
     /// Median time from one reading to the next.
     pub interval_s: Option<f64>,
-    /// Maximum time from one reading to the next, where it exceeds one and a half times the median.
+    /// Maximum time from one reading to the next, if it exceeds one and a half times the median.
     pub longest_gap_s: Option<f64>,
     /// Beginning of the longest gap.
     pub longest_gap_from_s: Option<f64>,
     /// Unit of the four numbers below.
     pub unit: String,
-    /// Minimum reading; a heading goes on past north.
+    /// Minimum reading; a heading is continued past north.
     pub lowest: f64,
     /// Maximum reading.
     pub highest: f64,
     /// Minimum change from one reading to the next.
     pub step: Option<f64>,
-    /// How often a heading crosses north.
+    /// Number of times a heading crosses north.
     pub wraps: Option<usize>,
-    /// Where positive values turn the ship, `starboard` or `port`; none if nobody can tell.
+    /// Side to which positive values turn the ship, `starboard` or `port`; `null` if it cannot be determined.
     pub turns_to: Option<String>,
-    /// The channel that it is compared with.
+    /// Reference channel of the comparison.
     pub reference: Option<String>,
-    /// Factor from it to the reference: negative where its sign is reversed.
+    /// Factor from this channel to the reference: negative if its sign is reversed.
     pub scale: Option<f64>,
-    /// Lag behind the reference.
+    /// Lag of this channel behind the reference.
     pub lag_s: Option<f64>,
 }
 
@@ -93,7 +93,7 @@ impl From<&ChannelInspection> for ChannelEntry {
 }
 
 impl InspectAnswer {
-    /// A log with its warnings.
+    /// Entry of a log with its warnings.
     pub fn of(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
         Self {
             log: LogEntry::of(file, log),

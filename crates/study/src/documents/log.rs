@@ -1,4 +1,4 @@
-//! A log as the answers of several commands name it.
+//! Entry of a log, shared by the results of several commands.
 
 use std::path::Path;
 
@@ -6,21 +6,21 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use trial::Log;
 
-/// A log.
+/// Entry of a log.
 #[derive(Serialize, JsonSchema)]
 pub struct LogEntry {
     /// The file as it was named.
     pub file: String,
-    /// Number of rows: instants at which heading, rudder or yaw rate was read.
+    /// Number of rows: instants with a reading of heading, rudder or yaw rate.
     pub rows: usize,
-    /// Length, s.
+    /// Duration, s.
     pub duration_s: f64,
-    /// Its first day, where it has a clock with dates.
+    /// Date of the first row, if the clock has dates.
     pub date: Option<String>,
 }
 
 impl LogEntry {
-    /// The log of a file.
+    /// Entry of the log of a file.
     pub fn of(file: &Path, log: &Log) -> Self {
         let time = log.time();
         let ends = time.first().zip(time.last());

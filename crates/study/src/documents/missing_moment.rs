@@ -1,4 +1,4 @@
-//! The yaw moment that the base lacks on every fitted record, and its tables.
+//! Yaw moment that the base lacks on every fitted record, and its tables.
 
 use std::collections::BTreeMap;
 
@@ -11,38 +11,38 @@ use ship::angle::to_deg;
 
 use super::columns::CurveTable;
 
-/// The moment of one record, read from its tables; an absent column is empty.
+/// Missing moment of one record, read from its tables; an absent column is empty.
 pub struct MissingMomentCurves {
     /// Times, s.
     pub time: Vec<f64>,
     /// The moment, deg of rudder.
     pub moment: Vec<f64>,
-    /// The ends of its 95 % band, deg of rudder.
+    /// Ends of the 95 % band of the moment, deg of rudder.
     pub band: [Vec<f64>; 2],
-    /// The moment by the explanation, deg of rudder.
+    /// The moment according to the explanation, deg of rudder.
     pub explained: Vec<f64>,
-    /// The curves over the channels, in the order of the entry.
+    /// Curves over the channels, in the order of the entry.
     pub over: Vec<ChannelCurve>,
 }
 
-/// The moment over one channel, in the units of figures.
+/// Missing moment over one channel, in the units of figures.
 pub struct ChannelCurve {
-    /// The channel; `None` of one that no table has.
+    /// The channel; `None` if no table has it.
     pub over: Option<MomentChannel>,
     /// The channel at the times of the moment.
     pub rows: Vec<f64>,
-    /// Places of the curve.
+    /// Abscissae of the curve.
     pub x: Vec<f64>,
-    /// The moment there, deg of rudder.
+    /// The moment at these abscissae, deg of rudder.
     pub moment: Vec<f64>,
-    /// Half the width of its 95 % band, deg of rudder.
+    /// Half width of the 95 % band of the moment, deg of rudder.
     pub half_width: Vec<f64>,
-    /// The moment by the explanation, deg of rudder.
+    /// The moment according to the explanation, deg of rudder.
     pub explained: Vec<f64>,
 }
 
 impl MissingMomentCurves {
-    /// The curves of an entry from the tables of [`over_time`] and [`over_channels`].
+    /// Curves of an entry, from the tables of [`over_time`] and [`over_channels`].
     pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
         let column_of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
         let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
@@ -69,7 +69,7 @@ const BAND: [&str; 2] = ["lower95_rudder_deg", "upper95_rudder_deg"];
 const HALF_WIDTH: &str = "half_width95_rudder_deg";
 const EXPLAINED: &str = "explained_rudder_deg";
 
-/// Name of a channel in a table, and whether it is an angle.
+/// Column name of a channel, and whether the channel is an angle.
 fn column(over: MomentChannel) -> (&'static str, bool) {
     match over {
         MomentChannel::YawRate => ("yaw_rate_deg_s", true),
@@ -85,7 +85,7 @@ fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
     if column(over).1 { degrees(values) } else { values.to_vec() }
 }
 
-/// Table over time: moment with its band, the explanation, and every recorded channel.
+/// Table over time: the moment with its band, the explanation, and every recorded channel.
 pub fn over_time(missing: &MissingMoment) -> String {
     let mut columns = CurveTable::default();
     columns.push(TIME, missing.time.clone());
@@ -103,9 +103,9 @@ pub fn over_time(missing: &MissingMoment) -> String {
     columns.text()
 }
 
-/// Table over the channels: for each its values, the moment, the half width of its band, and the explanation.
+/// Table over the channels: the values of each channel, the moment, the half width of its band, and the explanation.
 ///
-/// A curve has mean zero over the rows; here it has the mean of the moment.
+/// A fitted curve has mean zero over the rows; here the mean of the moment is added.
 pub fn over_channels(missing: &MissingMoment) -> String {
     let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
     let mut columns = CurveTable::default();
@@ -128,7 +128,7 @@ fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
     distinct(explanations.flat_map(|explanation| &explanation.effects).map(|(id, _)| (*id).to_owned()))
 }
 
-/// Entry of a record of this file and name, whose tables have this stem.
+/// Entry of a record of this file and name; `stem` begins the names of its tables.
 pub fn entry(
     missing: &MissingMoment,
     [file, name, stem]: [&str; 3],

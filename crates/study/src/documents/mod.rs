@@ -1,5 +1,5 @@
-//! Documents of the commands beside those of the crate `document`: types of further JSON files and tables, from which
-//! pages and figures are made. `--format json` writes the text of the file to standard output.
+//! Documents of the commands in addition to those of the crate `document`: types of further JSON files and tables, from
+//! which pages and figures are made. `--format json` writes the text of the file to standard output.
 
 pub mod answers;
 pub mod columns;
@@ -47,12 +47,12 @@ pub const BENCH: &str = "bench.json";
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES: &str = "curves.json";
 
-/// The text of a document. Fails if a type cannot be written as JSON.
+/// Text of a document. Fails if a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
 }
 
-/// Folder for the results of a command. Fails if it holds those of another command, whose page would be lost.
+/// Folder for the results of a command. Fails if it holds results of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|name| *name != document);
     match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
@@ -64,8 +64,8 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Folder for the result of some records: fails also when it holds that of other records. Records are the same by file
-/// name (the file may have been corrected) or by content.
+/// Folder for the result of some records. Fails also if it holds results of other records. Records are the same if the
+/// file name is equal (the content may have been corrected) or if the content is equal.
 pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Result<PathBuf, Failure> {
     let place = folder_for(document, place)?;
     let path = place.join(document);
@@ -98,7 +98,7 @@ fn records_of(document: &Value) -> Vec<(String, String)> {
     fitted.filter_map(|record| Some((text(&record["file"])?, text(&record["sha256"])?))).collect()
 }
 
-/// The first of some files and the number of further ones, as text.
+/// Text with the first of some files and the number of further ones.
 fn few(files: &[String]) -> String {
     match files {
         [only] => only.clone(),
@@ -126,18 +126,18 @@ pub fn keep_with_curves(
     Ok(text)
 }
 
-/// A document that a command wrote, and its text.
+/// Document that a command wrote, and its text.
 ///
-/// Fails if the file cannot be read or was not written by this program.
+/// Fails if the file cannot be read, or if it was not written by this program.
 pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
     let text = read_text(path)?;
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
     Ok((document, text))
 }
 
-/// The document of this schema that a command wrote, and its text.
+/// Document of this schema that a command wrote, and its text.
 ///
-/// Fails as [`read_json`] does, and for a document of another version.
+/// Fails as [`read_json`] does, or if the document has another version.
 pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(T, String), Failure> {
     #[derive(serde::Deserialize)]
     struct Stated {
@@ -169,14 +169,14 @@ fn read_text(path: &Path) -> Result<String, Failure> {
     String::from_utf8(bytes.on("read", path)?).on("read", path)
 }
 
-/// Text of an answer without a file, with its schema version first.
+/// Text of a document without a file, with its schema version first.
 ///
 /// Fails if it cannot be written as JSON.
 pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
     text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
 }
 
-/// Writes an answer to standard output.
+/// Writes a document to standard output.
 ///
 /// Fails as [`answer_text`] and [`screen::say`] do.
 pub fn say(body: &impl CommandAnswer) -> Result<(), Failure> {

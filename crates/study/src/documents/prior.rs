@@ -1,15 +1,15 @@
-//! Sentences on earlier trials of a ship (`--prior`) beside her records.
+//! Sentences on the agreement of earlier trials of a ship (`--prior`) with the records.
 
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::{Warning, WarningCode};
 use report::number::{fixed, significant};
 use ship::vessel::prime::meaning;
 
-/// Coefficients named in a conflict: their maximum number, and their minimum shift in standard deviations.
+/// Maximum number of coefficients named in a conflict, and their minimum shift in standard deviations.
 const MAX_NAMED: usize = 3;
 const MIN_SHIFT_SD: f64 = 1.0;
 
-/// Message where no hull near the models can be fitted.
+/// Message if no hull near the models can be fitted.
 const NOT_NEAR: &str = "no hull close to it reproduces the records";
 
 /// Sentence for screen and page: the models, and whether the records agree with them.
@@ -38,7 +38,7 @@ pub fn warning(earlier: &EarlierTrials) -> Option<Warning> {
     earlier.conflict.then(|| WarningCode::EarlierTrials.warning(contradiction(earlier)))
 }
 
-/// Text of the warning: the conflict, the coefficients farthest off, and what to do.
+/// Text of the warning: the conflict, the coefficients with the largest shifts, and the remedy.
 fn contradiction(earlier: &EarlierTrials) -> String {
     let files = earlier.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
     let cure = "make sure that it is the same ship in the same condition, or leave --prior out";

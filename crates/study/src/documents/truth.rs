@@ -1,4 +1,4 @@
-//! `NAME.truth.json`: what is true of a simulated record, beside it.
+//! `NAME.truth.json`: the true values of a simulated record, stored next to it.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use ship::FirstOrder;
 use ship::angle::to_deg;
 use simulate::Simulated;
 
-/// The truth of one record of a trial.
+/// True values of one record of a trial.
 #[derive(Serialize, JsonSchema)]
 pub struct TruthDocument {
     /// `truth/1`.
@@ -26,17 +26,17 @@ pub struct TruthDocument {
     pub cell: String,
     /// Number of the trial in its cell, from 0.
     pub replicate: u64,
-    /// The first-order response nearest to the ship; the ship itself where it is first order.
+    /// First-order response nearest to the ship; the ship itself if it is of first order.
     pub nearest: Option<TrueIndices>,
-    /// The base of a ship that has effects beside it.
+    /// Base of a ship that has further effects.
     pub own: Option<TrueIndices>,
     /// Effects that a first-order base lacks.
     pub missing: Vec<String>,
-    /// Drawn values in the units of their keys.
+    /// Sampled values in the units of their keys.
     pub drawn: BTreeMap<String, f64>,
-    /// Times of the orders, s.
+    /// Times of the executes, s.
     pub executes_s: Vec<f64>,
-    /// The motion without the errors of any instrument.
+    /// The motion without instrument errors.
     pub motion: TrueMotion,
 }
 
@@ -52,7 +52,7 @@ pub struct TrueIndices {
     pub delta_r_deg: f64,
 }
 
-/// The motion of a ship.
+/// Motion of a ship.
 #[derive(Serialize, JsonSchema)]
 pub struct TrueMotion {
     /// Time, s.
@@ -63,7 +63,7 @@ pub struct TrueMotion {
     pub yaw_rate_deg_s: Vec<f64>,
     /// Rudder angle, deg.
     pub rudder_deg: Vec<f64>,
-    /// Speed, m/s, where the ship has one.
+    /// Speed, m/s, if the ship has one.
     pub speed_m_s: Option<Vec<f64>>,
 }
 
@@ -73,9 +73,9 @@ impl TrueIndices {
     }
 }
 
-/// The truth of one record of a trial.
+/// True values of one record of a trial.
 ///
-/// Fails if the drawn values of the trial make no ship.
+/// Fails if the sampled values of the trial make no ship.
 pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
     let trial_spec = cell.trial_spec(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;

@@ -1,4 +1,4 @@
-//! Figures of a benchmark: scores over those of the reference.
+//! Figures of a benchmark: scores relative to those of the reference method.
 
 use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
@@ -9,19 +9,19 @@ use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsCo
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
 
-/// A score over that of the reference beyond which an arrow stands for it.
+/// Maximum ratio of a score to that of the reference; a larger one is shown as an arrow.
 const MAX_RATIO: f64 = 100.0;
 
-/// Beginning of the names of the figures.
+/// First part of the names of the figures.
 const RATIOS: &str = "ratios";
 
-/// A sentence that begins with a capital.
+/// The sentence with a capital first letter.
 pub fn capital(sentence: &str) -> String {
     let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The figures, one for every kind of record.
+/// Figures of a benchmark, one for every kind of record.
 pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     let figure = |field: &str| {
         let boards = results.boards.iter().filter(|board| board.field == field);
@@ -45,7 +45,7 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
 
 fn origin(method: &str) -> CurveOrigin {
     match method {
-        // The floor is no method: grey.
+        // The straight-on forecast is not a method: grey.
         STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
         method if method != TRACE && method.starts_with(TRACE) => {
             CurveOrigin::Variant { label: method.to_owned(), method: TRACE.to_owned(), number: 0 }
@@ -54,7 +54,7 @@ fn origin(method: &str) -> CurveOrigin {
     }
 }
 
-/// A task as the title of a narrow axis.
+/// Name of a task as the title of a narrow axis.
 fn axis_title(task: BenchTask) -> &'static str {
     match task {
         BenchTask::Identify => "fitted record",

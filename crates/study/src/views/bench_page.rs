@@ -1,4 +1,4 @@
-//! Pages of a benchmark: the whole, and one for every method.
+//! Pages of a benchmark: the report, and one page for every method.
 
 use std::collections::BTreeMap;
 
@@ -15,20 +15,20 @@ use report::{Page, PlacedFigures};
 use super::bench_figures::{capital, figures};
 use super::bench_tables as tables;
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "bench.md", escape = "none")]
 struct BenchPage<'a> {
     results: &'a BenchDocument,
-    /// The leaderboards by their tasks.
+    /// Leaderboards by task.
     tasks: Vec<(BenchTask, Vec<&'a Board>)>,
-    /// The boards of the one number over all.
+    /// Text of the leaderboards of the single score over all tasks.
     overall_boards: String,
     methods: Vec<(&'a String, &'a String)>,
     figures: PlacedFigures<&'static str>,
 }
 
-/// `methods/ID.md`.
+/// Template of `methods/ID.md`.
 #[derive(Template)]
 #[template(path = "bench-method.md", escape = "none")]
 struct MethodPage<'a> {
@@ -38,7 +38,7 @@ struct MethodPage<'a> {
     failures: Vec<String>,
 }
 
-/// `report.md` with its figures.
+/// Content of `report.md` with its figures.
 pub fn page(results: &BenchDocument) -> Page {
     let mut placed = PlacedFigures::default();
     placed.put("all", figures(results));
@@ -54,7 +54,7 @@ pub fn page(results: &BenchDocument) -> Page {
     Page::new(page.render(), page.figures)
 }
 
-/// Cases and records of a leaderboard.
+/// Number of cases and records of a leaderboard.
 fn counted(board: &Board) -> String {
     let Board { cases, clusters, .. } = *board;
     let few = if (clusters as u64) < MIN_INTERVAL_VALUES { ", too few for an interval" } else { "" };
@@ -64,7 +64,7 @@ fn counted(board: &Board) -> String {
     }
 }
 
-/// `methods/ID.md`.
+/// Content of `methods/ID.md`.
 pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     let line = |((reason, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
         format!("{set}, {task}: {count} × {reason}; the first: {first}")
@@ -78,7 +78,7 @@ pub fn of_method(results: &BenchDocument, method: &str) -> Page {
     Page::new(page.render(), PlacedFigures::<()>::default())
 }
 
-/// Failures of a method by reason, task and set: how many, and the first.
+/// Failures of a method by reason, task and set: their number, and the first of them.
 fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, &'a str, &'a str), (usize, String)> {
     let mut failures = BTreeMap::new();
     for case in &results.cases {

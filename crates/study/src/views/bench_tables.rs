@@ -1,4 +1,4 @@
-//! Tables of a benchmark: leaderboards, sets, answers one by one.
+//! Tables of a benchmark: leaderboards, sets, and single answers.
 
 use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
 use campaign::benchmark::cases::{BenchCase, Naming};
@@ -7,10 +7,10 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
 use report::{Table, TableHead};
 
-/// Text in place of a figure that falls on a failed answer.
+/// Text in place of a score that is decided by a failed estimate.
 const FAILED: &str = "failed";
 
-/// Digits of scores: no interval is so narrow that more of them would say anything.
+/// Significant digits of scores: no interval is so narrow that more digits carry information.
 const DIGITS: usize = 3;
 
 fn score(value: Option<f64>) -> String {
@@ -35,12 +35,12 @@ fn share(share: WilsonShare) -> String {
     format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
 }
 
-/// A number of things, empty where there are none.
+/// A count as text; empty for zero.
 fn count(count: usize) -> String {
     if count == 0 { String::new() } else { count.to_string() }
 }
 
-/// Columns of a board behind those of `first`.
+/// Columns of a leaderboard after those of `first`.
 fn columns(first: TableHead, reference: &str, indices: bool) -> TableHead {
     let head = first.numbers(["median"]).texts(["95 %"]).numbers(["90 % within"]).counts(["failed"]);
     let head = head.numbers([format!("over {reference}")]).texts(["95 %"]).numbers(["better"]).unit("%");
@@ -79,7 +79,7 @@ pub fn board(results: &BenchDocument, board: &Board) -> Table {
     table
 }
 
-/// All boards below each other, for a person.
+/// All leaderboards in one table, for a person.
 pub fn leaderboard(results: &BenchDocument) -> Table {
     let first = TableHead::default().texts(["task", "records"]).counts(["n"]).texts(["method"]);
     let mut table = Table::new(columns(first, &results.reference, true));
@@ -93,7 +93,7 @@ pub fn leaderboard(results: &BenchDocument) -> Table {
     table
 }
 
-/// All boards with all their numbers, for a program.
+/// All leaderboards with all their numbers, for a program.
 pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     let with_ends = |name: &str| ["", " lower 95", " upper 95"].map(|end| format!("{name}{end}"));
     let head = TableHead::default().texts(["task", "records", "cases", "clusters", "method", "failed"]);
@@ -118,12 +118,12 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     table
 }
 
-/// The median of a set; of one that is not finite, what decides it.
+/// Median of a set as text; `failed` if it is not finite.
 fn median(set_median: Option<(f64, usize)>) -> String {
     set_median.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
 }
 
-/// Medians set by set, methods side by side.
+/// Medians of every set, methods side by side.
 pub fn sets(results: &BenchDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(&results.methods));
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
@@ -133,7 +133,7 @@ pub fn sets(results: &BenchDocument) -> Table {
     table
 }
 
-/// Medians of one method on every set, beside the reference.
+/// Medians of one method on every set, next to those of the reference.
 pub fn of_method(results: &BenchDocument, method: &str) -> Table {
     let head = TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(["median"]).counts(["failed"]);
     let place = |label: &str| results.methods.iter().position(|name| name == label);
@@ -182,13 +182,13 @@ pub fn naming_totals(results: &BenchDocument) -> Table {
     naming_table("ships", all.filter_map(line))
 }
 
-/// Outcomes of naming the missing effect set by set, for one method or all.
+/// Outcomes of naming the missing effect, set by set, for one method or all.
 pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
     let lines = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
     naming_table("set", lines.map(|line| (line.set.as_str(), line.clone())))
 }
 
-/// The ranking over all predictions.
+/// Ranking over all predictions.
 pub fn overall(results: &BenchDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["mean rank"]).texts(["95 %"]));
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
@@ -197,7 +197,7 @@ pub fn overall(results: &BenchDocument) -> Table {
     table
 }
 
-/// The sets and their records.
+/// Sets of a benchmark and the numbers of their records.
 pub fn present(results: &BenchDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts(["record", "manoeuvre", "SHA-256"]));
@@ -212,7 +212,7 @@ pub fn present(results: &BenchDocument) -> Table {
     table
 }
 
-/// One row for every answer.
+/// Table with one row for every answer.
 pub fn rows(results: &BenchDocument) -> Table {
     let head = TableHead::default();
     let head = head.texts(["task", "records", "set", "trial", "fitted", "scored", "method", "score"]);

@@ -1,4 +1,4 @@
-//! Table of the sizes from which effects are named: `blind-spots.csv`, and in the report.
+//! Table of the minimum sizes at which effects are named: `blind-spots.csv`, also in the report.
 
 use report::number::{fixed, significant};
 use report::{Table, TableHead};
@@ -7,13 +7,13 @@ use super::tracing_table::has_several;
 use campaign::design::Design;
 use campaign::summary::{BlindSpot, axis_of_sizes};
 
-/// Legend over the table in the report.
+/// Legend above the table in the report.
 pub const READING: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
                            logistic regression on the logarithm of the size, with its 95 % interval by profile likelihood. \
                            A size outside the tested range is given as more or less than its end; *at the largest*: \
                            share named at the largest size.";
 
-/// A line for every effect with sizes, called by its `name`, at every place of the other axes.
+/// One row for every effect with sizes, called by its `name`, at every point of the other axes.
 pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
     let of_sizes = axis_of_sizes(design);
     let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);

@@ -1,4 +1,4 @@
-//! Figures of a summary over the axes of a study: choice of axis and panels, and what is left out.
+//! Figures of a summary over the axes of a study: choice of axis and panels, and what is omitted.
 
 use campaign::scenario::TRACE;
 use report::figures::{
@@ -17,21 +17,21 @@ use campaign::summary::{Performance, Summary};
 pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
-    /// Root mean square errors of K and T over the Cramér–Rao bound.
+    /// Root mean square errors of K and T relative to the Cramér–Rao bound.
     OverBound,
     /// Coverage and width of the intervals of K and T.
     Coverage,
-    /// Trials without an answer.
+    /// Trials without an estimate.
     Failures,
-    /// Error of the heading on the validation manoeuvre.
+    /// Heading error on the validation manoeuvre.
     Validation,
 }
 
 impl ErrorMeasure {
-    /// In the order of the report.
+    /// All measures in the order of the report.
     pub const ALL: [Self; 5] = [Self::Rms, Self::OverBound, Self::Validation, Self::Coverage, Self::Failures];
 
-    /// Stem of the figure.
+    /// File stem of the figure.
     pub fn stem(self) -> &'static str {
         match self {
             Self::Rms => "errors",
@@ -56,12 +56,12 @@ impl ErrorMeasure {
         Ruler::new(title, if is_log { Division::Factors } else { Division::Decimal })
     }
 
-    /// The statistic of one panel.
+    /// Statistic of one panel.
     pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
         match self {
             Self::Rms | Self::OverBound => errors.rms,
-            // A few answers with an interval say nothing about a method.
+            // A few estimates with an interval do not characterise a method.
             Self::Coverage => {
                 let often = errors.quoting.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
                 let figure = if panel > 1 { errors.width } else { errors.coverage.map(|share| share.times(100.0)) };
@@ -72,7 +72,7 @@ impl ErrorMeasure {
         }
     }
 
-    /// `true` if it is an error of K and T.
+    /// `true` if the measure is an error of K and T.
     fn is_of_errors(self) -> bool {
         matches!(self, Self::Rms | Self::OverBound)
     }
@@ -83,13 +83,13 @@ impl ErrorMeasure {
     }
 }
 
-/// Minimum share of answers with an interval for their coverage to be drawn.
+/// Minimum share of estimates with an interval for their coverage to be plotted.
 const MIN_QUOTING_SHARE: f64 = 0.5;
 
-/// Maximum error that sets an axis, per cent: answers beyond it are worthless.
+/// Maximum error that sets an axis, per cent: estimates with larger errors are useless.
 const MAX_ERROR: f64 = 100.0;
 
-/// Minimum error that is drawn, per cent: smaller ones are exact.
+/// Minimum error that is plotted, per cent: smaller errors count as exact.
 const MIN_ERROR: f64 = 1e-4;
 
 /// Note on the bars of intervals.
@@ -101,10 +101,9 @@ pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true val
 /// Note on exact errors.
 pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 
-/// The methods that can be compared in some cells, and whether they are held against a first-order response that is
-/// only the nearest to the ship. Nothing if K and T are not one thing in all cells and the study is about
-/// predictions, and where intervals would be of a response that is no truth. A trace is held against the ship's own K
-/// and T.
+/// Methods that can be compared in some cells, and whether their errors are relative to the first-order response
+/// nearest to the ship. `None` if K and T are not the same quantities in all cells and the study is about predictions,
+/// or if intervals would be of a response that is not the truth. A trace is compared with the ship's own K and T.
 pub fn comparable<'a>(
     design: &Design,
     measure: ErrorMeasure,
@@ -130,19 +129,19 @@ pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
     }
 }
 
-/// A measure in the cells of one figure, as it can be compared there.
+/// A measure in the cells of one figure, restricted to methods that can be compared there.
 struct ComparedMethods<'a> {
     design: &'a Design,
     summary: &'a Summary,
     measure: ErrorMeasure,
-    /// `true` if errors are differences from a first-order response that is nearest to the ship.
+    /// `true` if errors are relative to the first-order response nearest to the ship.
     to_nearest: bool,
     /// Methods that can be compared.
     methods: Vec<usize>,
 }
 
 impl<'a> ComparedMethods<'a> {
-    /// `None` if nothing can be compared.
+    /// The comparison; `None` if no method can be compared.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
         let (mut methods, to_nearest) = comparable(design, measure, cells())?;
@@ -203,7 +202,7 @@ impl<'a> ComparedMethods<'a> {
         Some(covariance[panel][panel].sqrt())
     }
 
-    /// The statistic, and whether it is too large to set an axis.
+    /// Statistic of a panel, and whether it is too large to set an axis.
     fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
         let figure = self.measure.of(self.summary.record(cell, method)?, panel)?;
         let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
@@ -216,13 +215,13 @@ impl<'a> ComparedMethods<'a> {
         }
     }
 
-    /// Value and interval as drawn; infinite for a value that is too large.
+    /// Plotted value and interval; infinite for a value that is too large.
     fn drawn(&self, cell: usize, method: usize, panel: usize) -> Option<(f64, Option<[f64; 2]>)> {
         let (figure, is_worthless) = self.of(cell, method, panel)?;
         Some(if is_worthless { (f64::INFINITY, None) } else { (figure.value, figure.ci95) })
     }
 
-    /// The bound in the unit of the panel; `None` if it is not shown.
+    /// Bound in the unit of the panel; `None` if it is not shown.
     fn shown_bound(&self, cell: usize, panel: usize) -> Option<f64> {
         if self.measure == ErrorMeasure::OverBound {
             Some(1.0)
@@ -251,13 +250,12 @@ impl<'a> ComparedMethods<'a> {
 /// Maximum number of groups side by side.
 const MAX_GROUPS: usize = 4;
 
-/// Minimum ratio of the ends of an axis for a logarithmic one.
+/// Minimum ratio of the ends of an axis for a logarithmic scale.
 const MIN_LOG_AXIS_RATIO: f64 = 12.0;
 
-/// Charts of a measure over the last axis that is a number and leaves few points of the other axes, else over the last
-/// number, else over the names of the last axis; points of the other axes side by side where they are few, else one
-/// chart each, with the names of these points. Nothing if there is no
-/// axis or nothing to show. With each the name of its points and what a person should see.
+/// Charts of a measure, each with the name of its points and a caption; empty if there is no axis or no value to show.
+/// The horizontal axis is the last numeric axis with few points of the other axes, else the last numeric axis, else the
+/// names of the last axis. The points of the other axes are side by side if they are few, else in one chart each.
 pub fn over_axes(
     design: &Design,
     summary: &Summary,
@@ -270,7 +268,7 @@ pub fn over_axes(
     let leaves_few = |axis: &&usize| groups(design, **axis).len() <= MAX_GROUPS;
     let number = numbers.iter().find(leaves_few).or(numbers.first()).copied();
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
-    // A chart without a value, or without a single failure, says nothing.
+    // A chart without a value, or without a single failure, has no information.
     let says_something = |record: &Performance| {
         let mut figures = (0..measure.panels()).filter_map(|panel| measure.of(record, panel));
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
@@ -304,7 +302,7 @@ pub fn over_axes(
 
 /// Cells that differ in one axis only.
 struct ChartGroup {
-    /// The labels of the other axes.
+    /// Labels of the other axes.
     name: String,
     /// Labels of the other axes, numbers with the names of their axes.
     head: String,
@@ -398,7 +396,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
         }
     };
     NamedRows {
-        // Names of trials say what they are.
+        // Names of trials need no title.
         of: if design.axes[x].contains('[') { design.axes[x].clone() } else { String::new() },
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),

@@ -9,7 +9,7 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 
-/// The circles among the fitted records, with their names.
+/// Turning circles among the fitted records, with their names.
 fn all<'a>(
     document: &'a FitDocument,
     curves: &'a FitCurves,
@@ -20,7 +20,7 @@ fn all<'a>(
     document.trials.iter().zip(&curves.records).filter_map(named)
 }
 
-/// The figures of merit of a circle.
+/// Figures of merit of a recorded circle.
 pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     let CircleEntry { side, rudder_deg, advance_lengths, transfer_lengths, tactical_diameter_lengths } = circle;
     let figures = [
@@ -50,8 +50,7 @@ fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
     });
     let beyond = if circle.extrapolated { ", extrapolated beyond the rudder or yaw rate of the records" } else { "" };
     format!(
-        "Predicted by {}, a turning circle to {} with {}° of rudder: {}, median and 90 % of {} drawn ships{beyond}",
-        circle.method,
+        "Predicted with the hulls fitted to the records, a turning circle to {} with {}° of rudder: {}, median and 90 % of {} drawn ships{beyond}",
         circle.side,
         fixed(circle.rudder_deg, 1),
         figures.join(", "),
@@ -59,26 +58,26 @@ fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
     )
 }
 
-/// The figures of merit of every circle, the recorded ones first.
+/// Figures of merit of every circle, the recorded ones first.
 pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
     let recorded = all(document, curves).map(|(name, circle, _)| sentence(&name, circle));
     recorded.chain(document.predicted_circle.iter().map(predicted_sentence)).collect()
 }
 
-/// A circle to scale with the lines that measure it.
+/// Circle to scale with its dimension lines.
 pub struct CircleTrack {
-    /// What it is called.
+    /// Name of the circle.
     pub name: String,
-    /// East and north in ship lengths from the execute on, where the course is north.
+    /// Track, east and north in ship lengths from the execute; north is the approach course.
     pub track: PlotCurve,
     /// Advance, transfer and tactical diameter, ship lengths.
     pub figures: [Option<f64>; 3],
-    /// How it is drawn.
+    /// Pen of the track.
     pub pen: Pen,
 }
 
 impl CircleTrack {
-    /// The circle, and lines of its advance, its transfer and its tactical diameter.
+    /// Layers of the circle, and of lines at its advance, its transfer and its tactical diameter.
     pub fn layers(&self) -> Vec<Layer> {
         let Self { name, track, figures, pen } = self;
         let mut layers = vec![Layer::line(name.as_str(), track.clone(), *pen)];
@@ -105,25 +104,25 @@ impl CircleTrack {
     }
 }
 
-/// Share of the tactical diameter from which a point of a track counts as its end: points lie apart.
+/// Share of the tactical diameter at which a point of a track counts as its end: the points are separate.
 const NEARLY: f64 = 0.999;
 
-/// Circles from above, to scale, each with the lines that measure it.
+/// Circles from above, to scale, each with its dimension lines.
 pub fn from_above(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
     let layers = further.into_iter().chain(circles.iter().flat_map(CircleTrack::layers)).collect();
     let row = PanelRow::new(Ruler::decimal("along the approach [L]"), 0.62);
     Stack { equal: true, ..Stack::over(Ruler::decimal("across, to starboard [L]"), vec![(row, layers)]) }
 }
 
-/// What is said of the lines that measure a circle.
+/// Note on the dimension lines of a circle.
 pub const DIMENSION_LINES_NOTE: &str = "Dotted: advance and transfer at 90° of heading, tactical diameter at 180°.";
 
-/// How a predicted circle is drawn.
+/// Pen of a predicted circle.
 pub fn predicted_pen() -> Pen {
     Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) }
 }
 
-/// The tracks of all circles, to scale; `None` without positions and prediction.
+/// Tracks of all circles, to scale; `None` without positions and prediction.
 pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
     let recorded = all(document, curves).filter_map(|(name, circle, record)| {
         let figures = [circle.advance_lengths, circle.transfer_lengths, circle.tactical_diameter_lengths];
@@ -139,14 +138,14 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
     }
     if let Some((entry, track)) = document.predicted_circle.as_ref().zip(curves.predicted_circle.clone()) {
         let figures = [entry.advance_lengths, entry.transfer_lengths, entry.tactical_diameter_lengths];
-        let name = format!("median predicted by {}, {}° of rudder", entry.method, fixed(entry.rudder_deg, 1));
+        let name = format!("predicted median, {}° of rudder", fixed(entry.rudder_deg, 1));
         let figures = figures.map(|lengths| Some(lengths.median));
         circles.push(CircleTrack { name, track, figures, pen: predicted_pen() });
         let [advance, diameter] =
             [entry.advance_lengths, entry.tactical_diameter_lengths].map(|lengths| significant(lengths.median, 3));
         let rudder = fixed(entry.rudder_deg, 1);
         findings
-            .push(format!("{rudder}° of rudder: advance {advance} L, tactical diameter {diameter} L are predicted"));
+            .push(format!("Predicted with {rudder}° of rudder: advance {advance} L, tactical diameter {diameter} L"));
     }
     let caption = format!(
         "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {DIMENSION_LINES_NOTE}"

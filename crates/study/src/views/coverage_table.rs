@@ -1,4 +1,4 @@
-//! Tables of predictions in a study: coverage of the intervals, figure by figure.
+//! Tables of predictions in a study: coverage of the intervals, by characteristic.
 
 use document::names;
 use report::number::{fixed, optional, significant};
@@ -9,7 +9,7 @@ use campaign::design::Design;
 use campaign::statistics::{Statistic, grouped, share};
 use campaign::summary::{CriterionTally, PredictionSummary};
 
-/// Every figure of every cell and method.
+/// Coverage of every characteristic of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let head = head(design).texts(["figure", "unit"]).counts(["trials"]);
     let head = head.numbers(["inside 90 %", "lower 95", "upper 95"]).unit("%");
@@ -25,7 +25,7 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
+/// Coverage of all characteristics of a cell and a method: mean, minimum and maximum of their shares.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let head = head(design).counts(["figures", "trials"]).numbers(["inside 90 %", "lowest", "highest"]).unit("%");
     let mut table = Table::new(head.texts(["lowest of", "highest of"]));
@@ -46,7 +46,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// Decisions on every criterion of IMO, over all cells; `None` if no figure has a limit.
+/// Decisions on every IMO criterion, over all cells; `None` if no characteristic has a limit.
 pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
     let limited = grouped(limited, |(line, criterion)| (criterion.name.clone(), line.method));
@@ -68,7 +68,7 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     Some(table)
 }
 
-/// A share of trials with its own 95 % interval.
+/// Share of trials with its 95 % interval.
 fn percent(share: Option<Statistic>) -> [String; 3] {
     Statistic::flat(share).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

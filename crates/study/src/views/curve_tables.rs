@@ -1,5 +1,5 @@
-//! The curves of replays as CSV, so that anyone can draw them again. They hold the data a figure was handed, of records
-//! with more than 4000 rows those that show.
+//! Curves of replays as CSV, for plotting again. They hold the data given to a figure; of records with more than 4000
+//! rows only the visible ones.
 
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -12,10 +12,10 @@ use super::study_figures::{FigurePlace, StudyFigure};
 use crate::documents::columns::CurveTable;
 use crate::documents::fit_curves::FitCurves;
 
-/// A column: its name with its unit, and its values over what the first column holds.
+/// Column: its name with its unit, and its values over those of the first column.
 type NamedCurve<'a> = (String, &'a PlotCurve);
 
-/// A name as part of the name of a column.
+/// Label of an origin as part of a column name.
 fn word(origin: &CurveOrigin) -> String {
     slug(origin.label()).replace('-', "_")
 }
@@ -24,7 +24,7 @@ fn finite(curve: &PlotCurve) -> impl Iterator<Item = (f64, f64)> {
     curve.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
 }
 
-/// All columns over the times that any of them has, which ascend in each; empty if a column has no value.
+/// Table of all columns over the union of their times, which ascend in each; empty if a column has no value.
 fn table(columns: Vec<NamedCurve>) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);
@@ -39,8 +39,8 @@ fn table(columns: Vec<NamedCurve>) -> String {
     table.text()
 }
 
-/// Record and replays: `t_s`, `heading_deg`, the rudder where it is at hand, the noise-free heading where there is one,
-/// and heading and residual of every method.
+/// Record and replays: `t_s`, `heading_deg`, the rudder and the noise-free heading if there are any, and heading and
+/// residual of every method.
 pub fn of_replays(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
     let mut columns = vec![("heading_deg".to_owned(), &replays.record)];
     columns.extend(rudder.map(|rudder| ("rudder_deg".to_owned(), rudder)));
@@ -62,7 +62,7 @@ pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Fa
     })
 }
 
-/// Writes the replays of every showcase beside their figure.
+/// Writes the replays of every showcase next to their figure.
 pub fn write_showcases(stored: &StoredStudy, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
     for (place, figure) in figures.iter().filter(|(_, figure)| figure.stem.contains("replays")) {
         let FigurePlace::Showcase(index) = place else { continue };

@@ -1,4 +1,4 @@
-//! The table of logs that were fitted one by one: the answer to take of each, or why there is none.
+//! Table of logs that were fitted one by one: the recommended estimate of each, or the reason why there is none.
 
 use campaign::failure::Failure;
 use report::number::MISSING;
@@ -10,7 +10,7 @@ use trial::Quantity;
 use super::method_table::estimate;
 use crate::work::each::LogFit;
 
-/// A row a log.
+/// Table with one row for every log.
 pub fn table(fits: &[LogFit]) -> Table {
     let head = TableHead::default().texts(["file", "method"]);
     let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
@@ -28,7 +28,7 @@ pub fn table(fits: &[LogFit]) -> Table {
         cells.push(verdict.and_then(|verdict| verdict.residual).map_or_else(missing, |residual| word(&residual)));
         cells.extend([warnings.len().to_string(), codes.join(" ")]);
         cells.push(match error {
-            // The line of JSON also says what to do.
+            // The line of JSON also contains the remedy.
             Some(Failure { parts, .. }) => {
                 let problem = parts.problem.split(['\n', ';']).next().unwrap_or_default();
                 format!("{}: {problem}", word(&parts.code))
@@ -44,7 +44,7 @@ fn missing() -> String {
     MISSING.to_owned()
 }
 
-/// The word that stands for a value in JSON.
+/// Word for a value, as in JSON.
 fn word(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(Value::String(word)) => word,

@@ -1,14 +1,14 @@
-//! Findings of figures, one sentence each, from the data that they draw.
+//! Findings of figures, one sentence each, from the plotted data.
 
 use report::figures::{CellMap, LayerKind, NamedRows, Outline, Panels, Plot, RowKind, ZigzagTrial};
 use report::number::{fixed, significant};
 
 use super::pooled_charts::HEAD_END;
 
-/// A value with its name.
+/// A value and its name.
 type Named = (String, f64);
 
-/// A number with its unit, which stands in brackets behind the name of an axis.
+/// A number with its unit, which is in brackets after the title of an axis.
 fn with_unit(value: f64, unit: &str) -> String {
     let number = significant(value, 2);
     match unit {
@@ -36,7 +36,7 @@ pub fn range(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
     }
 }
 
-/// Finding of a figure of methods where they differ most; for T where the figure has K and T.
+/// Finding of a figure of methods: the point of largest difference; for T if the figure has K and T.
 pub fn of_chart(plot: &Plot) -> String {
     match plot {
         Plot::Panels(data) => of_curves(data),
@@ -114,7 +114,7 @@ fn of_rows(data: &NamedRows) -> String {
     format!("{}: {}", name(widest), range(&column.x.title, values(widest)))
 }
 
-/// Range over the cells of a map; over the right ones where the map outlines them.
+/// Range over the cells of a map; over the correct ones if the map outlines them.
 fn of_map(data: &CellMap) -> String {
     let mut values = Vec::new();
     for (head, rows) in &data.panels {
@@ -133,7 +133,7 @@ fn of_map(data: &CellMap) -> String {
     range("right answers [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
 }
 
-/// The overshoots of a zig-zag.
+/// Overshoots of a zig-zag.
 pub fn of_trial(data: &ZigzagTrial) -> String {
     let angles: Vec<String> = data.overshoots.iter().map(|swing| format!("{}°", fixed(swing.angle_deg, 1))).collect();
     match &angles[..] {

@@ -1,10 +1,10 @@
 //! Ship, day and draughts of the trials, below the title of a report.
 
 use document::TrialParticularsEntry;
-use report::number::{MISSING, optional};
+use report::number::{MISSING, significant};
 use report::{Table, TableHead};
 
-/// A row for every record, and one for all where they say the same; `None` if nothing is known.
+/// One row for every record, or one for all records with equal particulars; `None` if no particular is known.
 pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticularsEntry)>) -> Option<Table> {
     let records: Vec<(String, &TrialParticularsEntry)> = records.collect();
     let (_, first) = records.first()?;
@@ -13,15 +13,53 @@ pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticula
     }
     let is_common = records.iter().all(|(_, entry)| entry == first);
     let head = if is_common { TableHead::default() } else { TableHead::default().texts(["record"]) };
-    let head = head.texts(["ship", "date of the trial"]);
-    let mut table = Table::new(head.numbers(["draught fore", "draught aft", "mean draught"]).unit("m"));
+    let texts = columns(&records, [("ship", ship_name), ("date of the trial", date)]);
+    let draughts = columns(&records, [("draught fore", fore), ("draught aft", aft), ("mean draught", mean)]);
+    let head = head.texts(texts.iter().map(|(heading, _)| *heading));
+    let head = head.numbers(draughts.iter().map(|(heading, _)| format!("{heading} [m]")));
+    let mut table = Table::new(head);
     for (name, entry) in if is_common { &records[..1] } else { &records } {
         let name = (!is_common).then(|| name.clone());
-        let texts = [&entry.ship_name, &entry.date].map(|text| text.clone().unwrap_or_else(|| MISSING.to_owned()));
-        let draughts = [entry.draught_fore_m, entry.draught_aft_m, entry.draught_m].map(|draught| optional(draught, 2));
-        table.push(name.into_iter().chain(texts).chain(draughts));
+        let cells = texts.iter().chain(&draughts).map(|(_, cell)| cell(entry).unwrap_or_else(|| MISSING.to_owned()));
+        table.push(name.into_iter().chain(cells));
     }
     Some(table)
+}
+
+/// Cell of a column for one record; `None` if not declared.
+type Cell = fn(&TrialParticularsEntry) -> Option<String>;
+
+/// Columns that some record declares.
+fn columns<const N: usize>(
+    records: &[(String, &TrialParticularsEntry)],
+    all: [(&'static str, Cell); N],
+) -> Vec<(&'static str, Cell)> {
+    all.into_iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
+}
+
+fn ship_name(entry: &TrialParticularsEntry) -> Option<String> {
+    entry.ship_name.clone()
+}
+
+fn date(entry: &TrialParticularsEntry) -> Option<String> {
+    entry.date.clone()
+}
+
+fn fore(entry: &TrialParticularsEntry) -> Option<String> {
+    entry.draught_fore_m.map(metres)
+}
+
+fn aft(entry: &TrialParticularsEntry) -> Option<String> {
+    entry.draught_aft_m.map(metres)
+}
+
+fn mean(entry: &TrialParticularsEntry) -> Option<String> {
+    entry.draught_m.map(metres)
+}
+
+/// A draught in three significant digits: models have decimetres.
+fn metres(draught: f64) -> String {
+    significant(draught, 3)
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! Figures of a fit, from its document and its curves: every record with its characteristic points, with the replays of
-//! all methods and with the one that is shown alone over time; K and T of all methods, and of every record alone.
+//! all methods, and with one method over time; K and T of all methods, and of every record alone.
 
 use document::fit::FitDocument;
 use document::method::MethodEntry;
@@ -43,7 +43,7 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     figures
 }
 
-/// Relative tolerance for two answers to agree.
+/// Relative tolerance for two estimates to agree.
 const TOLERANCE: f64 = 0.1;
 
 /// Finding: K and T of the shown method, and how many other methods agree.
@@ -68,7 +68,7 @@ fn agreement(document: &FitDocument) -> String {
     )
 }
 
-/// The figures of a record; `suffix` ends their names, `shown` is the method whose fit is drawn on its own.
+/// Figures of a record; `suffix` ends their names, `shown` is the method whose fit has a figure of its own.
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
     let FitRecord { replays, rejected, .. } = record;
     let name = names::record(&record.name) + if record.validation { " (validation)" } else { "" };
@@ -112,7 +112,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
     figures
 }
 
-/// The record with marks at the readings that are left out or doubtful.
+/// Record with marks at excluded or doubtful readings.
 fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marks = marks.each_ref().map(|curve| {
@@ -126,12 +126,12 @@ fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
     Panels::over_time(rows)
 }
 
-/// Factors of K and T in a figure: to prime values where the ship is known.
+/// Factors of K and T in a figure: to prime values if length and speed are known.
 fn factors(ship: Option<Particulars>) -> [f64; 2] {
     ship.map_or([1.0; 2], |ship| [ship.prime([-1, 0]), ship.prime([1, 0])])
 }
 
-/// Titles of axes of K and T: prime where the ship is known.
+/// Titles of axes of K and T: prime if length and speed are known.
 fn titles(ship: Option<Particulars>) -> [String; 2] {
     match ship {
         Some(_) => [symbol("K′"), symbol("T′")],
@@ -139,11 +139,10 @@ fn titles(ship: Option<Particulars>) -> [String; 2] {
     }
 }
 
-/// Half the range of an axis as a multiple of the median distance from the median; methods farther off are listed
-/// below.
+/// Half range of an axis in median distances from the median; methods farther off are listed below the figure.
 const PLANE_REACH: f64 = 4.0;
 
-/// K and T of all methods that have an answer, with the regions that hold both with 95 %.
+/// K and T of all methods with an estimate, with their joint 95 % regions.
 fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     let ship = document.particulars();
     let [by_k, by_t] = factors(ship);
@@ -169,10 +168,10 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     }
 }
 
-/// A value farther from zero than so many times the middle one is shown by an arrow.
+/// Maximum distance from zero, in medians, of a plotted value; a larger one is shown as an arrow.
 const AMPLITUDE_REACH: f64 = 3.0;
 
-/// K and T of every record alone over the amplitudes of its zig-zag, with those of all together.
+/// K and T of every record alone over the amplitude of its zig-zag, with the joint estimate of all records.
 fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     type Of = fn(&SingleRecord) -> Quantity;
     let ship = document.particulars();

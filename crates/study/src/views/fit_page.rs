@@ -1,10 +1,10 @@
-//! The page of a fit: what was read, the answers, what was measured, and the figures.
+//! Page of a fit: records, estimates, measured characteristics, and figures.
 
 use askama::Template;
 use document::fit::{FitDocument, ResidualKind, VerdictEntry, VerdictReason, ZigZagEntry};
 use document::method::MethodEntry;
 use document::names;
-use report::markdown::text;
+use report::markdown::{sentence, text};
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
@@ -16,10 +16,10 @@ use crate::documents::prior;
 use crate::scales::scale_name;
 use crate::work::every_scale::PREFERRED_METHODS;
 
-/// Stem of the figure that begins the page: every answer replayed on the first record.
+/// Stem of the first figure of the page: the replays of every estimate on the first record.
 const FIRST: &str = "replays";
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "fit.md", escape = "none")]
 struct FitPage<'a> {
@@ -31,29 +31,29 @@ struct FitPage<'a> {
     lines: Vec<String>,
     /// Measured IMO criteria.
     criteria: Option<Table>,
-    /// A sentence for every turning circle.
+    /// Sentence on every turning circle.
     circles: Vec<String>,
-    /// The form of MSC/Circ.1053: what is declared, the tests, and remarks.
+    /// The form of MSC/Circ.1053: declared entries, tests, and remarks.
     form: Option<(Vec<(&'a str, Table)>, Table)>,
     /// Remarks of the form, and the mark of its headings.
     form_remarks: &'a [String],
     mark: &'static str,
     answers: Table,
-    /// K and T of every record alone, where there are several.
+    /// K and T of every record alone, if there are several.
     records: Option<Table>,
     warnings: Vec<String>,
-    /// Lines on the records, each with what it is indented by.
+    /// Lines on the records, each with its indentation.
     notes: Vec<(&'static str, String)>,
     scales: Vec<(String, Option<Table>)>,
     remarks: Vec<String>,
     figures: PlacedFigures<&'static str>,
 }
 
-/// `report.md` with its figures.
+/// Content of `report.md` with its figures.
 pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let (mut first, mut folded) = (Vec::new(), Vec::new());
     for figure in fit_figures::figures(document, curves) {
-        // The answers over the first record tell most; every other figure can wait.
+        // The replays on the first record are the most informative figure; the others are folded.
         if figure.stem == FIRST { first.push(figure) } else { folded.push(figure) }
     }
     let mut figures = PlacedFigures::default();
@@ -88,7 +88,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     Page::new(page.render(), page.figures)
 }
 
-/// The records, and the scale of the ship where it is known.
+/// Names of the records, and the scale of the ship if it is known.
 fn title(document: &FitDocument, curves: &FitCurves) -> String {
     let records = match (&document.trials[..], curves.records.first()) {
         ([_], Some(record)) => names::record(&record.name),
@@ -107,13 +107,13 @@ pub fn below_table(document: &FitDocument, curves: &FitCurves) -> String {
     below_table
 }
 
-/// The answers of all methods.
+/// Table of the estimates of all methods.
 pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
     let validated = curves.records.iter().filter(|record| record.validation);
     method_table::table(&document.methods, &validated.map(|record| names::record(&record.name)).collect::<Vec<_>>())
 }
 
-/// Verdict: K, T and δ_r to take, with the reason; or why none can be taken.
+/// Verdict: recommended K, T and δ_r with the reason; or the reason why there is no recommendation.
 pub fn verdict(document: &FitDocument) -> Option<String> {
     let verdict = document.verdict.as_ref()?;
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method)?;
@@ -132,6 +132,9 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
                     "{} Use K and T of each record, or fit the records together with `study trace`.",
                     indices::of_records(all)
                 )
+            }
+            _ if !document.methods.iter().any(|entry| identify::verdict::USUAL.contains(&entry.id())) => {
+                String::from("Leave out --method to ask the usual methods, too.")
             }
             _ => String::from(
                 "Check rudder, heading and clock first (see the warnings); then record a zig-zag in calm weather.",
@@ -159,8 +162,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     Some(text)
 }
 
-/// Nature of the residual of output error: noise, a missing effect or random moments, and a late rudder that explains
-/// it.
+/// Nature of the residual of output error: noise, a missing effect or random moments, and a late rudder as its cause.
 fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let [residual, with_terms] = [verdict.residual_deg, verdict.with_ship_terms_deg].map(|deg| optional(deg, 2));
     let mut sentences = match verdict.residual {
@@ -198,7 +200,7 @@ fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     sentences
 }
 
-/// The method whose answer differs from the verdict, of output error and maximum likelihood, with the reason.
+/// Method whose estimate differs from the verdict, of output error and maximum likelihood, with the reason.
 fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let other = verdict.contradicted_by.as_ref();
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };
@@ -275,7 +277,7 @@ fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
 /// Maximum number of overshoots on the screen.
 const MAX_LISTED_OVERSHOOTS: usize = 12;
 
-/// Zig-zag characteristics and the IMO criteria that the record measures, as lines of text.
+/// Zig-zag characteristics and the IMO criteria measured by the record, as lines of text.
 fn characteristics(entry: &ZigZagEntry) -> String {
     let overshoots = entry.overshoots_deg.iter().zip(&entry.overshoots_sd_deg).take(MAX_LISTED_OVERSHOOTS);
     let angle_text = |(&angle, &sd): (&Option<f64>, &Option<f64>)| {

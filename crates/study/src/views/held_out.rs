@@ -1,4 +1,4 @@
-//! Records that were not fitted: residuals and errors of the models before and after.
+//! Held-out records: residuals and errors of the models before and after.
 
 use ::trace::replay_errors::HORIZONS;
 use campaign::curves::curve;
@@ -14,7 +14,7 @@ use super::trace_figures::{models, ratio};
 use super::trace_tables::horizon;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
-/// Panels side by side.
+/// Number of panels side by side.
 const ACROSS: usize = 3;
 
 /// Figure of the residuals of both models on every held-out record, the worst first; `None` without held-out records.
@@ -49,7 +49,7 @@ pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageF
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
 }
 
-/// Errors on records that were not fitted, from zero, so that a ratio can be seen; `None` if there are none.
+/// Figure of the errors on held-out records, from zero, so that ratios are visible; `None` if there are none.
 pub fn errors(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {

@@ -1,4 +1,4 @@
-//! Growth of the heading error with the horizon of a replay, on records that were not fitted.
+//! Growth of the heading error with the horizon of a replay, on held-out records.
 
 use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
@@ -6,17 +6,17 @@ use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
-/// Horizon that the finding says beside the whole record, s, where the records hold it.
+/// Horizon named in the finding in addition to the whole record, s, if the records have it.
 const SHOWN_S: f64 = 20.0;
 
-/// An error of one of the two models.
+/// Heading error of one of the two models.
 type HorizonError = fn(&HorizonEntry) -> f64;
 
 /// The models with their errors.
 const MODELS: [(CurveOrigin, HorizonError); 2] =
     [(CurveOrigin::Before, |entry| entry.before_deg), (CurveOrigin::After, |entry| entry.after_deg)];
 
-/// The horizons that at least half of the records have, each with the entries of those that have it; the last is of the
+/// Horizons shared by at least half of the records, each with the entries of these records; the last is that of the
 /// whole records.
 fn common<'a>(records: &[&'a [HorizonEntry]]) -> Vec<Vec<&'a HorizonEntry>> {
     let whole: Vec<&HorizonEntry> = records.iter().filter_map(|record| record.last()).collect();
@@ -35,7 +35,7 @@ fn pooled(entries: &[&HorizonEntry], error: HorizonError) -> f64 {
     (entries.iter().map(|entry| error(entry).powi(2)).sum::<f64>() / entries.len() as f64).sqrt()
 }
 
-/// Where a horizon of all records is drawn: their mean.
+/// Abscissa of a horizon: the mean over its entries, s.
 fn place(entries: &[&HorizonEntry]) -> f64 {
     entries.iter().map(|entry| entry.horizon_s).sum::<f64>() / entries.len() as f64
 }
@@ -54,7 +54,7 @@ fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
     Some(format!("Heading error {ahead}over the whole record {} ({records})", errors(whole)))
 }
 
-/// The lines of one model: the range of the records or every one of them, and all together.
+/// Lines of one model: the range of the records or every single one, and the pooled error.
 fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: usize) -> Vec<Layer> {
     let (origin, error) = &MODELS[number];
     let (look, x) = (origin.look(), horizons.iter().map(|entries| place(entries)).collect::<Vec<f64>>());
@@ -79,7 +79,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
     layers
 }
 
-/// The figure; `None` if every record was fitted, and where the document does not hold the errors.
+/// Figure of the error growth; `None` if no record was held out, or if the document does not hold the errors.
 pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let records: Vec<&[HorizonEntry]> =
@@ -113,7 +113,7 @@ mod tests {
         errors.iter().map(entry).collect()
     }
 
-    /// A horizon is pooled over the records that have it, where these are half of all; the last is the mean length.
+    /// A horizon is pooled over the records that have it, if these are half of all; the last is the mean length.
     #[test]
     fn records_are_pooled_over_the_horizons_that_half_of_them_have() {
         let long = record(&[[10.0, 1.0, 0.1], [20.0, 3.0, 0.3], [40.0, 5.0, 1.0], [80.0, 9.0, 1.5], [90.0, 6.0, 2.0]]);
@@ -130,7 +130,7 @@ mod tests {
         let whole = record(&[[12.0, 2.0, 1.0]]);
         let expected = "Heading error over the whole record 1.0° instead of 2.0° (one)";
         assert_eq!(finding(&common(&[&whole]), "one").as_deref(), Some(expected));
-        // Fewer than five records are lines, five or more a band, and one is itself alone.
+        // Fewer than five records are lines, five or more a band, and one is shown alone.
         let count = |records: &[&[HorizonEntry]]| layers(records, &common(records), 0).len();
         assert_eq!([count(&[&long]), count(&records), count(&[long.as_slice(); 5])], [1, 3, 2]);
     }

@@ -1,4 +1,4 @@
-//! K and T beside what they belong to: an amplitude, small motions, a record.
+//! K and T with their context: an amplitude, small motions, a record.
 
 use document::names;
 use document::single_records::{Amplitude, SingleRecord, SingleRecords};
@@ -33,7 +33,7 @@ pub fn of_records(all: &SingleRecords) -> String {
     format!("Fitted one by one ({}), the records give K {k} and T {t}{agree}.", all.method)
 }
 
-/// K and T of every record alone.
+/// Table of K and T of every record alone.
 pub fn records(all: &SingleRecords) -> Table {
     let head = TableHead::default().texts(["record"]).numbers(["rudder", "heading"]).unit("deg");
     let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
@@ -46,7 +46,7 @@ pub fn records(all: &SingleRecords) -> Table {
     table
 }
 
-/// K and T of the first-order response and of the model of a trace, with what each pair is for.
+/// Table of K and T of the first-order response and of the model of a trace, with the use of each pair.
 pub fn of_trace(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["K and T of"]).numbers(["K"]).unit("1/s").interval();
     let mut table = Table::new(head.numbers(["T"]).unit("s").interval().texts(["for"]));

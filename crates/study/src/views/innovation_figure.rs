@@ -1,5 +1,5 @@
-//! Whether model and noise describe a record: the innovations of its headings as a normal Q–Q plot with the band that
-//! chance leaves, and their autocorrelation with the test of whiteness. What acts on the ship is no part of it.
+//! Check of model and noise on a record: a normal Q–Q plot of the innovations of its headings with the 95 % band of
+//! chance, and their autocorrelation with the test of whiteness. Moments on the ship are not part of it.
 
 use ::trace::IMPROBABLE;
 use estimation::residuals::{GappedSeries, autocorrelation, whiteness, whiteness_lags};
@@ -13,7 +13,8 @@ use statrs::distribution::{Beta, ContinuousCDF, Normal};
 /// Minimum number of innovations for the figure.
 const MIN_INNOVATIONS: usize = 8;
 
-/// Places between the ends at which the band is drawn, and places at either end that are all drawn.
+/// Maximum number of ranks between the ends at which the band is plotted, and number of ranks at either end that are
+/// all plotted.
 const MAX_DRAWN_RANKS: usize = 150;
 const END_RANKS: usize = 20;
 
@@ -27,19 +28,19 @@ fn order_quantile(rank: usize, count: usize, probability: f64) -> f64 {
     Normal::standard().inverse_cdf(ordered(rank, count).inverse_cdf(probability))
 }
 
-/// Where the i-th smallest of n normal numbers is expected (Blom 1958).
+/// Expected value of the i-th smallest of n standard normal numbers (Blom 1958).
 fn expected(rank: usize, count: usize) -> f64 {
     Normal::standard().inverse_cdf((rank as f64 - 0.375) / (count as f64 + 0.25))
 }
 
-/// Ranks that are drawn, smallest first.
+/// Plotted ranks, in ascending order.
 fn ranks(count: usize) -> Vec<usize> {
     let step = count.div_ceil(MAX_DRAWN_RANKS);
     (1..=count).filter(|rank| *rank <= END_RANKS || *rank + END_RANKS > count || rank % step == 0).collect()
 }
 
-/// The figure of the innovations of a record at times (s), in standard deviations of the noise that was found; `None`
-/// where they are few.
+/// Figure of the innovations of a record at times (s), in standard deviations of the estimated noise; `None` for fewer
+/// than eight.
 pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
     let spacing = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or_default();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -63,7 +64,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     Some(PageFigure::new(stem, title, caption, Panels { stacks, ..Panels::default() }))
 }
 
-/// Sorted numbers over where normal ones are expected.
+/// Sorted numbers over their expected values for a normal distribution.
 fn quantiles(sorted: &[f64]) -> Stack {
     let count = sorted.len();
     let outside = (1..=count)
@@ -86,7 +87,7 @@ fn quantiles(sorted: &[f64]) -> Stack {
     stack
 }
 
-/// The autocorrelation with the ends between which 95 % of that of white numbers lie.
+/// Autocorrelation, with the limits that contain 95 % of that of white noise.
 fn correlation(series: &GappedSeries) -> Stack {
     let count = series.values.len();
     let points = autocorrelation(series, whiteness_lags(count));
@@ -107,7 +108,7 @@ fn correlation(series: &GappedSeries) -> Stack {
 mod tests {
     use super::*;
 
-    /// The only one of one number has the quantiles of a normal; the smallest of n is above x where all are: (1 − Φ)ⁿ.
+    /// A single number has the quantiles of a normal; the smallest of n is above x if all are: (1 − Φ)ⁿ.
     #[test]
     fn the_band_is_that_of_order_statistics() {
         assert!((order_quantile(1, 1, 0.975) - 1.959_964).abs() < 1e-5);

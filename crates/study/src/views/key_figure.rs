@@ -1,5 +1,5 @@
-//! The figure that stands for a study: its finding above it, T alone where a figure shows errors of K and of T, what it
-//! is about in colour and everything else pale.
+//! Key figure of a study: its finding above it, T alone if a figure shows errors of K and of T, the highlighted series
+//! in colour and all others pale.
 
 use campaign::scenario::Highlight;
 use report::figures::{
@@ -18,13 +18,13 @@ use super::pooled_charts::{ALL, HEAD_END};
 /// Look of a method that the figure does not highlight.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
 
-/// Share of the range of what a figure is about by which everything else may widen its axes.
+/// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Share of an axis that is left free for the values of rows.
+/// Share of an axis that is free for the values of rows.
 const ROOM: f64 = 0.12;
 
-/// A chart as the figure that stands for a study.
+/// A chart as the key figure of a study.
 pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     match &mut plot {
         Plot::Panels(data) => of_panels(data, highlight),
@@ -37,12 +37,12 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
 
 fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
     let is_method = |name: &String| name != CurveOrigin::Bound.label();
-    // A line of rules is named by what their labels begin with.
+    // A line of rules is identified by the common beginning of their labels.
     let is_of = |label: &String, name: &String| label == name || label.starts_with(&format!("{name}, "));
     !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.iter().any(|label| is_of(label, name)))
 }
 
-/// A layer that the figure is not about.
+/// A layer that is not highlighted, in pale colours.
 fn paled(layer: Layer) -> Layer {
     let mut kind = layer.kind;
     match &mut kind {
@@ -69,7 +69,7 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
-            // Small multiples are of one method each.
+            // Small multiples show one method each.
             let name = |head: &String| head.split(HEAD_END).next().unwrap_or_default().to_owned();
             stack.panels.retain(|panel| !is_quiet(panel.head.as_ref().map(name).as_ref(), about));
             continue;
@@ -104,13 +104,13 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
     data.note = Some(notes.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
 }
 
-/// `true` if no two layers of a panel have one name.
+/// `true` if no two layers of a panel have the same name.
 fn has_distinct_names(panel: &LayeredPanel) -> bool {
     let names: Vec<&String> = panel.layers.iter().filter_map(|layer| layer.name.as_ref()).collect();
     distinct(names.iter().copied()).len() == names.len()
 }
 
-/// Values of marks at points of the axis, written beside them; of two that read alike the first.
+/// Values of marks at points of the axis, written next to them; of two equal texts only the first.
 fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
     let mut written: Vec<(f64, String)> = Vec::new();
     let mut values = Vec::new();
@@ -135,7 +135,7 @@ fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
     values
 }
 
-/// Leaves the rows of K out, and hands their heads on.
+/// Removes the rows of K and moves their heads to the remaining rows.
 fn keep_t(stack: &mut Stack) {
     let across = stack.x.len();
     let heads: Vec<Option<String>> = stack.panels.iter_mut().map(|panel| panel.head.take()).collect();
@@ -147,8 +147,7 @@ fn keep_t(stack: &mut Stack) {
     stack.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
-/// Keeps the panels that the figure is about, and the rows; the others are one row, the mean of those whose names
-/// begin alike up to a colon.
+/// Keeps the highlighted panels and rows. All other rows with the same name up to a colon become one row, their mean.
 fn of_cells(data: &mut CellMap, Highlight { series: about, rows }: &Highlight) {
     data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
     if rows.is_empty() {
@@ -171,7 +170,7 @@ fn of_cells(data: &mut CellMap, Highlight { series: about, rows }: &Highlight) {
     data.rows = parts.into_iter().map(|(name, _)| name).collect();
 }
 
-/// The mean of rows of a map, column by column; of one row the row itself.
+/// Mean of rows of a map, column by column; a single row is unchanged.
 fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
     let [first, others @ ..] = members else { return Vec::new() };
     let mean = |column: usize| {
@@ -189,11 +188,11 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
         for item in rows.flat_map(|(row, _)| row) {
             let RowKind::Violin(_, density, quantiles) = &item.kind else { continue };
             column.reached.extend(density.iter().map(|(value, _)| *value));
-            item.text = Some(format!("median {}", significant(quantiles[2], 2)));
+            item.number = Some(format!("median {}", significant(quantiles[2], 2)));
         }
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
-        // The others share a line, and have no ranges.
+        // The other rows share a line and have no ranges.
         row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
         row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
         let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
@@ -213,7 +212,7 @@ fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) 
     }
 }
 
-/// Pales the rows that a figure is not about, and writes the values of all others beside their marks.
+/// Pales the rows that are not highlighted, and writes the values of all others next to their marks.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
     column.room = ROOM;
     for (row, name) in column.rows.iter_mut().zip(names) {
@@ -221,7 +220,7 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
         for item in row {
             let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
             if is_quiet {
-                // The key has the looks of the rows that the figure is about.
+                // The key shows the looks of the highlighted rows.
                 (look.colour, item.name) = (QUIET, None);
             } else if look.colour != QUIET {
                 item.number = Some(significant(*value, 2));
@@ -264,7 +263,7 @@ mod tests {
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
-        // What the figure is not about lies below, without a name.
+        // Layers that are not highlighted are below, without a name.
         let names: Vec<Option<&str>> = panels[0].layers.iter().map(|layer| layer.name.as_deref()).collect();
         assert_eq!(names, [None, Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
@@ -275,7 +274,7 @@ mod tests {
     #[test]
     fn other_methods_share_a_line_below_those_the_figure_is_about() {
         let item = |id: &str, value: f64| RowItem::below(method(id).0, method(id).1, value, None);
-        // What coincides with one of those is not drawn.
+        // Marks that coincide with highlighted ones are not plotted.
         let items = [("srivc", 2.0), ("output-error", 1.0), ("least-squares", 3.0), ("maximum-likelihood", 1.0)];
         let column = |title: &str| RowsColumn {
             x: Ruler::decimal(title),
@@ -364,7 +363,7 @@ mod tests {
         let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
         let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
-        let text = |row: usize| data.columns[0].rows[row][0].text.as_deref();
+        let text = |row: usize| data.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("median −20"), None));
     }
 }

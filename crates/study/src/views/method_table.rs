@@ -1,5 +1,5 @@
-//! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a
-//! failed method as a row with its reason. All digits are in the stored JSON.
+//! Table of the estimates of all methods: columns as narrow as the numbers allow, every estimate next to its 95 %
+//! interval, a failed method as a row with its reason. All digits are in the stored JSON.
 
 use identify::StopReason;
 use report::number::{self, MISSING};
@@ -36,7 +36,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
 /// Maximum number of significant digits.
 const DIGITS: i32 = 5;
 
-/// A value and its interval, with the digits the interval supports and no more than five significant ones.
+/// Value and interval, with the digits that the interval supports, at most five significant ones.
 pub fn estimate(quantity: &Quantity) -> [String; 2] {
     let value = quantity.value;
     if !value.is_finite() {

@@ -1,4 +1,4 @@
-//! The yaw moment that the base lacks on every fitted record: its figure, and the sentence on it.
+//! Yaw moment that the base lacks on every fitted record: its figure, and the sentence on it.
 
 use std::fmt::Write as _;
 
@@ -12,10 +12,10 @@ use trace::missing_moment::MomentChannel;
 
 use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
-/// Panels of a figure at most.
+/// Maximum number of panels of a figure.
 const MAX_PANELS: usize = 4;
 
-/// Times the usual size at which a moment is cut over time, and over a channel: a jump would set the axis.
+/// Maximum plotted moment over time, and over a channel, in usual sizes: a jump would set the axis.
 const REACHES: [f64; 2] = [8.0, 2.5];
 
 /// Title of an axis over a channel.
@@ -39,7 +39,7 @@ fn percent(share: Option<f64>) -> String {
     }
 }
 
-/// The moment with its band, and what the known explanation makes of it.
+/// Layers of the moment with its band, and of its explanation if there is one.
 fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
@@ -51,7 +51,7 @@ fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], 
     layers
 }
 
-/// The figure of one record.
+/// Figure of one record.
 pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
     let cause = entry.explanation.as_ref();
     let over = |x: Ruler, height: f64, reach: f64, layers: Vec<Layer>| {
@@ -85,7 +85,7 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
     Panels { stacks, note, ..Panels::default() }
 }
 
-/// Finding: size of the moment of one record and the channel that explains it best.
+/// Finding: size of the moment of one record and the channel with the highest share of its variance.
 pub fn finding(entry: &MissingMomentEntry) -> String {
     let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");

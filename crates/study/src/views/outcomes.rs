@@ -1,4 +1,4 @@
-//! Outcomes of traces for ships whose scenario states the right outcome.
+//! Outcomes of traces for ships whose scenario states the correct outcome.
 
 use campaign::design::Design;
 use campaign::scenario::MissingPhysics;
@@ -11,7 +11,7 @@ use report::number;
 use super::tables::head_of_cells;
 use super::tracing_table::has_several;
 
-/// A kind of ship, for figures and files.
+/// Kind of a ship, for figures and files.
 fn kind(physics: &MissingPhysics) -> &'static str {
     match physics {
         MissingPhysics::Listed { .. } => "known",
@@ -20,7 +20,7 @@ fn kind(physics: &MissingPhysics) -> &'static str {
     }
 }
 
-/// The answers in a cell, and what its ship lacks.
+/// Summary of the traces in a cell, and the missing physics of its ship.
 type JudgedLine<'a> = (&'a TraceSummary, &'a MissingPhysics);
 
 fn judged<'a>(design: &'a Design, lines: &'a [TraceSummary]) -> Vec<JudgedLine<'a>> {
@@ -38,8 +38,8 @@ fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -
     lines.iter().map(of_line).sum()
 }
 
-/// A row for every ship, a column for every judgement; cells that differ in further axes are one row. Nothing for a
-/// study that states nothing.
+/// Map with one row for every ship and one column for every judgement; cells that differ in further axes are one row.
+/// `None` for a study that states no outcome.
 pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMap)> {
     let judged = judged(design, lines);
     let ships = grouped(judged.iter().copied(), |(line, physics): &JudgedLine| {
@@ -89,7 +89,7 @@ pub fn reading() -> String {
     )
 }
 
-/// The counts of every cell: `outcomes.csv`; `None` for a study that states nothing.
+/// Counts of every cell: `outcomes.csv`; `None` for a study that states no outcome.
 pub fn table(design: &Design, summary: &Summary) -> Option<Table> {
     let several = has_several(design);
     let head = head_of_cells(design).texts(several.then_some("method")).texts(["kind"]).counts(["trials", "failed"]);

@@ -1,4 +1,4 @@
-//! The overshoots of the zig-zags of a trace beside those of the replays of their rudder.
+//! Overshoots of the zig-zags of a trace, compared with those of replays of their rudder.
 
 use ::trace::replay_errors::replayed_zigzag;
 use document::names;
@@ -13,25 +13,25 @@ use trial::{ZigZag, imo};
 
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
-/// The first or the second overshoot of a record, which are those that have a limit, degrees.
+/// First or second overshoot of a record, the two with an IMO limit, degrees.
 pub struct ReplayedOvershoot<'a> {
     record: &'a RecordEntry,
     word: &'static str,
     measured: f64,
-    /// By the models before and after; `None` if a replay has none.
+    /// Overshoots by the models before and after; `None` if a replay has none.
     replayed: [Option<f64>; 2],
     limit: Option<f64>,
     /// Maximum rudder of the record, rad.
     rudder: f64,
 }
 
-/// The overshoots of all records, those with the least rudder first.
+/// Overshoots of all records, in ascending order of the rudder.
 pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
     let mut all = Vec::new();
     for (record, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
-        // The limits are for ships: a model has none, and which ship it is a model of the record does not say.
+        // The limits are for ships; for a model, the record does not state the length of the full-size ship.
         let ship = record.particulars().filter(|ship| ship.length >= imo::MIN_LENGTH_M);
         let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
         let rudder = trial.rudder().iter().fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
@@ -52,15 +52,15 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
 
 /// Error of the overshoots of a replay.
 pub struct OvershootError {
-    /// Median distance, degrees; `None` if the replay has none of them.
+    /// Median absolute error, degrees; `None` if the replay has no overshoot.
     pub median_deg: Option<f64>,
-    /// Measured overshoots.
+    /// Number of measured overshoots.
     pub measured: usize,
-    /// Measured overshoots without a replayed one.
+    /// Number of measured overshoots without a replayed one.
     pub missing: usize,
 }
 
-/// The errors of the overshoots of both replays, of records that were held out or of fitted ones.
+/// Errors of the overshoots of both replays, of held-out or of fitted records.
 pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
     let judged = || all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
     [0, 1].map(|model| {
@@ -71,10 +71,10 @@ pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] 
     })
 }
 
-/// The first two overshoots of every zig-zag with those of both replays, on a ground where the rudder is no larger than
-/// in the fitted records; `None` if no record is a zig-zag.
+/// Figure of the first two overshoots of every zig-zag and of both replays, shaded if the rudder is no larger than in
+/// the fitted records; `None` if no record is a zig-zag.
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
-    // One mark above the other, so that neither hides the other.
+    // One mark above the other, so that both are visible.
     let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
         let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).softly();
         Some(RowItem { place: RowPlace::Aside(aside), ..item })

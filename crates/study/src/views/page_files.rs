@@ -9,19 +9,19 @@ use report::{Page, PageFigure, Theme};
 
 use crate::documents;
 
-/// The page as Markdown.
+/// Name of the page in Markdown.
 pub const REPORT: &str = "report.md";
 
-/// The page for a browser, in one file.
+/// Name of the page for a browser, a single file.
 pub const BROWSER: &str = "report.html";
 
-/// Stem of the figure that stands for a page.
+/// File stem of the key figure of a page.
 pub const KEY_FIGURE: &str = "hero";
 
-/// Draws the figures of a page and writes it in both forms; without a theme it is a page of words and tables.
+/// Writes a page in both forms with its figures; without a theme only texts and tables.
 ///
-/// Fails if the style has limits for an axis that is in none of the figures, and when a file cannot be written, with
-/// the first failure in the order of the page.
+/// Fails if the style has limits for an axis that is in none of the figures, or if a file cannot be written; the
+/// failure is the first one in the order of the page.
 pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> Result<(), Failure> {
     let page = if theme.is_some() { page } else { page.without_figures() };
     remove_former(folder, &page)?;
@@ -34,8 +34,8 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
 }
 
-/// Removes the figures of the page that stood there before, which may be of another ship. Those that are drawn anew
-/// stay.
+/// Removes the figures of the former page in this folder, which may be of another ship. Figures that are made again are
+/// kept.
 fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
     let place = folder.path().join(REPORT);
     let former = disk::read(&place, documents::MAX_FILE_BYTES).on("read", &place)?.unwrap_or_default();
@@ -69,7 +69,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
     }))
 }
 
-/// Does all of it in parallel and fails with the first failure in order, whichever came first in time.
+/// Runs all work in parallel and fails with the first failure in order, not in time.
 pub fn run_all(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
     work.collect::<Vec<_>>().into_iter().collect()
 }
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn the_first_failure_in_order_is_told() {
         let work = (0..64).into_par_iter().map(|k| match k {
-            // The earlier it is in order, the later it comes.
+            // The earlier in order, the later in time.
             8.. => Err(Failure::work(format!("figure {k}"))),
             7 => {
                 std::thread::sleep(std::time::Duration::from_millis(5));

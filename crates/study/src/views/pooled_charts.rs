@@ -18,7 +18,7 @@ use super::charts::{BARS_NOTE, ErrorMeasure, comparable, origin, rms_title};
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
 
-/// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
+/// Maps of the errors of K, of T and of the validation for a design of two axes: stems, captions and maps.
 pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].clone()));
     if design.axes.len() != 2 {
@@ -61,10 +61,10 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
     maps.into_iter().filter_map(map_of).filter(is_there).collect()
 }
 
-/// Whiskers further out than this many times the middle one are cut.
+/// Maximum length of whiskers, in median spreads; longer ones are cut.
 const MAX_SPREADS: f64 = 4.0;
 
-/// Distributions of the errors in the cells whose detail was requested; nothing for fewer than ten trials.
+/// Distributions of the errors in the cells whose detail was requested; none for fewer than ten trials.
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
@@ -95,13 +95,13 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     summary.details.iter().filter_map(of_cell).collect()
 }
 
-/// Half the width of the axes of clouds over the middle one of the ellipses.
+/// Half width of the axes of clouds, in median sizes of the ellipses.
 const REACH: f64 = 2.2;
 
-/// Ellipses beyond this many times the middle one have no panel: it would be empty.
+/// Maximum size of an ellipse with a panel, in medians: a larger one would leave its panel empty.
 const FAR: f64 = 3.0;
 
-/// What ends the name of a method in the head of its panel.
+/// Separator after the name of a method in the head of its panel.
 pub const HEAD_END: &str = ": ";
 
 /// Clouds of errors in the cells whose detail was requested, and whether there is a bound.
@@ -155,9 +155,9 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
     summary.details.iter().filter_map(of_cell).collect()
 }
 
-/// K and T that the reference method finds at the named points of the last axis, over those of the first point, one
-/// series for every point of the other axes; nothing unless some ships are not first order and have no K and T of their
-/// own for all trials.
+/// K and T estimated by the reference method at the named points of the last axis, relative to those at the first
+/// point, one series for every point of the other axes; `None` unless some ships are not first order and have no K and
+/// T of their own for all trials.
 pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
@@ -199,10 +199,11 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
 /// Name of the row of all cells together.
 pub const ALL: &str = "all";
 
-/// Maximum number of rows of predictions of single cells; of more cells the points of the longest axis are the rows.
+/// Maximum number of rows of single cells in a figure of predictions; for more cells the rows are the points of the
+/// longest axis.
 const MAX_ROWS: usize = 10;
 
-/// Cells that are one row of predictions, with the name of the row.
+/// Cells that share one row of predictions, with the name of the row.
 fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].as_str())).len();
     let longest = (0..design.axes.len()).max_by_key(|&axis| labels(axis));
@@ -212,7 +213,7 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     })
 }
 
-/// Centre and ends of some values with this percentage cut at either end: the mean with all values, else the median.
+/// Centre and ends of some values with this percentage cut at either end: the mean without a cut, else the median.
 fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;
@@ -222,7 +223,7 @@ fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
     Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
 }
 
-/// A mark on its range.
+/// Mark on its range.
 fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<RowItem> {
     let look = origin.look();
     let range = RowItem::new(origin.label(), RowKind::Range(look.colour, ends));
@@ -230,9 +231,9 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
     vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::Beside, ..mark }]
 }
 
-/// How often 90 % intervals of predictions hold, row by row and method by method, and how wide they are: the mean
-/// share and the median width over the predicted values, on the range from the lowest to the highest share and of the
-/// middle half of the widths; nothing without predictions.
+/// Coverage and width of 90 % prediction intervals, by row and method: the mean share and the median width over the
+/// predicted characteristics, on the range of the shares and of the middle half of the widths; `None` without
+/// predictions.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let rows = prediction_rows(design);
@@ -246,7 +247,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
             let of_cells = |cells: &[usize]| {
                 centre(summary.predictions.iter().filter(|line| is_of(line, cells)).map(pick).collect(), outer)
             };
-            // The first row is of the marks of all cells.
+            // The first row has the marks of all cells.
             let cells = (0..design.cells.len()).filter_map(|cell| of_cells(&[cell]));
             let all = centre(cells.map(|(value, _)| value).collect(), outer);
             let all = several.then(|| all.map_or_else(Vec::new, |(value, _)| items((value, [value; 2]))));

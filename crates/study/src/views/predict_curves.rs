@@ -1,4 +1,4 @@
-//! The curves behind the figures of a prediction, as tables.
+//! Curves of the figures of a prediction, as tables.
 
 use campaign::curves::degrees;
 use predict::PredictDocument;
@@ -11,17 +11,17 @@ use crate::documents::columns::CurveTable;
 use crate::records::names;
 use campaign::scenario::name::slug;
 
-/// A stem of its own for every manoeuvre and record.
+/// Unique file stem for every manoeuvre and record.
 pub fn stems(document: &PredictDocument) -> Vec<String> {
     let kinds = document.manoeuvres.iter().map(|prediction| {
         let kind = prediction.kind.to_string();
-        // A minus is no part of a slug.
+        // A slug has no minus sign.
         slug(&kind.replace(" -", " port "))
     });
     names(kinds.chain(document.replays.iter().map(|kinds| format!("replay-{}", slug(&kinds.name)))))
 }
 
-/// The curves of every manoeuvre and replay: stem and table, angles in degrees.
+/// Curves of every manoeuvre and replay: stem and table, angles in degrees.
 pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
     let mut tables = Vec::new();
     let mut stems = stems(document).into_iter();

@@ -23,7 +23,7 @@ use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
-/// Headings drawn along a track.
+/// Number of ship symbols along a track.
 const DRAWN_HEADINGS: usize = 12;
 
 /// All figures, in the order of the page.
@@ -104,13 +104,13 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     figures
 }
 
-/// Probability from which a criterion counts as kept.
+/// Minimum probability at which a criterion counts as met.
 const MIN_PROBABILITY: f64 = 0.95;
 
-/// Figures that a finding says.
+/// Maximum number of characteristics in a finding.
 const MAX_NAMED_FIGURES: usize = 2;
 
-/// The first figures of a manoeuvre, with what 90 % of the drawn ships do.
+/// First characteristics of a manoeuvre, with their 90 % intervals over the sampled ships.
 fn first_figures(prediction: &Prediction) -> String {
     let figure_words = |(name, figure): (&String, &Predicted)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
@@ -130,7 +130,7 @@ fn inside(replayed: &RecordReplay) -> String {
     format!("The 90 % band holds {share} % of the headings; heading error of the most probable ship {rmse}° (rms)")
 }
 
-/// The tactical diameter of a recorded turn and of its prediction; else how near its heading is.
+/// Tactical diameter of a recorded turn and of its prediction; without it, the heading error.
 fn diameter(replayed: &RecordReplay) -> String {
     let Some(diameter) = replayed.figures.get("tactical_diameter_lengths") else { return inside(replayed) };
     let [low, high] = diameter.interval.ci90.map(|end| significant(end, 3));
@@ -138,10 +138,10 @@ fn diameter(replayed: &RecordReplay) -> String {
     format!("Tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
 }
 
-/// Opacity of the outer band and of the inner one drawn over it.
+/// Opacity of the outer band, and of the inner band over it.
 const BANDS: [f64; 2] = [0.2, 0.38];
 
-/// Heading with bands and rudder over one time axis; the outer band as far as there is room.
+/// Heading with bands and rudder over one time axis; the outer band is cut if it needs too much room.
 fn bands(heading: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
     let curve = |values: Vec<f64>| PlotCurve::new(heading.time.as_slice(), values);
     let quantile = |place: usize| curve(heading.quantiles.iter().map(|row| to_deg(row[place])).collect());
@@ -162,13 +162,13 @@ fn replay(replayed: &RecordReplay) -> Panels {
     bands(&replayed.heading, Some(recorded), rudder)
 }
 
-/// A track, north over east.
+/// Track, north over east.
 fn from_above(track: &[[f64; 2]]) -> PlotCurve {
     let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
     PlotCurve::new(east, north)
 }
 
-/// A recorded turn beside the median of its prediction.
+/// Recorded turn and the median of its prediction.
 fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
     let drawn = |track: &Vec<[f64; 2]>| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.15);
     let figures = |of: fn(&Compared) -> f64| {
@@ -214,7 +214,7 @@ fn track(prediction: &Prediction) -> Panels {
     Panels { cut, ..Panels::of(Stack { equal: true, ..stack }) }
 }
 
-/// Predicted quantities as intervals, against what was measured and what is allowed.
+/// Prediction intervals of characteristics, with measured values and limits.
 fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     let (names, rows) = rows.into_iter().unzip();
     let x = Ruler::decimal(format!("predicted value [{unit}]"));
@@ -245,14 +245,14 @@ fn is_overshoot(name: &str) -> bool {
     name.ends_with("overshoot_deg")
 }
 
-/// Overshoots of replayed records.
+/// Measured overshoots of replayed records.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
             let mut items = interval(&figure.interval, false);
-            // Under the bar, so that it does not hide a median nearby.
+            // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
             rows.push((format!("{} {}", names::record(&replayed.name), names::figure(name).0), items));

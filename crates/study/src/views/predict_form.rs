@@ -13,7 +13,7 @@ use super::bench_figures::capital;
 /// Text of an entry without a value.
 const EMPTY: &str = "–";
 
-/// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
+/// Value as it is filled in, without its unit. Numbers of one side are results, others are declared.
 fn filled(entry: &ImoFormEntry) -> String {
     if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
         return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(MAX_DECIMALS));
@@ -30,7 +30,7 @@ fn filled(entry: &ImoFormEntry) -> String {
     }
 }
 
-/// `trial-form.md`.
+/// Template of `trial-form.md`.
 #[derive(Template)]
 #[template(path = "form.md", escape = "none")]
 struct FormPage<'a> {
@@ -40,7 +40,7 @@ struct FormPage<'a> {
     mark: &'static str,
 }
 
-/// The tables of the form: what is declared under the headings of its parts, and the tests.
+/// Tables of the form: declared entries under the headings of its parts, and the tests.
 pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
     let is_declared = |(section, section_entries): &(&str, Vec<&ImoFormEntry>)| {
@@ -98,7 +98,7 @@ pub fn criteria(entries: &[ImoFormEntry]) -> Table {
     table
 }
 
-/// The page of the form.
+/// Page of the form.
 pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
     let (declared, tested) = tables(entries);
     Page::new(FormPage { declared, tested, form_remarks: remarks, mark: "##" }.render(), PlacedFigures::<()>::default())

@@ -1,4 +1,4 @@
-//! The page of a prediction: words, tables and figures.
+//! Page of a prediction: texts, tables and figures.
 
 use askama::Template;
 use document::names;
@@ -14,7 +14,7 @@ use trial::{Manoeuvre, imo};
 
 use super::{predict_figures, predict_tables};
 
-/// Text above the table: models, number of draws, weather, hull, range of validity, incomplete manoeuvres.
+/// Text above the table: models, number of samples, weather, hull, range of validity, incomplete manoeuvres.
 pub fn summary(document: &PredictDocument) -> String {
     let weather = match document.calm {
         true => "in a calm",
@@ -103,7 +103,7 @@ fn coverage(replayed: &RecordReplay) -> String {
     sentence
 }
 
-/// The models of a correction.
+/// Sentence on the models of a correction.
 fn corrected_from(document: &PredictDocument) -> String {
     format!("F from {}, B from {}", document.model_files(), document.ballast.join(", "))
 }
@@ -116,7 +116,7 @@ fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
         .flat_map(|record| record.warnings.iter().map(|doubt| format!("{}: {}", record.name, doubt.text)))
 }
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "predict.md", escape = "none")]
 struct PredictPage<'a> {
@@ -130,7 +130,7 @@ struct PredictPage<'a> {
     figures: PlacedFigures<&'static str>,
 }
 
-/// `report.md` with its figures.
+/// Content of `report.md` with its figures.
 pub fn page(document: &PredictDocument) -> Page {
     let mut figures = PlacedFigures::default();
     figures.put("all", predict_figures::figures(document));

@@ -7,19 +7,19 @@ use predict::{PredictDocument, Prediction};
 use report::number::{MISSING, fixed, significant, with_uncertainty};
 use report::{Table, TableHead};
 
-/// An interval in brackets.
+/// Interval in brackets.
 pub fn bracket(ends: [f64; 2], decimals: usize) -> String {
     format!("[{}, {}]", fixed(ends[0], decimals), fixed(ends[1], decimals))
 }
 
-/// Median and both intervals, with as many decimals as the width asks for.
+/// Median and both intervals, with as many decimals as the width requires.
 fn cells(interval: &PredictionInterval) -> [String; 3] {
     let decimals = interval.decimals();
     let [half, most] = [interval.ci50, interval.ci90].map(|ends| bracket(ends, decimals));
     [fixed(interval.median, decimals), half, most]
 }
 
-/// Every figure of every manoeuvre and of every record.
+/// Table of every characteristic of every manoeuvre and of every record.
 pub fn characteristics_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
     let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
@@ -52,10 +52,10 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
 
 /// Plain name of a source of uncertainty.
 fn source_name(source: &str) -> String {
-    source.replace("structure", "choice of effects").replace("process-noise", "random yaw moment").replace('-', " ")
+    source.replace("structure", "choice of model").replace("process-noise", "random yaw moment").replace('-', " ")
 }
 
-/// The criteria of IMO.
+/// Table of the IMO criteria.
 pub fn criteria(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["criterion", "manoeuvre"]).numbers(["limit"]).texts(["unit"]);
     let head = head.numbers(["median"]).texts(["90 %"]).numbers(["passes"]).unit("%");
@@ -76,7 +76,7 @@ pub fn criteria(document: &PredictDocument) -> Table {
     table
 }
 
-/// Every figure that was corrected to another loading.
+/// Table of every characteristic that was corrected to another loading.
 pub fn corrected(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["record", "figure", "unit", "T measured"]).numbers(["F/B"]);
     let head = head.texts(["F/B 90 %"]).numbers(["R"]).texts(["R 50 %", "R 90 %", "remark"]);

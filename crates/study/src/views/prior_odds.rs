@@ -7,19 +7,19 @@ use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::{fixed, significant};
 use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
 
-/// Probability that an effect without a name reaches at some odds to be drawn.
+/// Minimum probability, at some odds, at which an unnamed effect is plotted.
 const MIN_DRAWN_PROBABILITY: f64 = 0.05;
 
 /// Maximum number of lines of the figure.
 const MAX_LINES: usize = 8;
 
-/// Change of a probability that is said.
+/// Minimum change of a probability that is reported.
 const MIN_CHANGE: f64 = 0.1;
 
 const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION, BEFORE, INK, RECORD];
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up];
 
-/// An effect, or a group that the records cannot tell apart, with its probability for every factor.
+/// Effect, or group that the records cannot separate, with its probability for every factor.
 struct OddsLine<'a> {
     name: String,
     is_named: bool,
@@ -38,7 +38,7 @@ impl OddsLine<'_> {
     }
 }
 
-/// The named effects, then the others that may be there, the most probable first.
+/// Named effects, then other possible ones, the most probable first.
 fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
     let trace = &document.trace;
     let is_whole = |probability: &[f64]| !probability.is_empty() && probability.len() == trace.prior.odds_factors.len();
@@ -63,7 +63,7 @@ fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
     lines
 }
 
-/// The names that move and those that do not, in numbers.
+/// Finding: the names that depend on the odds and those that do not, with numbers.
 fn finding(lines: &[OddsLine], named_from: f64) -> String {
     let joined = |lines: &[&OddsLine]| lines.iter().map(|line| line.name.as_str()).collect::<Vec<_>>().join(", ");
     let lowest = |line: &OddsLine| line.ends()[0];
@@ -71,7 +71,7 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
     let (safe, weak): (Vec<&OddsLine>, Vec<&OddsLine>) = named.into_iter().partition(|line| lowest(line) >= named_from);
     let mut parts = Vec::new();
     if !safe.is_empty() {
-        // Rounded down: no probability is below what is said.
+        // Rounded down, so that no probability is below the stated one.
         let least = (1e3 * safe.iter().map(|line| lowest(line)).fold(1.0, f64::min)).floor() / 1e3;
         parts.push(format!("{} at {} or more", joined(&safe), fixed(least, 3)));
     }
@@ -89,7 +89,7 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
     parts.join("; ")
 }
 
-/// The named effects that fewer odds leave without a name, in a sentence; `None` if there are none.
+/// Sentence on the named effects that would not be named at lower odds; `None` if there are none.
 pub fn sentence(document: &TraceDocument) -> Option<String> {
     let prior = &document.trace.prior;
     unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
@@ -109,7 +109,7 @@ fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<Stri
     })
 }
 
-/// The figure; `None` if the document does not hold the probabilities.
+/// Figure of the probabilities over the factor of the odds; `None` if the document does not hold them.
 pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let prior = &document.trace.prior;
     let lines = lines(document);

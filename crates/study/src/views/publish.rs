@@ -1,4 +1,4 @@
-//! Everything that is published of a finished study: tables, figures, the page, and what goes on the screen.
+//! Published output of a finished study: tables, figures, the page, and the text on the screen.
 
 use std::io::Write as _;
 
@@ -20,7 +20,7 @@ use crate::documents::{self, answers::StudyAnswer};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
-/// Makes the tables, the figures and `report.md` and `report.html` in a folder, and prints the tables.
+/// Writes the tables, the figures, `report.md` and `report.html` to a folder, and prints the tables.
 pub fn publish(
     stored: &StoredStudy,
     folder: &ResultFolder,
@@ -39,7 +39,7 @@ pub fn publish(
             };
             screen::say(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
         }
-        // Another program reads the table: nothing else may stand beside it.
+        // Another program reads the table: standard output has no other text.
         Format::Csv => screen::say(table(&summary, design).to_csv().trim_end()),
         Format::Json => screen::say_document(&document(stored, &summary, folder)?),
         format => {
@@ -52,7 +52,7 @@ pub fn publish(
     }
 }
 
-/// A line for every cell and method, for other programs: `summary.csv`.
+/// One row for every cell and method, for other programs: `summary.csv`.
 fn table(summary: &Summary, design: &Design) -> Table {
     match design.is_measured() {
         true => record_study::summary(&summary.records, design),
@@ -70,7 +70,7 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
     })
 }
 
-/// Makes the tables, the figures and `report.md` and `report.html` in a folder; returns what they are made from.
+/// Writes the tables, the figures, `report.md` and `report.html` to a folder; returns the data of the page.
 pub fn put(
     stored: &StoredStudy,
     folder: &ResultFolder,
@@ -120,7 +120,7 @@ pub fn put(
     }
     folder.write("summary.tex", for_paper(&summary, stored))?;
     let figures = study_figures::figures(stored, &summary, figures);
-    // The figure of an earlier scenario must not stand for this one.
+    // The key figure of an earlier scenario is removed, so that it is not taken for that of this one.
     if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
         for kind in ["svg", "png"] {
             let path = folder.path().join(format!("{KEY_FIGURE}.{kind}"));
@@ -132,7 +132,7 @@ pub fn put(
     Ok(summary)
 }
 
-/// `summary.tex`: the methods over all cells, and each beside the reference method on the same trials.
+/// `summary.tex`: the methods over all cells, and each against the reference method on the same trials.
 fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
     let overall = tables::for_paper(summary, stored).to_latex();
     match summary.pairs.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
@@ -143,16 +143,16 @@ fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
 
 const SUMMARY: &str = "summary.csv";
 
-/// Cells that are listed one by one for a person to read; more are in `summary.csv`.
+/// Maximum number of cells that are listed one by one for a person; more are in `summary.csv`.
 const MAX_LISTED_CELLS: usize = 500;
 
-/// Lines that are turned into text at a time.
+/// Number of rows that are converted to text at a time.
 const CHUNK_LINES: usize = 250;
 
-/// Pieces that are made in parallel.
+/// Number of chunks that are converted in parallel.
 const PARALLEL_CHUNKS: usize = 16;
 
-/// Writes a long table as CSV, some pieces at a time.
+/// Writes a long table as CSV, some chunks at a time.
 fn write_csv<T: Sync>(
     folder: &ResultFolder,
     name: &str,

@@ -1,5 +1,5 @@
-//! Figures of records that `study fit`, `study trace` and `study predict` have in common: a record with models of it
-//! over time, and the diagram of steady turns.
+//! Figures of records shared by `study fit`, `study trace` and `study predict`: a record and its models over time, and
+//! the diagram of steady turns.
 
 use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
@@ -9,10 +9,10 @@ use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
 
-/// A model of a record over time: the heading and its residual in degrees, the root mean square of this, and half the
-/// width of its 95 % band.
+/// Model of a record over time: the heading and its residual in degrees, the root mean square of the residual, and its
+/// 95 % band.
 pub struct ModelOverTime {
-    /// The model drawn.
+    /// Origin of the model, which sets colour and dash.
     pub origin: CurveOrigin,
     /// Replayed heading.
     pub heading: PlotCurve,
@@ -20,23 +20,23 @@ pub struct ModelOverTime {
     pub residual: PlotCurve,
     /// Root mean square of the residual, degrees.
     pub rms_deg: Option<f64>,
-    /// The lower and upper ends of the band about the heading and about no residual.
+    /// Lower and upper ends of the band about the heading, and about zero residual.
     pub band: Option<[[PlotCurve; 2]; 2]>,
 }
 
 /// Opacity of a band.
 const OPACITY: f64 = 0.2;
 
-/// The panel of a rudder.
+/// Panel of a rudder.
 pub fn rudder(name: &str, curve: PlotCurve, height: f64) -> (PanelRow, Vec<Layer>) {
     (PanelRow::zeroed(Ruler::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
 }
 
-/// The heading of a record with models of it, and what these leave: the layers of two panels.
+/// Layers of two panels: the heading of a record with its models, and their residuals.
 pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [Vec<Layer>; 2] {
     let mut upper = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
     let mut middle = Vec::new();
-    // A band that is wider than everything else is cut at the frame: it would flatten the record.
+    // A band wider than everything else is cut at the frame: it would flatten the record.
     let mut bands = Vec::new();
     for ModelOverTime { origin, heading, residual, rms_deg, band } in models {
         let (pen, colour) = (Pen::of(&origin), origin.look().colour);
@@ -67,10 +67,10 @@ pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOve
     Panels::over_time(rows)
 }
 
-/// Drawn ships whose steady curves are shown.
+/// Maximum number of sampled ships whose steady curves are plotted.
 const MAX_CURVES: usize = 40;
 
-/// `true` if the most probable of some ships is stable on a straight course.
+/// Sentence on the straight-course stability of the most probable of some ships.
 pub fn stability(curves: &[SteadyCurve]) -> String {
     match curves.first().and_then(SteadyCurve::instability) {
         Some(instability) => {
@@ -81,9 +81,8 @@ pub fn stability(curves: &[SteadyCurve]) -> String {
     }
 }
 
-/// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test: the branch on which a
-/// ship that is unstable on a straight course cannot stay dashed, the ships that may be meant just as well pale, over
-/// the field in which there are records.
+/// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test. The branch that is not
+/// stable on a straight course is dashed, other possible ships are pale, and the range of the records is shaded.
 pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let curve = |ship: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let place = |row: usize| match keep(row) {
@@ -99,13 +98,13 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     if let Some((first, others_drawn)) = curves.split_first() {
         let drawn = others_drawn.iter().take(MAX_CURVES).map(|ship| curve(ship, &|_| true));
         layers.extend(drawn.map(|ship| Layer::line("drawn ships", ship, Pen::pale()).within(0.4)));
-        // Where the rudder goes back while the yaw rate grows.
+        // Rows at which the rudder decreases while the yaw rate grows.
         let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
         let can_be_unstable = first.instability().is_some();
         let is_inside = |row: usize| can_be_unstable && falls(row) && row > 0 && falls(row - 1);
         let is_unstable = |row: usize| can_be_unstable && (falls(row) || (row > 0 && falls(row - 1)));
         let pen = Pen::new(HEADING).width(1.3);
-        // A white edge keeps the curve apart from the drawn ones.
+        // A white edge separates the curve from those of the sampled ships.
         layers.push(Layer::line("", curve(first, &|_| true), Pen::new(PAPER).width(2.4)));
         layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), pen));
         if can_be_unstable {

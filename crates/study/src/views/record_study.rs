@@ -1,4 +1,4 @@
-//! A finished study of measured records: its tables, its figure and its page.
+//! Output of a finished study of measured records: its tables, its figure and its page.
 
 use std::collections::HashSet;
 
@@ -24,16 +24,16 @@ use super::study_figures::{self, FigurePlace, StudyFigure};
 use super::{coverage_table, tables};
 use crate::options::FigureChoice;
 
-/// The rows as a table for people.
+/// Name of the table of all rows, for people.
 const RECORDS: &str = "records.csv";
 
-/// The parameters of the effects named.
+/// Name of the table of the parameters of named effects.
 const EFFECTS: &str = "effects.csv";
 
 /// Stem of the figure of errors on held-out records.
 const JUDGED: &str = "judged";
 
-/// A line for every cell and method, for a person.
+/// One row for every cell and method, for a person.
 pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["failed"]);
     for name in ["own error", "judged error"] {
@@ -57,7 +57,7 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     table
 }
 
-/// `summary.csv`: a line for every cell and method, for other programs.
+/// `summary.csv`: one row for every cell and method, for other programs.
 pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     let mut head = tables::head(design).counts(["fits", "failed"]);
     for name in ["own error [deg]", "judged error [deg]", "ratio to the first method", "ratio in 60 s"] {
@@ -77,7 +77,7 @@ pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     table
 }
 
-/// Every trial, with K and T of every fit.
+/// Table of every trial, with K and T of every fit.
 fn trials(rows: &[StudyRow], design: &Design) -> Table {
     let head = tables::head(design).texts(["fitted", "judge"]);
     let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
@@ -99,11 +99,11 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
     table
 }
 
-/// The parameters of the effects that every fit named, a line each.
+/// Table of the parameters of the effects that every fit named, one row each.
 fn effects(rows: &[StudyRow], design: &Design) -> Table {
     let head = tables::head(design).texts(["fitted", "effect", "parameter"]).numbers(["value", "sd"]);
     let mut table = Table::new(head);
-    // A fit has a row for each record that it is judged on.
+    // A fit has a row for each record on which it is validated.
     let mut fits = HashSet::new();
     for row in rows {
         let cell = &design.cells[row.cell as usize];
@@ -164,7 +164,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
 }
 
-/// An angle as it stands at a mark.
+/// Angle as it is written at a mark.
 fn degrees(value: f64) -> String {
     format!("{}°", significant(value, 2))
 }
@@ -206,7 +206,7 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
     format!("On records not fitted {first} → {method}: {}", errors.collect::<Vec<_>>().join(", "))
 }
 
-/// Text of the screen: question, table, coverage of predictions.
+/// Text on the screen: question, table, coverage of predictions.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
     let mut text = format!("{}: {}\n\n", stored.manifest.name, design.prose.question.trim());
@@ -218,7 +218,7 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     text
 }
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "records.md", escape = "none")]
 struct RecordsPage<'a> {
@@ -242,9 +242,9 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     Page::new(page.render(), page.figures)
 }
 
-/// Makes the tables, the figure and the page in a folder; returns what they are made from.
+/// Writes the tables, the figure and the page to a folder; returns the data of the page.
 ///
-/// Fails if rows are missing, and when something cannot be written.
+/// Fails if rows are missing, or if a file cannot be written.
 pub fn put(
     stored: &StoredStudy,
     folder: &ResultFolder,

@@ -1,4 +1,4 @@
-//! Estimates at each scale beside the joint estimate, as a sentence and as tables.
+//! Estimates at each scale compared with the joint estimate, as a sentence and as tables.
 
 use document::scales::{ComparedModel, ScalesEntry, Scaling};
 use report::number::{MISSING, fixed, uncertain};
@@ -9,7 +9,7 @@ use trial::Quantity;
 use super::method_table::estimate;
 use crate::scales::scale_name;
 
-/// Sentence on which terms of a model scale.
+/// Sentence on the terms of a model that scale.
 pub fn sentence(model: &ComparedModel) -> String {
     let symbols_of = |verdict: Scaling| -> Vec<&str> {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
@@ -29,7 +29,7 @@ pub fn sentence(model: &ComparedModel) -> String {
     parts.join("; ")
 }
 
-/// The table of one model.
+/// Table of one model.
 pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     let groups = scales.groups.iter();
     let groups = groups.map(|group| scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }));
@@ -50,7 +50,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     table
 }
 
-/// K' and T' with their intervals, one row for every name.
+/// Table of K' and T' with their intervals, one row for every name.
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
     let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval().texts(["sd"]);
     let mut table = Table::new(head.numbers(["T′"]).interval().texts(["sd"]));

@@ -1,5 +1,5 @@
-//! From the residual of the base to that of the model, one row per effect: residual before it, the part it explains,
-//! residual after it.
+//! Steps from the residual of the base to that of the model, one row per effect: residual before it, the part it
+//! explains, residual after it.
 
 use document::names;
 use document::trace::{StairEntry, TraceDocument};
@@ -20,7 +20,7 @@ pub fn sentence(steps: &[StairEntry]) -> String {
     steps.iter().map(step_words).collect::<Vec<_>>().join(" → ")
 }
 
-/// The figure; `None` if the model adds nothing to the base.
+/// Figure of the steps; `None` if the model adds no effect to the base.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let steps = &document.staircase;
     let [times, residuals] = &curves.staircase;

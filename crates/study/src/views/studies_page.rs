@@ -1,5 +1,5 @@
-//! One page over several finished studies, each with its question, its answer in a sentence and the figure that stands
-//! for it. Made from their manifests and figures, so it needs no rows.
+//! Page over several finished studies, each with its question, its finding and its key figure. It is made from their
+//! manifests and figures, without their rows.
 
 use std::path::{Path, PathBuf};
 
@@ -25,15 +25,15 @@ const MAX_PAGE_BYTES: u64 = 1 << 26;
 
 /// Section of a study.
 struct Section {
-    /// Name of its folder.
+    /// Name of the folder.
     name: String,
-    /// Path of its folder, relative to the page.
+    /// Path of the folder, relative to the page.
     folder: String,
     /// Question of the study.
     question: String,
     /// Finding of the study.
     finding: String,
-    /// File of the figure that stands for it.
+    /// File of the key figure.
     figure: Option<String>,
 }
 
@@ -43,7 +43,7 @@ struct StudiesPage {
     sections: Vec<Section>,
 }
 
-/// Fails if a folder is not that of a study, and where a page of somebody else lies in the place of this one.
+/// Fails if a folder is not that of a study, or if the page would replace a file that this program did not make.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
         let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
@@ -59,7 +59,7 @@ pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
 
 /// Writes the page over studies into a folder; returns its path.
 ///
-/// Fails if [`is_possible`] does, when a figure that a scenario names is not there, and when it cannot be written.
+/// Fails if [`is_possible`] does, if a figure named by a scenario is missing, or if the page cannot be written.
 pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Failure> {
     is_possible(studies, target.path())?;
     let place = target.path().canonicalize().on("find", target.path())?;
@@ -81,7 +81,7 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
     };
     let whole = folder.canonicalize().on("find", folder)?;
     Ok(Section {
-        // --out may have made another name of the folder than that of the scenario.
+        // With --out the folder may have a name other than that of the scenario.
         name: whole.file_name().map_or(manifest.name, |name| name.to_string_lossy().into_owned()),
         folder: way(place, &whole),
         question: words.question.trim().to_owned(),
@@ -90,7 +90,7 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
     })
 }
 
-/// The way from one folder to another, as a link has it.
+/// Relative path from one folder to another, as in a link.
 fn way(from: &Path, to: &Path) -> String {
     let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let up = from.components().skip(shared).map(|_| "..".to_owned());
@@ -99,7 +99,7 @@ fn way(from: &Path, to: &Path) -> String {
     if parts.is_empty() { ".".to_owned() } else { parts.join("/") }
 }
 
-/// File of the figure that a scenario names.
+/// File of the figure that a scenario names. Fails if it is missing.
 fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     let files = [KEY_FIGURE, stem].map(|stem| format!("{stem}.png"));
     if let Some(file) = files.into_iter().find(|file| folder.join(file).is_file()) {

@@ -1,4 +1,4 @@
-//! The figures of a finished study, their findings and their places in the page.
+//! Figures of a finished study, their findings and their places in the page.
 
 use campaign::scenario::name::slug;
 use campaign::stored_figures::{
@@ -26,14 +26,14 @@ use crate::options::FigureChoice;
 use crate::records::names;
 use crate::screen;
 
-/// Where a figure stands in the page.
+/// Place of a figure in the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigurePlace {
     /// At the top: the key figure of the study.
     Key,
     /// With the first trial of a cell.
     Showcase(usize),
-    /// With what traces named.
+    /// With the effects named by traces.
     Traces,
     /// With all trials.
     AllTrials,
@@ -44,19 +44,19 @@ pub enum FigurePlace {
 /// A figure and its place.
 pub type StudyFigure = (FigurePlace, PageFigure);
 
-/// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
-/// Warns of a name that no figure has.
+/// Figures of a study in the order of the report, the key figure first if the scenario names one. Warns of a name that
+/// no figure has.
 pub fn figures(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
     chosen(|| all(stored, summary), &stored.design, choice)
 }
 
-/// The figures of a study that are made, the key figure first.
+/// Figures of a study that are made, the key figure first.
 pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: FigureChoice) -> Vec<StudyFigure> {
     if choice == FigureChoice::None {
         return Vec::new();
     }
     let (output, mut figures) = (&design.prose.output, all());
-    // Two titles may make one slug.
+    // Two titles may give the same slug.
     let stems = names(figures.iter().map(|(_, figure)| &figure.stem));
     figures.iter_mut().zip(&stems).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
     let warn = |key: &str, name: &str| {
@@ -90,7 +90,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
     key.into_iter().chain(figures).collect()
 }
 
-/// All figures there are.
+/// All available figures.
 fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     let mut figures = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
@@ -102,7 +102,7 @@ fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     figures
 }
 
-/// Maximum number of cells of a study with traces for which errors of K and T are drawn.
+/// Maximum number of cells of a study with traces for which errors of K and T are plotted.
 const MAX_TRACED_CELLS: usize = 24;
 
 /// Summaries of one of several traces: the first that the scenario highlights, else the first.
@@ -113,7 +113,7 @@ pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
     summary.tracing.iter().filter(|line| line.method == method).cloned().collect()
 }
 
-/// A figure with the finding read from its data as title.
+/// Figure titled with the finding from its data.
 fn under_its_finding(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> PageFigure {
     let plot = plot.into();
     PageFigure::new(stem, capital(&findings::of_chart(&plot)), caption, plot)
@@ -129,10 +129,10 @@ fn stem_of(stem: &str, part: &str) -> String {
     if part.is_empty() { stem.to_owned() } else { format!("{stem}-{}", slug(part)) }
 }
 
-/// Figures about what traces named.
+/// Figures of the effects named in a study: confusion, power, reliability, rules.
 fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
-    // Of several traces one is drawn: the others are in the tables.
+    // Of several traces only one is plotted; the others are in the tables.
     let lines = one_trace(design, summary);
     let method = lines.first().map_or(0, |line| line.method);
     let whose = if has_several(design) { here(&design.methods[method].label) } else { String::new() };
@@ -190,7 +190,7 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     rules.into_iter().chain(false_names).chain(outcomes).chain(confusions).chain(power).chain(reliability).collect()
 }
 
-/// Figures of errors over the axes; none for a study with traces in many cells, which would need a figure each.
+/// Figures of errors over the axes; none for a study with traces in many cells, which would need one figure each.
 fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
@@ -207,7 +207,7 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     figures
 }
 
-/// Coverage of prediction intervals.
+/// Figure of the coverage of prediction intervals.
 pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
     let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the \
         width of the interval. \
@@ -239,7 +239,7 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
         let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four \
             robust standard deviations are drawn at that distance)";
-        // Trials with a bound each have none in common.
+        // If trials have separate bounds, there is no common one.
         let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
         let (stem, place) = (stem_of("scatter", &name(cell)), here(&name(cell)));
         figures.push(under_its_finding(stem, format!("{caption}{bound}.{place}"), data));
@@ -293,7 +293,7 @@ fn rms(curve: &PlotCurve) -> String {
     format!("{}° (rms)", significant(f64::sqrt(square / rows), 2))
 }
 
-/// Finding: range of the largest yaw accelerations.
+/// Finding: range of the maximum yaw accelerations.
 fn accelerations(data: &DerivativeCurves) -> String {
     let largest = |curve: &MotionCurves| {
         let name = curve.name.clone().unwrap_or_else(|| curve.origin.label().to_owned());

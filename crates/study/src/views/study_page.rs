@@ -16,7 +16,7 @@ use super::{blind_spots_table, coverage_table, outcomes, tables, tracing_table};
 /// Maximum number of cells and failures on the screen; the files have all.
 const MAX_SHOWN_CELLS: usize = 12;
 
-/// Text of the screen: the first trial of every cell in detail, all trials in brief, failures with their reasons.
+/// Text on the screen: the first trial of every cell in detail, all trials in brief, failures with their reasons.
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let StoredStudy { manifest, design, showcases, .. } = stored;
     let mut text = format!("{}: {}\n\n", manifest.name, design.prose.question.trim());
@@ -50,7 +50,7 @@ fn title<'a>(showcase: &'a Showcase, otherwise: &'a str) -> &'a str {
     if showcase.title.is_empty() { otherwise } else { &showcase.title }
 }
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "study.md", escape = "none")]
 struct StudyPage<'a> {
@@ -60,9 +60,9 @@ struct StudyPage<'a> {
     named: Option<NamedEffects>,
     coverage: Option<Table>,
     criteria: Option<Table>,
-    /// All cells together, where there are several.
+    /// All cells together, if there are several.
     overall: Option<Table>,
-    /// The cells one by one, where a person may read them all.
+    /// The cells one by one, if they are few enough to read.
     brief: Option<Table>,
     cells: usize,
     /// Reference of the errors of K and T.
@@ -72,7 +72,7 @@ struct StudyPage<'a> {
     figures: PlacedFigures<FigurePlace>,
 }
 
-/// The first trial of a cell in detail.
+/// First trial of a cell in detail.
 struct FirstTrial<'a> {
     title: &'a str,
     table: Table,
@@ -88,7 +88,7 @@ struct NamedEffects {
     cells: Table,
 }
 
-/// `report.md`; `brief` holds the cells one by one, where a person may read them all.
+/// Content of `report.md`; `brief` holds the cells one by one, if they are few enough to read.
 pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figures: Vec<StudyFigure>) -> Page {
     let StoredStudy { manifest, design, showcases, timings, .. } = stored;
     let figures = PlacedFigures(figures);

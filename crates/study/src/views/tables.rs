@@ -12,7 +12,7 @@ use campaign::store::StoredStudy;
 use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use document::method::MethodEntry;
 
-/// The table of a showcase: the methods, and below them the truth and the published values.
+/// Table of a showcase: the methods, and below them the true and the published values.
 pub fn showcase(showcase: &Showcase) -> Table {
     let entries: Vec<MethodEntry> = showcase.methods.iter().map(|shown| shown.entry.clone()).collect();
     let mut table = super::method_table::table(&entries, &[]);
@@ -26,7 +26,7 @@ pub fn showcase(showcase: &Showcase) -> Table {
     table
 }
 
-/// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
+/// Every statistic of methods in cells, for other programs: `summary.csv`. An interval is two columns.
 pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     let mut head = head(design).counts(["trials", "failed"]);
     for index in ["K", "T", "K/T"] {
@@ -54,7 +54,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     table
 }
 
-/// A figure of [`IndexErrors`]: its name, unit, and how to get it.
+/// Statistic of [`IndexErrors`]: its name, its unit, and its accessor.
 type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
 const ERRORS: [ErrorFigure; 15] = [
@@ -75,35 +75,35 @@ const ERRORS: [ErrorFigure; 15] = [
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
-/// One column for every axis, and the method.
+/// Columns of the axes, one each, and of the method.
 pub fn head(design: &Design) -> TableHead {
     head_of_cells(design).texts(["method"])
 }
 
-/// One column for every axis.
+/// Columns of the axes, one each.
 pub fn head_of_cells(design: &Design) -> TableHead {
     TableHead::default().texts(&design.axes)
 }
 
-/// A cell and a method, in the columns of [`head`].
+/// Labels of a cell and a method, in the columns of [`head`].
 pub fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     let labels = design.cells[cell].labels.iter().cloned();
     labels.chain([design.methods[method].label.clone()]).collect()
 }
 
-/// Columns of a figure and the ends of its interval behind those of `head`.
+/// Columns of a statistic and the ends of its interval, after those of `head`.
 fn with_ends(head: TableHead, name: &str, unit: &str) -> TableHead {
     let head = head.numbers(["", " lower 95", " upper 95"].map(|end| format!("{name}{end}")));
     if unit.is_empty() { head } else { head.unit(unit) }
 }
 
-/// A figure and the ends of its interval with the digits of a machine.
+/// Statistic and the ends of its interval with all digits.
 fn all_digits(figure: Option<Statistic>) -> [String; 3] {
     Statistic::flat(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
 }
 
-/// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over
-/// the bound, and the validation error where there is one.
+/// Statistics of methods in the width of a screen or a page: failures, median and rms errors with interval, coverage,
+/// spread over the bound, and the validation error if there is one.
 pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let records = || summary.methods.iter().map(|line| &line.record);
     let validated = records().any(|record| record.validation_rmse_deg.is_some());
@@ -150,7 +150,7 @@ pub fn relative_to(design: &Design) -> &'static str {
 /// Reference of the errors of K and T of first-order ships.
 const TRUTH: &str = "the truth";
 
-/// A table of errors, titled with their reference unless that is the truth alone.
+/// Table of errors, titled with their reference unless that is the truth alone.
 fn with_reference(table: Table, design: &Design) -> Table {
     match relative_to(design) {
         TRUTH => table,
@@ -158,7 +158,7 @@ fn with_reference(table: Table, design: &Design) -> Table {
     }
 }
 
-/// One row per method over all cells.
+/// Statistics over all cells, one row per method.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
     let mut head = TableHead::default().texts(["method"]).counts(["failed"]);
     for index in ["K", "T"] {
@@ -180,7 +180,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
     with_reference(table, design)
 }
 
-/// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
+/// Table of [`overall`] with caption and label for a paper: `summary.tex`.
 pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let scope = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
@@ -254,7 +254,7 @@ fn interval(figure: Option<Statistic>) -> String {
     number::interval(figure.and_then(|figure| figure.ci95))
 }
 
-/// Reasons of failed trials with their counts, one line a cell and method.
+/// Reasons of failed trials with their counts, one line per cell and method.
 pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
     let line = |cell: usize, method: usize, record: &Performance| {
         let reasons: Vec<String> =

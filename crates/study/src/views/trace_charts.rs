@@ -1,4 +1,4 @@
-//! Data of the figures about traces: rules against each other, the confusion matrix, power over the size of an effect.
+//! Data of the figures of traces: comparison of rules, the confusion matrix, power over the size of an effect.
 
 use document::names;
 use std::collections::BTreeSet;
@@ -18,11 +18,12 @@ use campaign::design::Design;
 use campaign::statistics::{Statistic, distinct, grouped, share};
 use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
 
-/// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
+/// Name of the row of ships without a missing effect, and of the column of trials in which no effect was named.
 const NOTHING: &str = "nothing";
 
-/// The confusion matrices with their names: a row is what the ships of one or more cells lack, one matrix for every
-/// combination of the other axes where the first decides what is missing, and one for ships that lack several effects.
+/// Confusion matrices with their names. A row is the missing effect of the ships of one or more cells. There is one
+/// matrix for every combination of the other axes if the first axis decides the missing effect, and one for ships that
+/// lack several effects.
 pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
     let other_labels = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
     let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
@@ -50,7 +51,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         missing => names::effects(missing, " + "),
     };
     let rows = grouped(lines.iter().copied(), name);
-    // Columns stand in the order of the rows, so that what is right runs down a diagonal.
+    // Columns are in the order of the rows, so that correct names are on the diagonal.
     let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
     let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
     let is_silent = lines.iter().any(|line| line.silent > 0 || line.missing.is_empty());
@@ -76,7 +77,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     CellMap {
         titles: [String::from("named by the trace"), String::from("missing")],
         columns: columns.iter().map(|id| names::effect(id)).collect(),
-        // No line ends within the count.
+        // No line break within the count.
         rows: rows.iter().map(|(name, lines)| format!("{name} (n\u{a0}=\u{a0}{})", trials(lines))).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells.collect())],
@@ -87,9 +88,9 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     }
 }
 
-/// Several traces against each other over all ships whose effects are known: trials in which exactly what is missing
-/// was named, of those whose ship lacks something, over trials in which something else was. Nothing for one trace, and
-/// where no ship lacks anything.
+/// Comparison of several traces over all ships whose effects are known: the share of trials with exact names, of ships
+/// that lack an effect, over the share of trials with a false name. `None` for one trace, or if no ship lacks an
+/// effect.
 pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
     let listed: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
     let rules = grouped(listed, |line| line.method);
@@ -107,8 +108,8 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
 }
 
-/// How often each of several traces named something of ships that lack nothing, with the bound that so few trials
-/// leave; nothing for one trace, and where a ship lacks something.
+/// Share of false names of several traces on ships without a missing effect, with the bound for this number of trials;
+/// `None` for one trace, or if a ship lacks an effect.
 pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let rules = grouped(lines, |line| line.method);
     if rules.len() < 2 || lines.iter().any(|line| !line.missing.is_empty()) {
@@ -120,7 +121,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         (design.methods[*method].label.as_str(), counts.map(|count| lines.iter().map(count).sum::<u64>()))
     };
     let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
-    // Rules that differ nowhere share the rows of what stands behind the comma of their labels.
+    // Rules with equal counts share the rows of the variants after the comma of their labels.
     let parts = rules.iter().filter_map(|(label, counts)| {
         let (kind, variant) = label.split_once(", ")?;
         Some((variant, kind, *counts))
@@ -155,7 +156,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     })
 }
 
-/// Rules as points: a line for what stands before the comma of their labels, and what stands behind it beside them.
+/// Rules as points: one line per kind before the comma of their labels, with the variants after it as words.
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
@@ -173,7 +174,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
             layers.push(Layer::line(*kind, level, pen.width(0.7)).within(1.0));
         }
         let (x, y): (Vec<f64>, Vec<f64>) = points().map(|(x, y, _)| (x, y)).unzip();
-        // The words before the last are those of all.
+        // The words before the last are the same for all.
         let labels = variants.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
         let labels = LayerKind::Words(colour, number % 2 == 0, labels.collect());
         layers.push(Layer::new(*kind, PlotCurve::new(x, y), labels));
@@ -184,25 +185,25 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
     Panels { note: Some(String::from("Best is top left. Bars: 95 % intervals.")), ..Panels::of(stack) }
 }
 
-/// Minimum expected likelihood ratio that is drawn.
+/// Minimum expected likelihood ratio that is plotted.
 const MIN_RATIO: f64 = 1.0;
 
-/// Points of a curve of theory.
+/// Number of points of a theoretical curve.
 const POINTS: usize = 80;
 
-/// Support from which an effect is named: even odds among a dozen candidates become nineteen to one.
+/// Support at which an effect is named: it turns even odds among a dozen candidates into nineteen to one.
 const NAMING_SUPPORT: f64 = 10.0;
 
-/// Rows of a usual record, whose logarithm every parameter pays.
+/// Rows of a typical record; every parameter has a penalty of their logarithm in 2 ln Λ.
 const TYPICAL_ROWS: f64 = 300.0;
 
-/// Numbers of parameters whose power is drawn.
+/// Numbers of parameters whose power is plotted.
 const PARAMETERS: [u32; 3] = [1, 2, 3];
 
-/// A measured share: where it is drawn, per cent, and its 95 % interval.
+/// Measured share: its abscissa, its value in per cent, and its 95 % interval.
 type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 
-/// Measured shares under their names beside curves of theory.
+/// Measured shares by name, with theoretical curves.
 fn shares(
     x: Ruler,
     y_title: &str,
@@ -225,14 +226,14 @@ fn shares(
     Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
-/// Maximum number of kinds of trial with a name each, and of series in a figure.
+/// Maximum number of named kinds of trial, and of series in a figure.
 const MAX_SERIES: usize = 6;
 
-/// Ranges a decade of the expected ratio is divided in where kinds of trial are many.
+/// Number of ranges per decade of the expected ratio if there are many kinds of trial.
 const RANGES_PER_DECADE: f64 = 3.0;
 
-/// Power over the expected likelihood ratio, for cells with one missing effect: each by its name where they are few,
-/// else all in a range of that ratio together. Nothing if every one is named in every trial.
+/// Power over the expected likelihood ratio, for cells with one missing effect: each by its name if they are few, else
+/// pooled over ranges of that ratio. `None` if every effect is named in every trial.
 pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
         line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
@@ -277,7 +278,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
 }
 
-/// Trials with one missing effect in which it was named, and all of these.
+/// Number of trials with one missing effect in which it was named, and of all such trials.
 pub fn single(lines: &[TraceSummary]) -> [u64; 2] {
     let single = || lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull());
     [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
@@ -293,11 +294,11 @@ pub fn kept(lines: &[TraceSummary]) -> String {
     format!("Of {effects} effects with a probability above {} %, {present} were there", 100.0 * CALIBRATION[place])
 }
 
-/// Effects from which a share is drawn as one of many.
+/// Minimum number of effects of a share that is plotted as reliable.
 const MANY: u64 = 30;
 
-/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` if no effect was
-/// ever there.
+/// Reliability of probabilities, for traces of ships whose effects are known: the share of present effects over the
+/// mean probability; `None` if no effect was present.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let point = |range: &CalibrationBin| {
         let share = share(range.present, range.effects)?.times(100.0);
@@ -314,7 +315,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
-/// Effects by their probability, over all cells.
+/// Bins of effects by their probability, over all cells.
 pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
     for line in lines {
@@ -340,7 +341,7 @@ mod tests {
     use super::*;
     use campaign::scenario::MethodName;
 
-    /// One trial of four has a false name, and one of the two ships that lack something is named exactly.
+    /// One trial of four has a false name, and one of the two ships that lack an effect is named exactly.
     #[test]
     fn rules_are_held_against_what_was_missing() {
         let name = |label: &str| MethodName { id: "trace".into(), label: label.into() };
@@ -360,11 +361,11 @@ mod tests {
         assert_eq!(thresholds.expect("thresholds"), &["0.5", "0.9"]);
         assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
         assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
-        // Of ships that lack nothing the bound is shown: Wilson's of 0 of 2.
+        // For ships without a missing effect the bound is shown: Wilson's of 0 of 2.
         let clean = false_names(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
         let text = |row: usize| clean.columns[0].rows[row][0].text.as_deref();
         assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
-        // Rules that differ nowhere have one row for each variant.
+        // Rules with equal counts have one row for each variant.
         let labels = ["bic, long", "posterior, long", "bic, short", "posterior, short"];
         let design = Design { methods: labels.map(name).into(), ..Design::default() };
         let lines: Vec<TraceSummary> = (0..4).map(|method| line(method, &[], 1, u64::from(method < 2))).collect();
@@ -372,7 +373,7 @@ mod tests {
         assert_eq!((&clean.names[..], clean.columns[0].rows.len()), (&[String::from("long"), "short".into()][..], 2));
     }
 
-    /// Few kinds of trial by their names, many by ranges; nothing if every effect is always named, or none is there.
+    /// Few kinds of trial by their names, many by ranges; none if every effect is always named, or if none is missing.
     #[test]
     fn power_is_drawn_where_something_is_missed() {
         let line = |cell: usize, complete| TraceSummary {

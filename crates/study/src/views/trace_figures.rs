@@ -1,6 +1,5 @@
 //! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
-//! records that were not fitted, the evidence, the innovations, the moment that the base lacks, and the residuals from
-//! several sides.
+//! held-out records, the evidence, the innovations, the moment that the base lacks, and plots of the residuals.
 
 use campaign::curves::{curve, degrees};
 use document::names;
@@ -24,10 +23,10 @@ use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
 use crate::documents::missing_moment::MissingMomentCurves;
 
-/// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
+/// Maximum ratio of the frequencies of spectral lines that are averaged into one.
 const LINE: f64 = 1.06;
 
-/// Every fitted record with the models before and after.
+/// Figures of every fitted record with the models before and after.
 pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let fitted = document.records.iter().zip(&curves.records).enumerate().filter(|(_, (entry, _))| !entry.held_out);
@@ -41,7 +40,7 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
     fitted.zip(&document.trace.error.identification).map(figure).collect()
 }
 
-/// The innovations of every fitted record.
+/// Figures of the innovations of every fitted record.
 pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let figure = |(number, record): (usize, &TracedRecord)| {
@@ -54,7 +53,7 @@ pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFi
     curves.records.iter().enumerate().filter_map(figure).collect()
 }
 
-/// The moment that the base lacks on every fitted record.
+/// Figures of the moment that the base lacks on every fitted record.
 pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let figure = |(entry, tables): (&MissingMomentEntry, _)| {
@@ -71,7 +70,7 @@ pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
     document.missing_moment.iter().zip(&curves.moments).map(figure).collect()
 }
 
-/// The residuals of fitted records: held-out ones are judged, not studied.
+/// Figures of the residuals of fitted records; held-out ones serve for validation only.
 pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let mut figures = Vec::new();
@@ -91,17 +90,17 @@ pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
     figures
 }
 
-/// The replays of a record before and after.
+/// Replays of a record by the models before and after.
 pub fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
     let [before, after] = &record.replays;
     [(CurveOrigin::Before, before), (CurveOrigin::After, after)]
 }
 
-/// The models before and after of a record over time, the latter with its band; `rms` are their errors, degrees, where
-/// they are to be said.
+/// Models before and after of a record over time, the model after with its band; `rms` are their errors, degrees, if
+/// they are to be shown.
 pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<ModelOverTime> {
     let after = &record.replays[1];
-    // The ends of the band about some headings.
+    // Ends of the band about given headings.
     let about = |band: &[f64], middle: &dyn Fn(usize) -> f64| {
         [-1.0, 1.0].map(|side| {
             let end = |(row, half): (usize, &f64)| middle(row) + side * half;
@@ -134,13 +133,13 @@ pub fn rms<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> [f64; 2] {
     models.map(|model| (all.clone().map(|errors| model(errors).heading_rmse_deg.powi(2)).sum::<f64>() / count).sqrt())
 }
 
-/// The ratio of the heading errors of some records, after over before.
+/// Ratio of the heading errors of some records, after to before.
 pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
     let [before, after] = rms(all);
     after / before
 }
 
-/// ΔBIC beyond which a bar is cut, as many times the median of all.
+/// Maximum length of a bar of ΔBIC, in medians of all bars.
 const MAX_BAR_MEDIANS: f64 = 30.0;
 
 fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
@@ -154,7 +153,7 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow })
 }
 
-/// The effects that are named with their probabilities.
+/// Names of the effects with their probabilities.
 fn named_effects(trace: &Document) -> String {
     let name = |effect: &EffectEntry| format!("{} (p = {})", names::effect(&effect.id), fixed(effect.probability, 3));
     let named: Vec<String> = trace.effects.iter().map(name).collect();
@@ -165,8 +164,7 @@ fn named_effects(trace: &Document) -> String {
     }
 }
 
-/// Every effect with its probability and ΔBIC: the named ones first, then the others
-/// by their probability.
+/// Figure of every effect with its probability and ΔBIC: the named effects first, then the others by their probability.
 pub fn evidence(document: &TraceDocument) -> PageFigure {
     let trace = &document.trace;
     let single = |id: &str| trace.candidates.iter().find(|entry| entry.id == id).map(|entry| entry.probability);
@@ -213,7 +211,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     PageFigure::new("evidence", named_effects(trace), caption, data)
 }
 
-/// The residual before and after from several sides.
+/// Plots of the residual before and after.
 fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
@@ -245,7 +243,7 @@ fn residual(record: &TracedRecord) -> Panels {
     Panels { stacks, ..Panels::default() }
 }
 
-/// Points of a cloud, not more than a figure can show.
+/// Points of a cloud, thinned to what a figure can show.
 fn thinned(x: Vec<f64>, y: Vec<f64>) -> PlotCurve {
     let step = x.len().div_ceil(1500).max(1);
     let every = |values: Vec<f64>| values.into_iter().step_by(step).collect::<Vec<f64>>();

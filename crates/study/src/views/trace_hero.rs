@@ -1,5 +1,5 @@
-//! The figure that says what a trace found: the first fitted record and one that was held out, each with the models
-//! before and after, and what these leave of the heading.
+//! Key figure of a trace: the first fitted record and one held-out record, each with the models before and after and
+//! their heading residuals.
 
 use campaign::curves::curve;
 use document::names;
@@ -12,10 +12,10 @@ use super::record_figures::heading_and_residual;
 use super::trace_figures::{models_over_time, ratio};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
-/// Names in a title at most.
+/// Maximum number of names in a title.
 const MAX_NAMES: usize = 3;
 
-/// The finding: what is missing, and both ratios.
+/// Finding: the missing effects, and the error ratios of fitted and held-out records.
 fn finding(document: &TraceDocument) -> String {
     let mut ids: Vec<String> = document.trace.effects.iter().map(|effect| names::effect(&effect.id)).collect();
     ids.dedup();
@@ -39,13 +39,13 @@ fn finding(document: &TraceDocument) -> String {
     )
 }
 
-/// Number of the held-out record whose ratio is nearest to that of all together, which the title says.
+/// Number of the held-out record whose ratio is nearest to the pooled one, which is in the title.
 fn nearest(held: &[BeforeAfter]) -> Option<usize> {
     let off = |number: &usize| (ratio(held[*number..=*number].iter()) / ratio(held.iter())).ln().abs();
     (0..held.len()).min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// Heading and residual of a record, under what it is.
+/// Heading and residual of a record, headed by its role and name.
 fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role: &str) -> Stack {
     let name = record.trial.title();
     let trial = &record.trial;

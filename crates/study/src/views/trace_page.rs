@@ -58,13 +58,13 @@ pub fn around_table(document: &TraceDocument) -> [String; 2] {
     [before, behind]
 }
 
-/// Errors on all records.
+/// Table of errors on all records.
 pub fn all_errors(document: &TraceDocument) -> Table {
     let (fitted, judged) = document.errors();
     tables::errors(&[fitted, judged].concat())
 }
 
-/// Sentence for every effect given as a formula, with `mark` around its text.
+/// Sentence on every effect given as a formula, with `mark` around its text.
 fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
     let typed = document.trace.candidates.iter().filter_map(|candidate| Some((candidate, candidate.sides.as_ref()?)));
     typed.map(move |(candidate, sides)| {
@@ -76,7 +76,8 @@ fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String
 /// Minimum departure of a hull coefficient that is reported, in standard deviations.
 const MIN_DEPARTURE: f64 = 2.0;
 
-/// Maximum departure of a coefficient from its prior, in the hull made from the ship's dimensions, else in the first.
+/// Coefficient with the maximum departure from its prior, in the hull made from the ship's dimensions, else in the
+/// first.
 fn odd(document: &TraceDocument) -> String {
     let hulls = &document.ship.hulls;
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };
@@ -91,7 +92,7 @@ fn odd(document: &TraceDocument) -> String {
     format!("\nhulls fitted: {}; in {}, {departure}", forms.join(", "), hull.form)
 }
 
-/// The noise in one sentence.
+/// Sentence on the noise.
 fn noise(document: &TraceDocument) -> String {
     let all = &document.trace.noise;
     let sizes = || all.iter().map(|noise_entry| noise_entry.heading_sd_deg);
@@ -107,7 +108,7 @@ fn noise(document: &TraceDocument) -> String {
     format!("heading {white}° (uncorrelated){beside}; {holds}")
 }
 
-/// A sentence for every record with readings that were left out.
+/// Sentence on every record with excluded readings.
 fn outliers(document: &TraceDocument) -> Vec<String> {
     let spoilt = document.trace.noise.iter().filter(|noise_entry| !noise_entry.outliers_s.is_empty());
     let sentence = |(file, times): (&String, &Vec<f64>)| {
@@ -119,7 +120,7 @@ fn outliers(document: &TraceDocument) -> Vec<String> {
     spoilt.map(|noise_entry| sentence((&noise_entry.file, &noise_entry.outliers_s))).collect()
 }
 
-/// A sentence for every parameter at an end of its range.
+/// Sentence on every parameter at an end of its range.
 fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     let sentence = |parameter: &ParameterEntry| {
         let only = parameter.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
@@ -128,7 +129,7 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     parameters.iter().filter(|parameter| parameter.at_bound).map(sentence).collect()
 }
 
-/// `report.md`.
+/// Template of `report.md`.
 #[derive(Template)]
 #[template(path = "trace.md", escape = "none")]
 struct TracePage<'a> {
@@ -136,7 +137,7 @@ struct TracePage<'a> {
     title: String,
     /// Ship, day and draughts of the fitted trials.
     particulars: Option<Table>,
-    /// The physics of the effects of the staircase, a sentence each.
+    /// Physics of the effects of the staircase, a sentence each.
     physics: Vec<String>,
     glance: Table,
     limits: Vec<String>,
@@ -147,13 +148,13 @@ struct TracePage<'a> {
     aliases: Table,
     model: String,
     prior: &'a PriorEntry,
-    /// Prior probabilities of an effect and of a moment of time, and the probability from which an effect is named.
+    /// Prior probabilities of an effect and of a moment of time, and the probability at which an effect is named.
     odds: [String; 3],
     figures: PlacedFigures<&'static str>,
 }
 
-/// `report.md` with its figures; `turns` are the steady turns of the model. The finding, the figure that shows it and
-/// what it is worth on other records come first; what they rest on is folded.
+/// Content of `report.md` with its figures; `turns` are the steady turns of the model. The finding, its figure and the
+/// errors on held-out records come first; their basis is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let (prior, overshoots) = (&document.trace.prior, overshoots::all(document, curves));
     let fitted = document.records.iter().filter(|record| !record.held_out);
@@ -178,7 +179,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     Page::new(page.render(), page.figures)
 }
 
-/// The figures by the places of the template.
+/// Figures by their places in the template.
 fn placed(
     document: &TraceDocument,
     curves: &TraceCurves,
@@ -212,7 +213,7 @@ fn placed(
     placed
 }
 
-/// Names of the fitted records, and what the first of them is where its name does not say it.
+/// Names of the fitted records, and the kind of the first if its name does not state it.
 fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
     let name = document.title();
     let zigzag = curves.records.first().and_then(|record| ZigZag::of(&record.trial).ok());
@@ -226,14 +227,14 @@ fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
     format!("{name}{manoeuvre}{ship}")
 }
 
-/// The physics of the effects of the staircase, a sentence each.
+/// Physics of the effects of the staircase, a sentence each.
 fn physics(document: &TraceDocument) -> Vec<String> {
     let ids = document.staircase.iter().filter_map(|step| step.id.as_deref());
     let sentence = |id| Some(format!("**{}**: {}.", names::effect(id), names::physics(id)?));
     distinct(ids).into_iter().filter_map(sentence).collect()
 }
 
-/// Errors of the heading and of the overshoots without and with the effects, on fitted records and on others.
+/// Errors of the heading and of the overshoots without and with the effects, on fitted and on held-out records.
 fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let head =
         TableHead::default().texts(["records"]).numbers(["heading error by K and T", "with effects"]).unit("deg");
@@ -266,7 +267,7 @@ fn limits(document: &TraceDocument) -> Vec<String> {
     });
     let speed = document.particulars().map_or_else(
         || String::from("Approach speeds other than that of the records."),
-        |ship| format!("Approach speeds other than {} m/s.", ShortNumber(ship.speed)),
+        |ship| format!("Approach speeds other than {} m/s.", significant(ship.speed, 3)),
     );
     vec![
         format!("Rudder angles above {rudder}°, the largest in the fitted records.{}", worst.unwrap_or_default()),
@@ -275,7 +276,7 @@ fn limits(document: &TraceDocument) -> Vec<String> {
     ]
 }
 
-/// Sentences on every located moment that is not on the list of effects, with `mark` around a formula.
+/// Sentences on every localised moment that is not on the list of effects, with `mark` around a formula.
 fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
     document.trace.located.iter().map(move |moment| {
         let only = moment.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
@@ -295,7 +296,7 @@ fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String>
     })
 }
 
-/// Text under the table of parameters: equations, averages, prime values.
+/// Text below the table of parameters: equations, averages, prime values.
 fn model(document: &TraceDocument) -> String {
     let model = &document.trace.model;
     let equations: Vec<String> = model.equations.iter().map(|equation| format!("`{equation}`")).collect();
@@ -307,7 +308,7 @@ fn model(document: &TraceDocument) -> String {
     format!("{}. {averaged}{prime}", equations.join(", "))
 }
 
-/// Table of effects that these records cannot separate or cannot show.
+/// Table of effects that these records cannot separate or do not excite.
 fn aliases(document: &TraceDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["effect", "indistinguishable in these records from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {

@@ -12,7 +12,7 @@ use ship::angle::to_deg;
 use ship::vessel::prime::meaning;
 use trial::Quantity;
 
-/// A quantity in degrees where its unit holds radians, and that unit. Frequencies stay in radians.
+/// Quantity in degrees if its unit contains radians, and that unit. Frequencies stay in radians.
 fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String) {
     let degree = to_deg(1.0);
     let factor = match unit {
@@ -25,31 +25,31 @@ fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String
     (quantity.scaled(factor), unit.replace("rad", "deg"))
 }
 
-/// A parameter as text: its symbol, value and unit.
+/// Parameter as text: its symbol, value and unit.
 pub fn value(parameter: &ParameterEntry) -> String {
     let (quantity, unit) = in_degrees(&parameter.symbol, parameter.quantity, &parameter.unit);
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
     format!("{} = {}{unit}", parameter.symbol, uncertain(quantity.value, quantity.sd))
 }
 
-/// A symbol without dimension: "n₃′/T′" of "n₃/T".
+/// Dimensionless form of a symbol: "n₃′/T′" for "n₃/T".
 fn primed(symbol: &str) -> String {
     let part = |part: &str| if part == "1" { part.to_owned() } else { format!("{part}′") };
     symbol.split('/').map(part).collect::<Vec<String>>().join("/")
 }
 
-/// An effect with its form and the one record in which it acts.
+/// Effect with its form and the only record in which it acts.
 pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
     let only = only.map_or_else(String::new, |only| format!(", in {}", names::record(only)));
     names::effect_form(id, form) + &only
 }
 
-/// Several of them, joined.
+/// Several effects, joined by `between`.
 pub fn terms(all: &[TermEntry], between: &str) -> String {
     all.iter().map(|entry| term(&entry.id, &entry.form, entry.only.as_ref())).collect::<Vec<_>>().join(between)
 }
 
-/// Named effects with their parameters.
+/// Table of named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["parameters", "indistinguishable from"]));
@@ -67,7 +67,7 @@ pub fn effects(document: &TraceDocument) -> Table {
     table
 }
 
-/// Errors before and after on some records.
+/// Table of errors before and after on some records.
 pub fn errors(records: &[RecordErrors]) -> Table {
     let mut judged = records.iter().flat_map(|record| [&record.errors.before, &record.errors.after]);
     let with_moments = judged.any(|error| error.with_own_bias_deg.or(error.with_own_moment_deg).is_some());
@@ -99,12 +99,12 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     table
 }
 
-/// Error of replays that are restarted every so many seconds, deg.
+/// Heading error of replays restarted after every `length` seconds, deg.
 pub fn horizon(errors: &ErrorsEntry, length: f64) -> Option<f64> {
     *errors.horizon_rmse_deg.get(&format!("{length:.0}"))?
 }
 
-/// An interval, whatever its size.
+/// Interval as text, whatever its size.
 fn interval(ends: Option<[f64; 2]>) -> String {
     match ends {
         Some([lo, hi]) if lo.abs().max(hi.abs()) < 1e-3 => format!("[{}, {}]", significant(lo, 3), significant(hi, 3)),
@@ -115,7 +115,7 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 /// Minimum departure of a listed hull coefficient, in standard deviations.
 const MIN_DEPARTURE: f64 = 1.0;
 
-/// Hull coefficients that depart from their expected value, the farthest first.
+/// Hull coefficients that depart from their expected values, in descending order.
 pub fn hulls(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
@@ -140,7 +140,7 @@ pub fn hulls(document: &TraceDocument) -> Table {
     table
 }
 
-/// K, T, δ_r and every parameter of the most probable structure.
+/// Table of K, T, δ_r and every parameter of the most probable structure.
 pub fn parameters(document: &TraceDocument) -> Table {
     let model = &document.trace.model;
     let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
@@ -160,7 +160,7 @@ pub fn parameters(document: &TraceDocument) -> Table {
     push("K", (indices.K_per_s, "1/s".into()), prime.map(|prime| prime.K), [MISSING, ""]);
     push("T", (indices.T_s, "s".into()), prime.map(|prime| prime.T), [MISSING, ""]);
     push("δ_r", (indices.delta_r_deg, "deg".into()), None, [MISSING, ""]);
-    // The average above stands for the rudder bias of all records.
+    // The average above is the rudder bias of all records.
     for entry in model.parameters.iter().filter(|entry| entry.symbol != "δ_r" || entry.only.is_some()) {
         let shown = in_degrees(&entry.symbol, entry.quantity, &entry.unit);
         let tail = [entry.only.as_deref().unwrap_or(MISSING), if entry.at_bound { "at its bound" } else { "" }];
@@ -169,7 +169,7 @@ pub fn parameters(document: &TraceDocument) -> Table {
     table
 }
 
-/// Outcome, probability and ΔBIC of every candidate effect.
+/// Table with outcome, probability and ΔBIC of every candidate effect.
 pub fn candidates(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["candidate", "form", "outcome"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["p"]).numbers(["visibility"]));
@@ -201,7 +201,7 @@ pub fn candidates(document: &TraceDocument) -> Table {
 /// Minimum probability of a listed structure.
 const MIN_PROBABILITY: f64 = 1e-3;
 
-/// The structures with their probabilities.
+/// Table of the structures with their probabilities.
 pub fn structures(document: &TraceDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["structure"]).numbers(["probability"]).texts(["in the average"]));
@@ -212,7 +212,7 @@ pub fn structures(document: &TraceDocument) -> Table {
     table
 }
 
-/// The noise of every fitted record.
+/// Table of the noise of every fitted record.
 pub fn noise(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["record"]).numbers(["heading, white"]).unit("deg").texts(["beside it"]);
     let mut table = Table::new(head.texts(["headings left out at"]).unit("s"));

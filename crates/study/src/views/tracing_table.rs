@@ -1,4 +1,4 @@
-//! Tables of what traces said.
+//! Tables of the effects named by traces.
 
 use document::names;
 use std::collections::BTreeSet;
@@ -14,10 +14,10 @@ use campaign::statistics::{Statistic, share};
 use campaign::summary::{CALIBRATION, MIN_CLEAR_MARGIN, Performance, Summary, TraceSummary};
 use trace::Verdict;
 
-/// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
+/// Table of every cell with its shares, for people and, with all digits, for `tracing.csv`.
 ///
 /// Heading errors are medians over the trials, of the base (the reference method) and of the traced model, on the trial
-/// itself and on the validation manoeuvre. What the bands cover are means over the trials: of the headings of the
+/// itself and on the validation manoeuvre. Coverages of the bands are means over the trials: of the headings of the
 /// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let several = has_several(design);
@@ -64,7 +64,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     table
 }
 
-/// Effects by the probability that was given to them, over all cells.
+/// Table of effects by their posterior probability, over all cells.
 pub fn reliability(lines: &[TraceSummary]) -> Table {
     let head = TableHead::default().counts(["probability from", "to"]).unit("%").counts(["effects"]);
     let mut table = Table::new(head.numbers(["mean probability", "present", "low", "high"]).unit("%"));
@@ -90,7 +90,7 @@ pub fn has_several(design: &Design) -> bool {
     design.methods.iter().filter(|method| method.id == TRACE).count() > 1
 }
 
-/// All cells of one kind together, a line each of every trace: nothing missing, one effect, several, a hull.
+/// Table of all cells of one kind together, one row per trace: no missing effect, one effect, several, a hull.
 pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let several = has_several(design);
     let head = TableHead::default().texts(several.then_some("method")).texts(["cells"]).counts(["number", "trials"]);

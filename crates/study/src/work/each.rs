@@ -1,4 +1,4 @@
-//! Logs fitted one by one: each has a verdict, or an error.
+//! Logs fitted one by one: each has a verdict or an error.
 
 use std::path::{Path, PathBuf};
 
@@ -11,22 +11,22 @@ use super::fit::fit;
 use crate::options::ReadingOptions;
 use crate::records::read_all;
 
-/// Result of one log.
+/// Result for one log.
 pub struct LogFit {
-    /// The file as it was named.
+    /// Path of the file as it was given.
     pub file: PathBuf,
-    /// `true` if it is a record.
+    /// `true` if the log was read as a record.
     pub is_read: bool,
-    /// The answer to take.
+    /// Recommended estimate.
     pub verdict: Option<VerdictEntry>,
-    /// Warnings of the record and of that answer, the worst first.
+    /// Warnings of the record and of that estimate, the worst first.
     pub warnings: Vec<Warning>,
-    /// Why there is no answer.
+    /// Reason why there is no estimate.
     pub error: Option<Failure>,
 }
 
 impl LogFit {
-    /// A log identified alone by every method.
+    /// Result for a log that is identified alone by every method.
     pub fn of(file: &Path, methods: &[Named], reading: &ReadingOptions) -> Self {
         let mut warnings = Warnings::default();
         let read = read_all(&[file.to_owned()], reading, &mut warnings);

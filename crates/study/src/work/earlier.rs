@@ -19,17 +19,17 @@ use super::stored_answer::{StoredAnswer, ships_of, text_of};
 use crate::documents::prior;
 use crate::records::file_of;
 
-/// A model of earlier trials: its hulls.
+/// Hulls of a model of earlier trials.
 #[derive(Debug, Clone)]
 pub struct EarlierModel {
     file: String,
-    /// The records that are in it: their files by their SHA-256.
+    /// Records used in the model: their files by SHA-256.
     pub records: BTreeMap<String, String>,
     hulls: Vec<EarlierHull>,
 }
 
 impl EarlierModel {
-    /// The models of some files. Fails if one cannot be read, and as [`of_document`](Self::of_document) does.
+    /// Models of some files. Fails if a file cannot be read, or as [`of_document`](Self::of_document) does.
     pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
             let shown = file::display_path(path).display().to_string();
@@ -38,9 +38,9 @@ impl EarlierModel {
         paths.iter().map(read).collect()
     }
 
-    /// The model in the text of a `fit.json` or `trace.json`; `shown` is its name in messages.
+    /// Model in the text of a `fit.json` or `trace.json`; `shown` is its name in messages.
     ///
-    /// Fails if the text is no such document, and when it holds no hull.
+    /// Fails if the text is no such document, or if it holds no hull.
     pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
         let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
         let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
@@ -69,12 +69,12 @@ impl EarlierModel {
     }
 }
 
-/// The hulls of all models.
+/// Hulls of all models.
 pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
-/// Fails if a record is in two models, or in one and among those `seen`, given as files by SHA-256.
+/// Fails if a record is in two models, or in one model and among those `seen`, given as files by SHA-256.
 fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a str>) -> Result<(), Failure> {
     for EarlierModel { file: model, records, .. } in models {
         if let Some((file, other)) = records.iter().find_map(|(hash, file)| Some((file, seen.get(hash.as_str())?))) {
@@ -87,9 +87,9 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
     Ok(())
 }
 
-/// Checks models beside records; warnings where the ships sail at other Froude numbers.
+/// Check of models against records; warns if the ships sail at different Froude numbers.
 ///
-/// Fails if a record counts twice, and where models are given and no hull can be fitted to the records.
+/// Fails if a record counts twice, or if models are given and no hull can be fitted to the records.
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
@@ -101,7 +101,7 @@ pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, 
     Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
 
-/// Warnings where the ship of a model sails at another Froude number.
+/// Warnings for models whose ship sails at another Froude number.
 fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning> {
     let of_model = |model: &EarlierModel| {
         let earlier_ship = model.hulls[0].particulars;
@@ -118,29 +118,29 @@ fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning>
     models.iter().filter_map(of_model).collect()
 }
 
-/// A ship whose hulls were fitted without some models.
+/// Ship whose hulls were fitted without some models.
 pub struct LaterShip<'a> {
     /// Name of her model in messages.
     pub file: &'a str,
     /// The identified ship.
     pub ship: &'a IdentifiedShip,
-    /// The records that are in her model.
+    /// Records used in her model.
     pub records: &'a BTreeMap<String, String>,
 }
 
-/// A ship after earlier trials.
+/// Ship updated with earlier trials.
 pub struct ShipAfterTrials {
     /// The identified ship.
     pub ship: IdentifiedShip,
-    /// The models beside her.
+    /// Entry of the models used as priors.
     pub earlier: EarlierTrials,
     /// Warnings of a conflict, or of another Froude number.
     pub warnings: Vec<Warning>,
 }
 
-/// A ship whose hulls are updated with the models.
+/// Ship whose hulls are updated with the models.
 ///
-/// Fails if she has no hull, where a record would count twice, and where the models have no form of hers.
+/// Fails if she has no hull, if a record would count twice, or if the models have no hull of the same form.
 pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
@@ -166,7 +166,7 @@ pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAft
     Ok(ShipAfterTrials { ship, earlier, warnings })
 }
 
-/// Document entry of the models beside a ship after their check, the closest hull first.
+/// Document entry of the models used for a ship after their check, the closest hull first.
 fn earlier_trials(
     models: &[EarlierModel],
     ship: &HullParticulars,
@@ -188,7 +188,7 @@ fn earlier_trials(
     }
 }
 
-/// Document entry of the models beside the records; `None` without models.
+/// Document entry of the models used with the records; `None` without models.
 pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let is_member = |form: &str| facts.hulls.iter().any(|hull| hull.form == form);

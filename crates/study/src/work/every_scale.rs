@@ -12,14 +12,14 @@ use trial::{Quantity, Trial};
 use crate::records::file_of;
 use crate::scales::RescaledRecords;
 
-/// Methods in order of preference where one represents all: first the one whose errors include the uncertainty of the
+/// Methods in order of preference if one represents all. The first has errors that include the uncertainty of the
 /// noise.
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// A method with its label.
 pub type Named = (String, Box<dyn Identifier>);
 
-/// Every method on the records of every scale alone, against its answer for all; `None` if all have one scale.
+/// Estimates of every method at each scale alone and its joint estimate; `None` if all records have one scale.
 pub fn compared(
     methods: &[Named],
     answers: &[(MethodEntry, Option<Estimate>)],
@@ -41,7 +41,7 @@ pub fn compared(
     (groups.len() > 1).then(|| ScalesEntry::new(&groups, &files, first, all()))
 }
 
-/// K', T', the regular 1/T' and K'/T', and δ_r.
+/// Terms K', T', the regular 1/T' and K'/T', and δ_r.
 fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
     type Of = fn(&Estimate) -> Quantity;
     let all: [(&str, &str, [i32; 2], Of); 5] = [
@@ -66,7 +66,7 @@ pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Qu
     ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own: at_scales, difference_sd, verdict }
 }
 
-/// 1/T or K/T with their errors.
+/// 1/T or K/T with its standard deviation.
 fn parameter(estimate: &Estimate, place: usize) -> Quantity {
     let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return Quantity::bare(value) };

@@ -37,17 +37,17 @@ use campaign::statistics::grouped;
 
 /// Result of an identification.
 pub struct FitResult {
-    /// The records, brought to one scale.
+    /// Records, brought to one scale.
     pub together: RescaledRecords,
-    /// The answers of the methods.
+    /// Entries of the methods, with their estimates if they gave one.
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
-    /// `fit.json`.
+    /// Document of `fit.json`.
     pub document: FitDocument,
-    /// Median track of the turning circle that the answer to take predicts, north and east in ship lengths.
+    /// Median track of the turning circle predicted from the recommended estimate, north and east in ship lengths.
     circle_track: Option<Vec<[f64; 2]>>,
 }
 
-/// A track from above: east, and north upwards.
+/// Track as a curve: east as abscissa, north as ordinate.
 fn from_above(track: Vec<[f64; 2]>) -> PlotCurve {
     let (x, y): (Vec<f64>, Vec<f64>) = track.into_iter().map(|[north, east]| (east, north)).unzip();
     PlotCurve { x, y }
@@ -104,11 +104,11 @@ impl FitResult {
     }
 }
 
-/// Identifies the records together by every method and replays the answers on `validation`; the hull has
-/// `priors`. The document has `warnings` of the records and those of the fit.
+/// Identification of the records together by every method, with replays on `validation`; `priors` apply to the hull.
+/// The document has the `warnings` of the records and those of the fit.
 ///
-/// Fails if the records cannot be brought to one scale, when no method can identify them, and when there are priors
-/// and no hull can be fitted: that is wrong input, not a result.
+/// Fails if the records cannot be brought to one scale, if no method identifies them, or if there are priors and no
+/// hull can be fitted: that is wrong input, not a result.
 pub fn fit(
     [records, validation]: [&[Trial]; 2],
     methods: &[Named],
@@ -170,7 +170,7 @@ pub fn fit(
     Ok(FitResult { together, answers, document, circle_track: None })
 }
 
-/// The entry of a record, and the warning of one whose first overshoot cannot be read.
+/// Document entry of a record; adds a warning if its first overshoot cannot be read.
 fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
     let ((file, sha256), zigzag) = (file_of(trial), ZigZag::of(trial));
     warnings.extend(zigzag.as_ref().ok().and_then(|zigzag| late_begin(trial, zigzag)));
@@ -197,7 +197,7 @@ fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEnt
     }
 }
 
-/// The form of MSC/Circ.1053 with what the records measure; nothing if they measure nothing of it.
+/// Form of MSC/Circ.1053 with the quantities that the records measure; `None` if they measure none.
 fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
     let records: Vec<(Trial, Option<Current>)> =
         records.iter().map(|trial| turn::without_current(trial.clone(), None)).collect();
@@ -207,7 +207,7 @@ fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
     form.entries.iter().any(is_measured).then_some(form)
 }
 
-/// The entry of a zig-zag; criteria where length and speed are declared.
+/// Document entry of a zig-zag; with criteria if length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
     let criterion = |criterion: &imo::Criterion| CriterionEntry {
@@ -233,23 +233,23 @@ fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<W
     WarningSource::Method(entry.method.clone()).of(warnings).collect()
 }
 
-/// The warning of a ship of known draught that cannot be taken to another loading.
+/// Warning for a ship of known draught whose model cannot be converted to another loading.
 fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
     let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
     (has_form && speak_against_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
 }
 
-/// The warning of a record whose first overshoot cannot be read.
+/// Warning for a record whose first overshoot cannot be read.
 fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     let text = "the record begins at a reversal of the rudder, so the first overshoot is not read; begin it earlier if the log allows";
     zigzag.begins_at_reversal.then(|| Warning::new(WarningCode::LateBegin, source_of(trial), text))
 }
 
-/// The named methods of the project with their default settings, the best first, and the usual ones for no name; those
-/// that draw at random with this seed.
+/// Methods of the project by name with their default settings, the best first; without names the usual ones. Methods
+/// that use random numbers get this seed.
 ///
-/// Fails for a name that no method has.
+/// Fails if no method has such a name.
 pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
@@ -271,7 +271,7 @@ pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failur
     Ok(chosen.collect())
 }
 
-/// Methods with an answer and an interval, in order of preference: that of the verdict, then [`PREFERRED_METHODS`].
+/// Methods with an estimate and an interval, in order of preference: that of the verdict, then [`PREFERRED_METHODS`].
 fn preferred<'a>(
     methods: &'a [Named],
     entries: &[MethodEntry],
@@ -289,7 +289,7 @@ fn preferred<'a>(
     taken.map(|(_, method)| method.as_ref()).into_iter().chain(ranked).collect()
 }
 
-/// The message when no method gives an answer: every reason once.
+/// Failure if no method gives an estimate: every reason once.
 fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Failure {
     let reasons = grouped(entries, |entry| entry.reason.as_deref().unwrap_or("no answer"));
     let mut message = match (entries, reasons.as_slice()) {

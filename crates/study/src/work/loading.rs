@@ -1,5 +1,6 @@
 //! Models converted to another loading of the ship (`--load`): by the formulas of her particulars, and by her departure
-//! from them at the trials. Only hulls of the MMG form are converted, since no other depends on the draught.
+//! from these formulas at the trials. Only hulls of the MMG form are converted, since no other form depends on the
+//! draught.
 
 use std::path::Path;
 
@@ -13,15 +14,15 @@ use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
 use trial::{Sidecar, file};
 
-/// The form that is made from particulars.
+/// Hull form that is made from particulars.
 const FORM: &str = "mmg";
 
-/// Message where the records rule out a hull of this form.
+/// Message if the records rule out a hull of this form.
 pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
     times that of another hull, or its \
                                 replay fails";
 
-/// `true` if records speak against a hull of this form: where one is fitted, all are.
+/// `true` if records rule out a hull of this form: hulls were fitted, but none of this form.
 pub fn speak_against_form(hulls: &[IdentifiedHull]) -> bool {
     !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
@@ -29,19 +30,19 @@ pub fn speak_against_form(hulls: &[IdentifiedHull]) -> bool {
 /// Required particulars of the ship at her trials; the displacement can replace the last.
 const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 
-/// A loading, as a file describes it.
+/// Loading described in a file.
 #[derive(Debug)]
 pub struct DescribedLoading {
-    /// The file, as messages call it.
+    /// Name of the file in messages.
     pub file: String,
-    /// Particulars of the file; length and speed are 0 where it gives none.
+    /// Particulars in the file; length and speed are 0 if it gives none.
     given: HullParticulars,
 }
 
 impl DescribedLoading {
     /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
-    /// Fails as a sidecar does, and for a file without a draught.
+    /// Fails as a sidecar does, or if the file has no draught.
     pub fn of_file(path: &Path) -> Result<Self, Failure> {
         let given = Sidecar::load(path).map_err(Failure::input)?.conditions.hull;
         let loading = Self { file: file::display_path(path).display().to_string(), given };
@@ -51,7 +52,7 @@ impl DescribedLoading {
         }
     }
 
-    /// The mean draught, m.
+    /// Mean draught, m.
     pub fn draught(&self) -> f64 {
         self.given.draught.unwrap_or_default()
     }
@@ -60,13 +61,13 @@ impl DescribedLoading {
         Failure::about(&self.file, problem)
     }
 
-    /// The ship at this loading, with one hull, and her draught at the trials, m; `shown` is what messages call her
-    /// model.
+    /// Ship at this loading, with one hull, and her draught at the trials, m; `shown` is the name of her model in
+    /// messages.
     ///
-    /// Her hull is the one that is expected at this loading after the trials. Her steering gear is the same, yaw rates
-    /// grow with the approach speed, and the yaw response, which knows no draught, takes no part.
+    /// Her hull is the one expected at this loading, given the trials. Her steering gear is unchanged, yaw rates are
+    /// proportional to the approach speed, and the yaw response, which does not depend on draught, is not used.
     ///
-    /// Fails as [`only_hull`] does, for a loading of another ship, and for the one of the trials.
+    /// Fails as [`only_hull`] does, if the loading is of another ship, or if it is that of the trials.
     pub fn of_ship(
         &self,
         shown: &str,
@@ -110,9 +111,9 @@ impl DescribedLoading {
         }
     }
 
-    /// Particulars of the ship at this loading, from those `at_trials`. Values that the file does not give stay, except
-    /// the mass; revolutions stay in proportion to the speed. Unknown particulars of rudder and propeller are assumed
-    /// once for both loadings.
+    /// Particulars of the ship at this loading, from those `at_trials`. Values that the file does not give are kept,
+    /// except the mass; revolutions are proportional to the speed. Unknown particulars of rudder and propeller are
+    /// assumed once for both loadings.
     fn particulars(&self, shown: &str, at_trials: &HullParticulars) -> Result<HullParticulars, Failure> {
         let mut to = completed(at_trials).map_err(|error| Failure::about(shown, error))?;
         to.displacement = None;
@@ -151,10 +152,9 @@ impl DescribedLoading {
     }
 }
 
-/// The ship with no other hull than the one that can be taken to another loading; `shown` is what messages call her
-/// model.
+/// Ship with only the hull that can be converted to another loading; `shown` is the name of her model in messages.
 ///
-/// Fails if there is none, and where its draught, beam or block coefficient is not known.
+/// Fails if there is no such hull, or if its draught, beam or block coefficient is not known.
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
     if speak_against_form(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";
@@ -206,8 +206,8 @@ mod tests {
         HullForm::mmg(&priors(at).expect("a ship")).coefficients().to_vec()
     }
 
-    /// Her hull at a loading, and the warnings; at the trial it is half a standard deviation above the formulas, known
-    /// to a hundredth of one.
+    /// Hull at a loading, and the warnings. At the trial the coefficients are half a standard deviation above the
+    /// formulas, with an uncertainty of a hundredth of one.
     fn taken(given: HullParticulars) -> (IdentifiedHull, Vec<Warning>) {
         let terms = formulas(&at_trial());
         let entry = |i: usize, j: usize| if i == j { (0.01 * terms[i].sd).powi(2) } else { 0.0 };
@@ -231,8 +231,8 @@ mod tests {
         (ship.hulls.remove(0), warnings.ranked())
     }
 
-    /// The difference of the formulas and the departure of the ship from them, but of what depends on friction or
-    /// belongs to the trial; three times as uncertain. Rudder and propeller that nobody knows are those of one ship.
+    /// The change of the formulas and the departure of the ship from them, except coefficients that depend on friction
+    /// or belong to the trial, three times as uncertain. Unknown rudder and propeller are those of one ship.
     #[test]
     fn the_hull_is_that_of_the_formulas_with_her_departure() {
         let at_load = |ship: HullParticulars| {
@@ -256,7 +256,7 @@ mod tests {
         }
     }
 
-    /// What is not given stays, with a word; the displacement tells the block coefficient.
+    /// Particulars that are not given are kept, with a warning; the displacement determines the block coefficient.
     #[test]
     fn what_a_loading_does_not_say_stays() {
         let bare = HullParticulars { draught: Some(20.8), ..HullParticulars::default() };

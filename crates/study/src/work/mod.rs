@@ -1,4 +1,4 @@
-//! Computation of the commands, before anything is drawn, written or printed; also called by the Python package.
+//! Computation of the commands, before any output; also called by the Python package.
 
 pub mod each;
 pub mod earlier;

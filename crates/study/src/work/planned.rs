@@ -1,4 +1,4 @@
-//! Trials that could be run next with the fitted ship: standard manoeuvres, simulated without noise.
+//! Next trials that could be run with the fitted ship: standard manoeuvres, simulated without noise.
 
 use ::trace::Analysis;
 use ship::angle::{from_deg, to_deg};
@@ -8,16 +8,16 @@ use trial::Trial;
 /// Candidate zig-zags: rudder and heading, deg, first execute to starboard.
 const ZIGZAGS: [[f64; 2]; 6] = [[5.0, 5.0], [10.0, 10.0], [10.0, 20.0], [20.0, 10.0], [20.0, 20.0], [30.0, 30.0]];
 
-/// Executes of a planned zig-zag.
+/// Number of executes of a planned zig-zag.
 const EXECUTES: usize = 5;
 
-/// Rudder rates a steering gear can have, rad/s; outside, a recorded rudder says nothing about its gear.
+/// Range of rudder rates of a steering gear, deg/s; outside it a recorded rudder does not determine its gear.
 const GEAR_RATES_DEG_S: [f64; 2] = [1.0, 20.0];
 
 /// Maximum duration of a planned trial, in durations of the longest record.
 const MAX_DURATIONS: f64 = 3.0;
 
-/// Every manoeuvre that the fitted ship can be steered through, with the sampling and the rudder rate of the records.
+/// All manoeuvres that the fitted ship completes, with the sampling and the rudder rate of the records.
 pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
@@ -41,8 +41,8 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
         .collect()
 }
 
-/// The fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` if it does not
-/// come to the end of it.
+/// Fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` if it does not complete
+/// the manoeuvre.
 fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let mut simulation = Simulation::new(Vessel::from_response(analysis.ship()), manoeuvre);
@@ -54,7 +54,7 @@ fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Optio
     is_manoeuvre.then_some(trial)
 }
 
-/// Rate at which the rudder of a record moves: the upper end of its steps, without the few largest.
+/// Rudder rate of a record: the upper end of its steps, without the few largest.
 fn rudder_rate(record: &Trial) -> f64 {
     let (time, rudder) = (record.time(), record.rudder());
     let mut rates: Vec<f64> =

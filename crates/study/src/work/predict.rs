@@ -1,4 +1,4 @@
-//! Prediction: ships drawn from models, steered through manoeuvres and compared with records.
+//! Prediction: ships sampled from models, steered through manoeuvres and compared with records.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -30,23 +30,23 @@ use crate::records::{file_of, rudder_logged_late, source_of};
 /// Methods of fit.json in order of preference; others come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
 
-/// An identified ship with its file and method.
+/// Identified ship with its file and method.
 #[derive(Clone)]
 pub struct StoredModel {
     file: String,
     ship: IdentifiedShip,
     /// Method of identification.
     method: String,
-    /// The records that are in it: their files by their SHA-256.
+    /// Records used in the model: their files by SHA-256.
     records: BTreeMap<String, String>,
 }
 
-/// The files of some models.
+/// Files of some models.
 fn files(models: &[StoredModel]) -> Vec<String> {
     models.iter().map(|model| model.file.clone()).collect()
 }
 
-/// The ships of several models at a scale, which have to be alike.
+/// Mixture of the ships of several models at a scale. Fails if the ships are not alike.
 fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
     let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
     for model in models {
@@ -61,18 +61,19 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 }
 
 impl StoredModel {
-    /// The identified ship in a file, by the method and weather of the request.
+    /// Identified ship in a file, by the method and weather of the request.
     ///
-    /// Fails if it cannot be read, and as [`of_document`](Self::of_document) does.
+    /// Fails if it cannot be read, or as [`of_document`](Self::of_document) does.
     pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
         Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
-    /// What is known of the ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the
-    /// one whose intervals hold most. `calm` leaves the weather of the records out. `shown` is what messages call it.
+    /// Identified ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the one with
+    /// the highest coverage of its intervals. `calm` removes the weather of the records. `shown` is the name in
+    /// messages.
     ///
-    /// Fails if the text is no such document, and when it holds no answer with a covariance.
+    /// Fails if the text is no such document, or if it holds no estimate with a covariance.
     pub fn of_document(
         shown: &str,
         text: &str,
@@ -81,7 +82,7 @@ impl StoredModel {
         warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
         let StoredAnswer { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
-        // A trace has one answer.
+        // A trace has only one estimate.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         if asked.is_none() && ships.len() > 1 {
@@ -102,7 +103,7 @@ impl StoredModel {
         Ok(Self { ship, file: shown.to_owned(), method, records })
     }
 
-    /// The model updated with earlier trials that it does not contain, and a sentence on them.
+    /// Model updated with earlier trials that it does not contain, and a sentence on them.
     fn after(&self, earlier: &[EarlierModel], warnings: &mut Warnings) -> Result<(Self, String), Failure> {
         let later = LaterShip { file: &self.file, ship: &self.ship, records: &self.records };
         let after = with_earlier(earlier, later)?;
@@ -113,7 +114,7 @@ impl StoredModel {
         Ok((Self { ship: after.ship, records, ..self.clone() }, sentence))
     }
 
-    /// The model with its ship replaced by `make`, which gets the name of the file.
+    /// Model with its ship replaced by `make`, which gets the name of the file.
     fn with(
         &self,
         make: impl FnOnce(&str, &IdentifiedShip) -> Result<IdentifiedShip, Failure>,
@@ -124,21 +125,21 @@ impl StoredModel {
 
 /// Input of a prediction.
 pub struct PredictInput<'a> {
-    /// The ship; several models are a mixture, all alike.
+    /// Models of the ship; several, all alike, are a mixture.
     pub models: &'a [StoredModel],
-    /// Earlier trials of the ship, which the models have not seen.
+    /// Earlier trials of the ship, which are not in the models.
     pub earlier: &'a [EarlierModel],
-    /// The same ship in the loading of the records; empty if they need no correction.
+    /// Models of the same ship in the loading of the records; empty if no correction is needed.
     pub ballast: &'a [StoredModel],
-    /// Records that are held against their prediction.
+    /// Records that are compared with their prediction.
     pub records: Vec<Trial>,
-    /// Current removed from the tracks of their turns; `None` for the current of each track.
+    /// Current removed from the tracks of the turns of the records; `None` for the current estimated from each track.
     pub current: Option<Current>,
-    /// Conditions declared by a sidecar without records.
+    /// Conditions declared by a sidecar, without records.
     pub declared: Declared<'a>,
 }
 
-/// The manoeuvres that were requested; those of the IMO criteria where nothing is; those of the form beside them.
+/// Requested manoeuvres; those of the IMO criteria if none is requested; those of the form in addition.
 fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
         ([], true) => standard::imo_manoeuvres(),
@@ -150,17 +151,17 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     kinds
 }
 
-/// The ships of a mixture that steer manoeuvres.
+/// Ships of a mixture, to be steered through manoeuvres.
 struct SteeredShips<'a> {
     mixture: &'a ShipMixture,
-    /// Number of drawn ships.
+    /// Number of sampled ships.
     draws: usize,
     /// Name of the model in messages.
     file: &'a str,
 }
 
 impl SteeredShips<'_> {
-    /// The manoeuvres that the ships come to the end of, and why the last of the others is lost.
+    /// Predictions of the manoeuvres that the ships complete, and the last error among the incomplete ones.
     fn predictions(
         &self,
         kinds: &[Manoeuvre],
@@ -185,7 +186,7 @@ impl SteeredShips<'_> {
                     }));
                     predictions.push(prediction);
                 }
-                // One manoeuvre that the model cannot make says nothing of the others.
+                // One manoeuvre that the model does not complete does not affect the others.
                 Err(error @ PredictError::Lost { .. }) => {
                     warnings.extend([warning(format!("{error}; it is left out"))]);
                     lost = Some(error);
@@ -197,10 +198,10 @@ impl SteeredShips<'_> {
     }
 }
 
-/// Predicts the manoeuvres and replays the records.
+/// Predictions of the manoeuvres and replays of the records.
 ///
-/// Fails if a model cannot be brought to the scale or loading that is requested, when a record does not say how the
-/// ship began, and when hardly any drawn ship comes to the end of every manoeuvre.
+/// Fails if a model cannot be brought to the requested scale or loading, if a record does not determine the initial
+/// state of the ship, or if hardly any sampled ship completes any manoeuvre.
 pub fn predict(
     request: &PredictRequest,
     input: PredictInput,
@@ -268,7 +269,7 @@ fn after_earlier(
     Ok(updated.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
-/// The warning that a record is in one of the models.
+/// Warning that a record is in one of the models and gives no validation.
 fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> {
     let (_, sha256) = file_of(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
@@ -276,7 +277,7 @@ fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> 
     Some(Warning::new(WarningCode::Repetition, source_of(record), text))
 }
 
-/// Puts the form of MSC/Circ.1053 into a document that holds all else.
+/// Fills in the form of MSC/Circ.1053 of a document that is otherwise complete.
 fn fill_form(
     document: &mut PredictDocument,
     particulars: Option<Particulars>,
@@ -314,20 +315,20 @@ fn at_loading(
     Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }
 
-/// Models that records are compared with.
+/// Models for the comparison with records.
 struct ReplayedModels<'a> {
     /// Models at the loading of the prediction.
     full: &'a [StoredModel],
     /// Models in the condition of the records; empty if they need no correction.
     ballast: &'a [StoredModel],
-    /// The name of the loading.
+    /// Name of the loading.
     loading: &'a str,
     scale: Option<TargetScale>,
     draws: usize,
 }
 
 impl ReplayedModels<'_> {
-    /// A record beside its replay, and corrected to the loading where there is a model of its condition.
+    /// Comparison of a record with its replay, corrected to the loading if there is a model of the record's condition.
     fn beside(
         &self,
         record: &Trial,
@@ -372,7 +373,7 @@ impl ReplayedModels<'_> {
     }
 }
 
-/// The method whose answer is used.
+/// Method whose estimate is used.
 fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&str>) -> Result<String, Failure> {
     let methods: Vec<&str> = ships.keys().map(String::as_str).collect();
     if methods.is_empty() {

@@ -1,28 +1,28 @@
-//! The turning circle that the answer of a fit predicts: figures and median track of drawn ships.
+//! Turning circle predicted from the recommended estimate of a fit: characteristics and median track of sampled ships.
 
 use document::fit::{Belief, FitDocument, MedianEntry, PredictedCircleEntry};
 use predict::{Prediction, ShipMixture};
 use ship::angle::from_deg;
 use trial::{Manoeuvre, Side};
 
-/// Ships that are drawn.
+/// Number of sampled ships.
 const DRAWS: usize = 300;
 
-/// Rudder of the circle of IMO MSC.137(76), deg.
+/// Rudder of the turning circle of IMO MSC.137(76), deg.
 const RUDDER_DEG: f64 = 35.0;
 
-/// A predicted circle.
+/// Predicted turning circle.
 pub struct PredictedCircle {
-    /// Its figures.
+    /// Characteristics of the circle.
     pub entry: PredictedCircleEntry,
-    /// Its median track, north and east in ship lengths.
+    /// Median track of the circle, north and east in ship lengths.
     pub track: Vec<[f64; 2]>,
 }
 
 impl PredictedCircle {
-    /// The circle of the answer to take, with the rudder of the first recorded circle, else with 35° to starboard.
-    /// `None` if no K and T can be taken, where the records tell neither speed nor drift, and where the draws do not
-    /// tell its size.
+    /// Turning circle of the recommended estimate, with the rudder of the first recorded circle, else with 35° to
+    /// starboard. `None` if no K and T are accepted, if the records determine neither speed nor drift, or if the
+    /// samples do not determine its size.
     pub fn of(document: &FitDocument) -> Option<Self> {
         let verdict = document.verdict.as_ref().filter(|verdict| verdict.believe == Belief::Yes)?;
         let ship = document.ships.get(&verdict.method).filter(|ship| !ship.hulls.is_empty())?;
@@ -50,7 +50,7 @@ impl PredictedCircle {
     }
 }
 
-/// A figure in metres as lengths of the ship.
+/// Characteristic in metres, converted to ship lengths.
 fn lengths(prediction: &Prediction, figure: &str, length: f64) -> Option<MedianEntry> {
     let interval = prediction.figures.get(figure)?.interval;
     Some(MedianEntry { median: interval.median / length, ci90: interval.ci90.map(|end| end / length) })

@@ -1,4 +1,4 @@
-//! Simulated trials as records that other commands read, each with its truth.
+//! Simulated trials as records that other commands read, each with its true values.
 
 use campaign::answers::part_name;
 use campaign::engine;
@@ -11,12 +11,12 @@ use simulate::Simulated;
 use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
 
-/// Maximum number of records of one call; more are a study, which keeps them as rows.
+/// Maximum number of records of one call; more than these are a study, which keeps them as rows.
 const MAX_RECORDS: u64 = 100_000;
 
-/// The trials that are requested, in their order.
+/// Requested trials, in their order.
 ///
-/// Fails if no such cell or trial is there, and for too many.
+/// Fails if no such cell or trial exists, or if there are too many records.
 pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
@@ -58,21 +58,21 @@ pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>
     Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| Task { cell, replicate })).collect())
 }
 
-/// A simulated record as it is written.
+/// Files of a simulated record.
 pub struct RecordFiles {
-    /// Its name.
+    /// Name of the record.
     pub name: String,
     /// The record, as CSV.
     pub table: Vec<u8>,
-    /// Its sidecar, where the ship has a length or a calm is declared: the table does not hold them.
+    /// Its sidecar, if the ship has a length or a calm is declared, which the table does not hold.
     pub sidecar: Option<String>,
     /// Its true values, as JSON.
     pub truth: String,
 }
 
-/// The records of one trial; the first is called `name`, further ones of the same ship after it.
+/// Records of one trial; the first has the name `name`, further ones of the same ship are numbered.
 ///
-/// Fails if the trial cannot be made.
+/// Fails if the trial cannot be simulated.
 pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
         Failure::work(format!(

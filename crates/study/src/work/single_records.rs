@@ -14,7 +14,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Mean sizes of rudder and heading of a zig-zag.
+/// Mean amplitudes of rudder and heading of a zig-zag.
 fn amplitude(trial: &Trial) -> Option<Amplitude> {
     let zigzag = ZigZag::of(trial).ok()?;
     let base = zigzag.base_course.heading.value;
@@ -23,7 +23,7 @@ fn amplitude(trial: &Trial) -> Option<Amplitude> {
     Some(Amplitude { rudder_deg: to_deg(mean(rudders)?), heading_deg: to_deg(mean(peaks)?) })
 }
 
-/// A zig-zag among the records: itself, its name and its amplitude.
+/// Zig-zag among the records: the record, its name and its amplitude.
 struct RecordedZigZag<'a> {
     trial: &'a Trial,
     name: String,
@@ -39,11 +39,11 @@ impl RecordedZigZag<'_> {
     }
 }
 
-/// The zig-zags among some records, each with its amplitude.
+/// Zig-zags among some records, each with its amplitude.
 pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
 
 impl<'a> RecordedZigZags<'a> {
-    /// Reads the amplitude of every record that is a zig-zag.
+    /// Amplitude of every record that is a zig-zag.
     pub fn of(trials: &'a [Trial]) -> Self {
         let named = trials.iter().zip(names(trials.iter().map(Trial::name)));
         Self(
@@ -61,8 +61,8 @@ impl<'a> RecordedZigZags<'a> {
         })
     }
 
-    /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for
-    /// less than two zig-zags.
+    /// Estimates of every record alone by one method: the first that identifies all records, else the one that
+    /// identifies most; `None` for fewer than two estimates.
     pub fn alone(&self, methods: &[&dyn Identifier]) -> Option<SingleRecords> {
         let zigzags = &self.0;
         let mut best: Option<SingleRecords> = None;
@@ -84,8 +84,8 @@ impl<'a> RecordedZigZags<'a> {
 /// Significance level of the difference between records.
 const SIGNIFICANCE: f64 = 0.05;
 
-/// `true` if K and T of some records are the same: the sum of their squared distances from the weighted means, in
-/// standard deviations, is χ² of 2 (n − 1) degrees of freedom.
+/// `true` if K and T of some records agree: the sum of their squared distances from the weighted means, in standard
+/// deviations, is χ² with 2 (n − 1) degrees of freedom.
 fn agree(records: &[SingleRecord]) -> Option<bool> {
     let deviation = |pick: fn(&SingleRecord) -> Quantity| -> Option<f64> {
         let all = records.iter().map(|fit| Some((pick(fit).value, pick(fit).sd.filter(|sd| *sd > 0.0)?.powi(-2))));
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     /// Two values one standard deviation from their mean each, of K and of T: χ²₂ = 4, probability exp(−2) = 0.135; two
-    /// of them: χ²₂ = 16, exp(−8).
+    /// standard deviations: χ²₂ = 16, exp(−8).
     #[test]
     fn records_agree_as_far_as_chance_goes() {
         let record = |k: f64, t: f64, sd: Option<f64>| SingleRecord {

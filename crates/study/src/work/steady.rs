@@ -1,4 +1,4 @@
-//! The steady turns of a traced model, as the diagram of a spiral test shows them.
+//! Steady turns of a traced model, as in the diagram of a spiral test.
 
 use document::IdentifiedShip;
 use document::identified_ship::ValidityRange;
@@ -7,17 +7,17 @@ use predict::steady::SteadyCurve;
 use ship::angle::from_deg;
 use trial::Manoeuvre;
 
-/// Ships that are drawn.
+/// Number of sampled ships.
 const DRAWS: usize = 40;
 
 /// Maximum rudder as a multiple of the largest in the records, and its range, deg.
 const RUDDER_RATIO: f64 = 1.3;
 const RUDDER_RANGE_DEG: [f64; 2] = [10.0, 35.0];
 
-/// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in
-/// which the records show her; `None` if no steady turn is found.
+/// Steady turns of the possible responses of a ship in a calm, the most probable one first, and the range of motion
+/// covered by the records; `None` if no steady turn is found.
 pub fn of_ship(identified: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
-    // Those of the traced response, whatever a hull beside it would do.
+    // Steady turns of the traced response, not of a hull.
     let ship = IdentifiedShip { hulls: Vec::new(), ..identified.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_RANGE_DEG.map(from_deg);

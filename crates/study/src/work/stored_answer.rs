@@ -1,4 +1,4 @@
-//! The identified ships in a `fit.json` or `trace.json`.
+//! Identified ships in a `fit.json` or `trace.json`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,7 +11,7 @@ use document::trace::SCHEMA as TRACE_SCHEMA;
 use serde_json::Value;
 use trial::file;
 
-/// A stored model; the covariances of the longest mixtures have a hundredth of this size.
+/// A stored model; the covariances of the largest mixtures have a hundredth of this size.
 const MODEL: file::Kind = file::Kind { name: "a model", max_bytes: 1 << 26 };
 
 /// Expected documents, for messages.
@@ -19,25 +19,25 @@ const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// Content of a document.
 pub struct StoredAnswer {
-    /// The ships of every method of a fit with a covariance; that of a trace, alone, as [`TRACE`].
+    /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE`].
     pub ships: BTreeMap<String, IdentifiedShip>,
-    /// The method of a fit to take.
+    /// Method that the verdict of a fit recommends.
     pub verdict: Option<String>,
-    /// Why no K and T can be taken from the records of a fit, where that is its verdict.
+    /// Reason why no K and T are accepted from the records of a fit, if that is its verdict.
     pub disbelief: Option<String>,
-    /// The records that are in it, also by its own priors: their files by their SHA-256.
+    /// Records used in the document, including those of its own priors: their files by SHA-256.
     pub records: BTreeMap<String, String>,
 }
 
-/// The text of a model. Fails if it cannot be read.
+/// Text of a model. Fails if it cannot be read.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
     name::of_file(path)?;
     let shown = file::display_path(path).display().to_string();
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 
-/// What the text of a `fit.json` or `trace.json` holds, which messages call `shown`. Fails if it is no such document,
-/// and for one of another version.
+/// Content of the text of a `fit.json` or `trace.json`; `shown` is its name in messages. Fails if it is no such
+/// document, or if it has another version.
 pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     let refuse = |problem: String| Failure::about(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
@@ -69,7 +69,7 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     Ok(StoredAnswer { ships, verdict, disbelief, records: records_of(&value, records) })
 }
 
-/// The records that are in a document under `key`, and those of its priors: their files by their SHA-256.
+/// Records in a document under `key`, and those of its priors: their files by SHA-256.
 fn records_of(document: &Value, key: &str) -> BTreeMap<String, String> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let text = |value: &Value| value.as_str().filter(|text| !text.is_empty()).map(str::to_owned);

@@ -1,4 +1,4 @@
-//! Scale of a prediction, and the ships and records brought to it. Results for one length do not hold for another, so
+//! Scale of a prediction, and the ships and records brought to it. Results for one length are not valid for another, so
 //! differing scales are refused or reported.
 
 use campaign::failure::Failure;
@@ -20,7 +20,7 @@ pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
 #[derive(Clone, Copy)]
 pub struct TargetScale {
     length: f64,
-    /// At the same Froude number where it is `None`.
+    /// Approach speed; `None` for that of the same Froude number.
     speed: Option<f64>,
     is_asked: bool,
 }
@@ -30,10 +30,10 @@ impl TargetScale {
         Self { length, speed: Some(speed), is_asked: false }
     }
 
-    /// The scale of a prediction: the one that is requested, else that of the records, else that of the ship that a
-    /// sidecar declares. `None` is that of the model.
+    /// Scale of a prediction: the requested one, else that of the records, else that of the ship that a sidecar
+    /// declares. `None` for that of the model.
     ///
-    /// Fails for records of ships of several lengths.
+    /// Fails if the records are of ships of several lengths.
     pub fn of(asked: &ScaleOptions, records: &[Trial], declared: Declared) -> Result<Option<Self>, Failure> {
         if let Some(length) = asked.length_m {
             return Ok(Some(Self { length, speed: asked.speed(), is_asked: true }));
@@ -48,8 +48,8 @@ impl TargetScale {
         }
     }
 
-    /// The scale that a record is replayed at: its own, unless a ship of its length is requested. A speed that is not
-    /// given is that of Froude, not that of the record, which loses speed from its first rows on.
+    /// Scale at which a record is replayed: its own, unless a ship of its length is requested. Without a requested
+    /// speed it is that of equal Froude number, not that of the record, which loses speed from its first rows on.
     pub fn of_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
             (Some(ship), Some(asked)) if asked.is_asked && is_same_length(ship.length, asked.length) => scale,
@@ -58,7 +58,7 @@ impl TargetScale {
     }
 }
 
-/// Error for two files of ships of different scales.
+/// Failure for two files of ships of different scales.
 pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Particulars>); 2]) -> Failure {
     let ship_words = |ship: Option<Particulars>| match ship {
         Some(ship) => format!("{} m long at {} m/s", fixed(ship.length, 2), fixed(ship.speed, 2)),
@@ -69,17 +69,17 @@ pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Part
     Failure::about(other, format!("its ship is {of_other}, that of {first} {of_first}; {cure}"))
 }
 
-/// `true` if ships are of one length and Froude number, as those of earlier trials are compared.
+/// `true` if ships have equal length and Froude number, with the tolerances used for earlier trials.
 pub fn is_alike(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
     a.has_length_of(&b) && !differs_in_froude_number(&a, &b)
 }
 
-/// A ship at a scale; one whose scale is not known takes it as its own.
+/// Ship at a scale; a ship of unknown scale is assigned this scale.
 pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
     let Some(TargetScale { length, speed, is_asked }) = scale else { return Ok(ship.clone()) };
-    // The speed of a trial is read off its beginning and never quite that of another.
+    // The speed of a trial is estimated from its beginning and never quite equals that of another trial.
     let is_speed_of = |scale: Particulars, speed| match is_asked {
         true => speed == scale.speed,
         false => is_alike(scale, Particulars { speed, ..scale }),
@@ -93,7 +93,7 @@ pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Ide
     }
 }
 
-/// A record at the scale that its sidecar declares, where another one is requested: a model is replayed as a model.
+/// Record at the scale that its sidecar declares, if another one is requested: a model is replayed as a model.
 pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
     let is_other =
         |other: &Particulars| record.particulars().is_some_and(|given| !is_same_length(other.length, given.length));

@@ -1,5 +1,5 @@
-//! A trace: the analysis of the crate [`trace`](mod@::trace), what is known of the ship beside it, and the files that
-//! everything shown is made from.
+//! A trace: the analysis of the crate [`trace`](mod@::trace), the particulars of the ship, and the files from which all
+//! output is made.
 
 use ::trace::{Analysis, Innovations, Settings, TraceError, Watcher};
 use campaign::Observer;
@@ -24,15 +24,15 @@ use crate::records::{file_of, names, no_track, particulars, rudder_logged_late};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
-/// A trace before it is written: its document, and the tables of its curves under the names of their files.
+/// Trace before it is written: its document, and the tables of its curves by file name.
 pub struct TraceResult {
-    /// `trace.json`.
+    /// Document of `trace.json`.
     pub document: TraceDocument,
     tables: Vec<(String, String)>,
 }
 
 impl TraceResult {
-    /// The curves, as whoever reads the files has them.
+    /// Curves, as they are read back from the files.
     pub fn curves(&self) -> Result<TraceCurves, Failure> {
         TraceCurves::from_tables(&self.document, |name| {
             let table = self.tables.iter().find(|(file, _)| file == name).map(|(_, text)| text.clone());
@@ -40,14 +40,14 @@ impl TraceResult {
         })
     }
 
-    /// Writes document and tables; the text of the document. Fails if a file cannot be written.
+    /// Writes document and tables; returns the text of the document. Fails if a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
         let text = documents::keep(folder, TRACE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
     }
 }
 
-/// The person who waits for a trace. The search has no known length; the checks after it have, and can be done without.
+/// Progress and interruption of a trace. The search has no known length; the later checks have, and can be skipped.
 struct TraceWatch {
     busy: ProgressBar,
     terminal: Terminal,
@@ -75,13 +75,13 @@ impl Watcher for TraceWatch {
     }
 }
 
-/// Message of a trace interrupted during its checks.
+/// Message for a trace interrupted during its checks.
 pub const STOPPED: &str = "stopped before every record had been left out in turn; all other results are there";
 
-/// Analyses the records together; `others` are held out. The hull is fitted about what `priors` left.
+/// Analysis of the records together; `others` are held out. `priors` are the prior of the hull.
 ///
-/// Fails if the records cannot be brought to one scale, when the base cannot be fitted, when what is requested
-/// cannot be in the model, and when there are priors and no hull can be fitted.
+/// Fails if the records cannot be brought to one scale, if the base cannot be fitted, if a requested effect cannot be
+/// in the model, or if there are priors and no hull can be fitted.
 pub fn trace(
     [records, validation]: [&[Trial]; 2],
     settings: &Settings,
@@ -143,7 +143,7 @@ pub fn trace(
     Ok(TraceResult { document, tables })
 }
 
-/// The tables of the records and of their innovations under the names of their files.
+/// Tables of the records and of their innovations, by file name.
 fn tables(
     analysis: &Analysis,
     [fitted, held_out]: [&[Trial]; 2],
@@ -159,7 +159,7 @@ fn tables(
     tables.chain(innovations).collect()
 }
 
-/// The moments that the base lacks on the fitted records, and their tables under the names of their files.
+/// Moments that the base lacks on the fitted records, and their tables by file name.
 fn missing_moments(
     analysis: &Analysis,
     entries: &[RecordEntry],
@@ -179,7 +179,7 @@ fn missing_moments(
     (moments, tables)
 }
 
-/// Why there is no trace of some records.
+/// Failure for records that cannot be traced.
 fn refused(first: &Trial, error: &TraceError) -> Failure {
     let why = match error {
         TraceError::Base(_) | TraceError::Replay { .. } => {
@@ -216,13 +216,13 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
 
 /// Settings of the analysis of a request.
 ///
-/// Fails with the name of an effect that is not known.
+/// Fails with the name of an unknown effect.
 pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
     let hulls = !request.without_hull;
     Ok(Settings { rule: request.rule, selection: request.selection()?, hulls, ..Settings::default() })
 }
 
-/// The records of a request without the channels that are withheld.
+/// Records of a request without the withheld channels.
 pub fn without(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Trial> {
     let withheld: Vec<Channel> = request.without.iter().flat_map(|channel| channels(*channel)).copied().collect();
     trials.into_iter().map(|trial| trial.without(&withheld)).collect()

@@ -4,7 +4,7 @@
 //! coefficients are estimated by generalised least squares on the headings: the heading response to every spline is
 //! whitened by the same filter as the record. The walk absorbs the remaining moment; its intensity is the maximum
 //! likelihood estimate given f. The correlation of neighbouring rows is thus accounted for. The initial value of the
-//! walk is free, so f is determined up to a constant: its mean over the rows is zero.
+//! walk is free, so f is determined up to a constant: the mean over the rows is zero.
 //!
 //! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
 
@@ -16,16 +16,16 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::smoother::{HeadingColumn, MomentFilter, MomentRows, STATES};
 use crate::law::MIN_HEADING_SD;
 
-/// Inner knots, on a range from −1 to 1.
+/// Inner knots of the spline, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
 
-/// Coefficients of a curve without its constant.
+/// Number of coefficients of a curve without its constant.
 const COEFFICIENTS: usize = 3 + KNOTS.len();
 
 /// Number of points of a curve.
 const POINTS: usize = 61;
 
-/// Minimum range of a channel over its largest magnitude.
+/// Minimum range of a channel, relative to its maximum magnitude.
 const MIN_RELATIVE_RANGE: f64 = 5e-3;
 
 /// Minimum pivot of the normalised normal equations for which the rows determine the curve.
@@ -120,7 +120,7 @@ impl CurveEquations {
     }
 }
 
-/// Curve over one channel with its band.
+/// Curve against one channel with its band.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MomentCurve {
     /// Values of the channel over the range of the record, SI units and rad.
@@ -129,8 +129,7 @@ pub struct MomentCurve {
     pub moment: Vec<f64>,
     /// Half-width of the simultaneous 95 % band, rad of rudder.
     pub half_width: Vec<f64>,
-    /// Curves of the explanations, in their order, estimated in the same way from their heading responses, rad of
-    /// rudder.
+    /// Curves of the explanations, in their order, estimated likewise from their heading responses, rad of rudder.
     pub explanations: Vec<Vec<f64>>,
     /// Variance per second of the remaining walk, rad² of rudder per s.
     pub walk: f64,
@@ -139,8 +138,8 @@ pub struct MomentCurve {
 }
 
 impl MomentCurve {
-    /// Curve of a record over a channel, with those of explanations from their heading responses beside the base (rad).
-    /// `None` if the channel does not vary or the rows do not determine the curve.
+    /// Curve of a record against a channel, with the curves of explanations from their heading responses relative to
+    /// the base (rad). `None` if the channel does not vary or the rows do not determine the curve.
     pub(super) fn new(
         rows: &MomentRows,
         gain: f64,

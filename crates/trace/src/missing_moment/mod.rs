@@ -1,9 +1,9 @@
 //! Missing yaw moment of the base: smoothed over the time of a record, and as a function of candidate channels.
 //!
-//! The missing term is modelled as a random-walk state (Kristensen, Madsen and Jørgensen 2004) beside heading and yaw
-//! rate of the fitted base, given as the rudder angle with the same moment. Its curve over yaw rate, rudder, heading,
-//! speed, wind or sway shows its shape; an effect whose curve lies inside the band everywhere is consistent with it.
-//! The parameters of the base are fixed: the bands do not include their uncertainty.
+//! The missing term is modelled as a random-walk state (Kristensen, Madsen and Jørgensen 2004) in addition to heading
+//! and yaw rate of the fitted base, given as the rudder angle with the same moment. Its curve over yaw rate, rudder,
+//! heading, speed, wind or sway shows its shape; an effect whose curve lies inside the band everywhere is consistent
+//! with it. The parameters of the base are fixed: the bands do not include their uncertainty.
 
 mod curve;
 mod smoother;
@@ -36,7 +36,7 @@ pub enum MomentChannel {
 }
 
 impl MomentChannel {
-    /// Every channel.
+    /// All channels.
     pub const ALL: [Self; 6] = [Self::YawRate, Self::Rudder, Self::Heading, Self::Speed, Self::WindFrom, Self::Sway];
 
     /// Name in files.
@@ -83,7 +83,7 @@ pub struct MissingMoment {
     pub moment: Vec<f64>,
     /// Standard deviation of the smoothed moment, rad of rudder.
     pub sd: Vec<f64>,
-    /// Values of the channels that the record has, at the rows with a heading.
+    /// Values of the recorded channels at the rows with a heading.
     pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
     pub explanations: Vec<Explanation>,
@@ -107,7 +107,7 @@ fn spread(values: &[f64]) -> f64 {
 const MIN_VARIANCE: f64 = 1e-12;
 
 impl MissingMoment {
-    /// Missing moment of the base on a record with heading noise of about `sd` (rad); `None` for a record of too few
+    /// Missing moment of the base on a record with heading noise of about `sd` (rad); `None` for a record with too few
     /// headings, and for a rudder without effect.
     pub fn new(record: &PreparedRecord, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
         let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();

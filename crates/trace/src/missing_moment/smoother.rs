@@ -1,8 +1,8 @@
 //! Kalman filter and smoother of heading, yaw rate and missing moment of a first-order ship.
 //!
 //! ψ' = r, r' = −a r + b (δ + δ_r + m), m' = w, with a = 1/T, b = K/T, the moment m in rad of rudder and white w of
-//! density λσ² (rad²/s), where σ is the standard deviation of the heading noise of a full row. All variances are in
-//! units of σ². Steps between rows are exact. The initial state has a large variance, so the data determine it.
+//! density λσ² (rad²/s), with σ the standard deviation of the heading noise of a full row. All variances are in units
+//! of σ². Steps between rows are exact. The initial state has a large variance, so the data determine it.
 //!
 //! Source: Rauch, Tung and Striebel (1965), Maximum likelihood estimates of linear dynamic systems.
 
@@ -31,11 +31,11 @@ pub(super) struct HeadingColumn {
 pub(super) struct MomentRows {
     base: FirstOrder,
     pub time: Vec<f64>,
-    /// Variance of the noise of every row, in units of that of a full one.
+    /// Variance of the noise of every row, in units of the variance of a full row.
     variance: Vec<f64>,
     /// Transition and covariance for λ = 1 of every distinct step.
     steps: Vec<(f64, Step<STATES>)>,
-    /// Index of the step before every row; that of the first is unused.
+    /// Index of the step before every row; the first is unused.
     of_row: Vec<usize>,
     /// Initial variances over σ².
     prior: f64,

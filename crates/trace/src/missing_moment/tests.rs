@@ -11,7 +11,7 @@ fn base() -> FirstOrder {
     FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
 }
 
-/// Mean and variance given all rows are those of one large normal vector, of a ship of either sign of 1/T.
+/// Mean and variance given all rows agree with one large normal vector, for either sign of 1/T.
 #[test]
 fn the_smoother_is_the_conditional_mean() {
     for inverse in [0.06, 0.0, -0.03] {
@@ -25,7 +25,7 @@ fn the_smoother_is_the_conditional_mean() {
         let heading: Vec<f64> = time.iter().map(|t| (0.21 * t).sin() + 0.02 * t).collect();
         let column = HeadingColumn { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
 
-        // Heading a time after the state was one; the walk is integrated over.
+        // Heading at a time after a unit state; integrated over the walk.
         let slope = |t: f64| Transition::new(inverse, t);
         let of = |t: f64| -> [f64; 3] { [1.0, slope(t).phi1, 0.02 * slope(t).phi2] };
         let prior = sd.powi(-2);
@@ -57,7 +57,7 @@ fn the_smoother_is_the_conditional_mean() {
     }
 }
 
-/// ∫₀ᵗ by the rule of Gauss and Legendre with five points on forty pieces.
+/// ∫₀ᵗ by the five-point Gauss–Legendre rule on forty pieces.
 fn integral(until: f64, value: impl Fn(f64) -> f64) -> f64 {
     let nodes = [(0.0, 128.0 / 225.0), (1.0, 0.0), (-1.0, 0.0)];
     let root = |sign: f64| (5.0 + sign * 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
@@ -72,7 +72,7 @@ fn integral(until: f64, value: impl Fn(f64) -> f64) -> f64 {
     (0..40).map(piece).sum()
 }
 
-/// Steps forced by the rudder and by a moment are those of the exact response.
+/// Steps forced by the rudder and by a moment agree with the exact response.
 #[test]
 fn a_known_input_acts_between_rows() {
     let truth = base();
@@ -88,7 +88,7 @@ fn a_known_input_acts_between_rows() {
     }
 }
 
-/// For a ship that is the base the interval contains zero, and no curve excludes it.
+/// For a ship equal to the base the interval contains zero, and no curve excludes zero.
 #[test]
 fn no_moment_is_missing_from_the_true_base() {
     let (mut inside, mut all, mut shown) = (0, 0, 0);
@@ -110,7 +110,7 @@ fn an_unstable_base_is_smoothed_as_well() {
     let unstable = FirstOrder { inverse_T: -0.02, K_over_T: 0.01, rudder_bias: 0.0 };
     let count = 1500;
     let time: Vec<f64> = (0..count).map(f64::from).collect();
-    // Steered so that it stays on course; the moment comes at half time.
+    // Steered to stay on course; the moment begins at half time.
     let moment = |t: f64| if t < 750.0 { 0.0 } else { from_deg(2.0) };
     let (mut heading, mut rudder, mut state) = (Vec::new(), Vec::new(), State::default());
     for &t in &time {
@@ -119,7 +119,7 @@ fn an_unstable_base_is_smoothed_as_well() {
         rudder.push(order);
         let input = |delta: f64| 0.01 * (delta + moment(t));
         let ahead = Transition::new(-0.02, 1.0);
-        // The next order is where a fixed-point iteration comes to rest.
+        // The next order is the fixed point of an iteration.
         let next = (0..200).fold(order, |next, _| {
             let to = ahead.advance(state, input(order), input(next) - input(order));
             0.5 * (next + 0.2 * (0.05 * (t + 1.0)).sin() - 2.0 * to.heading - 8.0 * to.yaw_rate)
@@ -133,7 +133,7 @@ fn an_unstable_base_is_smoothed_as_well() {
     }
 }
 
-/// Cubic damping shows its shape: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
+/// Cubic damping gives an odd curve, −n₃ r³/K against the yaw rate, in units of rudder.
 #[test]
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;
@@ -149,7 +149,7 @@ fn cubic_damping_has_its_shape() {
     );
     assert!(panel.share.is_some_and(|share| share > 0.8), "{:?}", panel.share);
     assert!(!panel.curve.contains_zero());
-    // r' = … − c r³ is that of a rudder angle of −c r³ T/K.
+    // r' = … − c r³ equals the effect of a rudder angle of −c r³ T/K.
     let per = CUBE / BASE[1];
     let rates = &missing.channels[0].1;
     let mean = rates.iter().map(|r| -per * r.powi(3)).sum::<f64>() / rates.len() as f64;

@@ -10,7 +10,7 @@ fn record(time: &[f64]) -> PreparedRecord {
     PreparedRecord::whole(&Trial::new("noise", origin, columns).expect("a valid record"))
 }
 
-/// Covariance of the heading that a random moment and waves leave, added up from small steps.
+/// Covariance of the heading under a random moment and waves, summed over small steps.
 fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatrix<f64> {
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
@@ -18,7 +18,7 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
         let tau = kind.correlation(longest).expect("an error that lasts");
         total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
     } else if let Some((kind, level)) = colour.correlated {
-        // Heading after a unit impulse of yaw acceleration, after a unit step, and after one that dies away.
+        // Heading after a unit impulse of yaw acceleration, after a unit step, and after a decaying step.
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
         let tau = kind.correlation(longest).unwrap_or(f64::NAN);
         let impulse = |a: f64, t: f64| match kind {
@@ -33,7 +33,7 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
             _ => 20.0 / longest.powi(5),
         };
         if kind.correlation(longest).is_some() {
-            // Gusts that have always blown.
+            // Stationary gusts.
             let g = DVector::from_fn(n, |i, _| impulse(a, time[i] - time[0]));
             total += &g * g.transpose() * (0.5 * level * intensity * tau);
         }
@@ -99,7 +99,7 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
     }
 }
 
-/// A row of a quarter of the readings has twice the standard deviation: it counts half, under any colour.
+/// A row with a quarter of the readings has twice the standard deviation and half the weight, under any colour.
 #[test]
 fn rows_count_by_their_readings() {
     let time: Vec<f64> = (0..20).map(f64::from).collect();

@@ -1,4 +1,4 @@
-//! Entries beside the named effects: the random moment, and located shapes.
+//! Entries in addition to the named effects: the random moment, and located shapes.
 
 use document::names;
 use document::trace::{DisturbanceEntry, LocatedEntry};
@@ -10,7 +10,8 @@ use crate::remainder::squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {
-    /// Random moment beside named effects and shapes, with its share of the squared heading error; `None` without one.
+    /// Random moment in addition to named effects and shapes, with its share of the squared heading error; `None` if
+    /// there is none.
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
         let rudder_deg = to_deg(self.location.moment(self.rudder_errors)?.rudder);
@@ -48,7 +49,7 @@ impl TraceParts<'_> {
         shapes.named(|only| self.span(only)[1]).iter().map(entry).collect()
     }
 
-    /// Start and duration (s) of a record, or of the longest.
+    /// Start and duration (s) of a record, or of the longest record.
     fn span(&self, only: Option<usize>) -> [f64; 2] {
         let records = &self.problem.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));

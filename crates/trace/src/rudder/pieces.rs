@@ -1,9 +1,9 @@
 //! Piecewise linear rudder of a steering gear: rests and strokes of one rate, fitted to readings with white noise.
 //!
-//! δ(t) = δ_k + ρ_k (t − t_k) in piece k, ρ_k = 0 in a rest. The pieces are those of the least
-//! Σ (δ_i − δ(t_i))²/s² + penalty, where a rest costs 2 log n and a stroke 3 log n (optimal partitioning with pruning;
-//! Jackson et al. 2005, Killick et al. 2012; penalties as Schwarz 1978). Levels of rests, and rates of strokes, that do
-//! not differ significantly are pooled; a stroke meets a rest where their lines intersect.
+//! δ(t) = δ_k + ρ_k (t − t_k) in piece k, ρ_k = 0 in a rest. The pieces minimise Σ (δ_i − δ(t_i))²/s² + penalty, with a
+//! penalty of 2 log n for a rest and 3 log n for a stroke (optimal partitioning with pruning; Jackson et al. 2005,
+//! Killick et al. 2012; penalties as Schwarz 1978). Levels of rests, and rates of strokes, that do not differ
+//! significantly are pooled; a stroke meets a rest at the intersection of their lines.
 
 /// Minimum number of readings of a stroke.
 const MIN_STROKE_ROWS: usize = 3;
@@ -20,9 +20,9 @@ const MAX_ROUNDS: usize = 3;
 pub struct RudderPiece {
     /// First row.
     pub from: usize,
-    /// One past the last row.
+    /// Index after the last row.
     pub to: usize,
-    /// Mean time of its rows, s.
+    /// Mean time of the rows, s.
     time: f64,
     /// Angle at that time, rad.
     angle: f64,
@@ -69,7 +69,7 @@ fn residual_squares(from: &PieceSums, to: &PieceSums, rows: f64) -> [f64; 2] {
     [level.max(0.0), line.max(0.0)]
 }
 
-/// Partition of least squares plus penalty: first row, one past the last row, and whether each piece is a stroke.
+/// Partition of least squares plus penalty: first row, index after the last row, and `true` for a stroke.
 fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> {
     let rows = time.len();
     let penalty = (rows as f64).ln();
@@ -97,7 +97,7 @@ fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> 
             }
         }
         best.push(lowest);
-        // A start that is no better without its penalty is never better.
+        // A start that is not better without its penalty is never better.
         let mut squares = squares.into_iter();
         open.retain(|&from| squares.next().is_some_and(|[_, line]| best[from].0 + line < lowest.0));
     }
@@ -112,7 +112,7 @@ fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> 
     pieces
 }
 
-/// Values pooled to their weighted mean where they do not differ significantly; weights are inverse variances.
+/// Values pooled to their weighted mean if they do not differ significantly; weights are inverse variances.
 fn pooled(values: &[(f64, f64)], penalty: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].0.total_cmp(&values[b].0));

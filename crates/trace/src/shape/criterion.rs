@@ -1,9 +1,9 @@
 //! Criterion of a linearised structure under one noise law, with the columns of shapes appended.
 //!
 //! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) + Σ penalties, with s² = RSS/(n − p) or its
-//! lower bound, and the p integrated unknowns X: base, initial states and restarts behind gaps. The penalty of the
-//! coefficient of an effect or a shape is max(log n, log(1 + t²)) + 1 with its sequential t value, that of a shape the
-//! logarithm of the number of places and forms that were tried, that of a law log n for each of its parameters.
+//! lower bound, and the p integrated unknowns X: base, initial states and restarts behind gaps. The penalty of a
+//! coefficient of an effect or a shape is max(log n, log(1 + t²)) + 1 with its sequential t value. The penalty of a
+//! shape is the logarithm of the number of places and forms that were tried, and of a law log n per parameter.
 //!
 //! Sources: Schwarz (1978); Harvey (1989) for the marginal likelihood with the regression integrated out.
 
@@ -12,7 +12,7 @@ use estimation::column::dot;
 use crate::linear::{HeadingSensitivities, Linear};
 use crate::weights::Weights;
 
-/// Minimum share of its square that is linearly independent of the columns before, for a usable column.
+/// Minimum share of the square of a usable column that is linearly independent of the columns before.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-7;
 
 /// Heading response to one coefficient by record, rad per rad of rudder.
@@ -23,13 +23,13 @@ pub type HeadingColumn = Vec<(usize, Vec<f64>)>;
 pub struct LinearisedStructure {
     /// Residual and sensitivities.
     pub linear: Linear,
-    /// Number of integrated unknowns; the coefficients behind them are penalised.
+    /// Number of integrated unknowns; the coefficients after them are penalised.
     pub integrated: usize,
     /// Prior precision of the integrated unknowns and their offset from the prior mean.
     pub prior: Vec<(f64, f64)>,
     /// Distance of the penalised coefficients from neutral.
     pub sizes: Vec<f64>,
-    /// Lower bound of the white-noise variance of a row, in units of that of the weights.
+    /// Lower bound of the white-noise variance of a row, in units of the variance of the weights.
     pub min_variance: f64,
 }
 
@@ -153,7 +153,7 @@ impl WhitenedStructure {
         self.freedom * variance.ln() + misfit + self.fixed + penalties
     }
 
-    /// Criterion with whitened columns appended; infinite where they are linearly dependent.
+    /// Criterion with whitened columns appended; infinite if they are linearly dependent.
     pub fn criterion_of(&self, columns: &[HeadingColumn]) -> f64 {
         self.criterion_of_products(&self.products(columns))
     }
@@ -197,7 +197,7 @@ impl WhitenedStructure {
         all
     }
 
-    /// Criterion with columns of these products appended; infinite where they are linearly dependent.
+    /// Criterion with columns of these products appended; infinite if they are linearly dependent.
     pub fn criterion_of_products(&self, products: &GramProducts) -> f64 {
         let Some(Extension { solution, .. }) = self.extension(products) else { return f64::INFINITY };
         self.criterion_with(&solution, self.square_with(&solution))
@@ -223,7 +223,7 @@ impl WhitenedStructure {
         step
     }
 
-    /// Standard deviation of the white noise of a row, in units of that of the weights.
+    /// Standard deviation of the white noise of a row, in units of the standard deviation of the weights.
     pub fn sd(&self) -> f64 {
         (self.square / self.freedom).sqrt()
     }
@@ -263,7 +263,7 @@ fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     Some(rows)
 }
 
-/// L⁻¹ times a right side in the rows of a lower factor after those of the solution `leading`.
+/// L⁻¹ times a right side in the rows of a lower factor after the rows of the solution `leading`.
 fn solved(factor: &[Vec<f64>], right: &[f64], leading: &[f64]) -> Vec<f64> {
     let count = leading.len();
     let mut solution: Vec<f64> = Vec::with_capacity(right.len());

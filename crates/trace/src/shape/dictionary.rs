@@ -1,5 +1,5 @@
-//! Dictionary of moment shapes beside the listed effects: functions of heading, way to one side, yaw rate, rudder and
-//! its history, and of time.
+//! Dictionary of moment shapes in addition to the listed effects: functions of heading, way to one side, yaw rate,
+//! rudder and its history, and of time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -63,7 +63,7 @@ pub enum Power {
     Cube,
     /// |x|.
     Magnitude,
-    /// x where it is positive, else 0.
+    /// x if positive, else 0.
     Positive,
     /// x |x|.
     SignedSquare,
@@ -173,12 +173,12 @@ impl Shape {
         }
     }
 
-    /// `true` if it depends on time, and so belongs to one record.
+    /// `true` if the shape depends on time, and so belongs to one record.
     pub fn is_of_time(&self) -> bool {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
 
-    /// Index of its class of similar shapes.
+    /// Index of the class of similar shapes.
     pub fn class(&self) -> usize {
         match self {
             Self::HeadingTrend => 6,
@@ -265,8 +265,8 @@ impl Shape {
         self.clone().places(1.0).len()
     }
 
-    /// Shape with one continuous parameter moved by a share of its step; `None` if it leaves its range for a record
-    /// of this duration and row spacing, s.
+    /// Shape with one continuous parameter moved by a share of the step; `None` if it leaves its range for a record of
+    /// this duration and row spacing, s.
     pub fn moved(&self, place: usize, share: f64, [duration, spacing]: [f64; 2]) -> Option<Self> {
         let mut moved = *self;
         let (value, step) = moved.places(duration).into_iter().nth(place)?;
@@ -279,7 +279,7 @@ impl Shape {
         (*moved.places(duration)[place].0 >= min).then_some(moved)
     }
 
-    /// Start and end of its action, s from the start of the record; `None` for a shape without instants.
+    /// Start and end of the action of a shape, s from the start of the record; `None` for a shape without instants.
     pub fn span(&self, duration: f64) -> Option<[f64; 2]> {
         match *self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => Some([at, duration]),
@@ -329,7 +329,7 @@ impl Shape {
         }
     }
 
-    /// Formula with its coefficient c, as a user can type it; `None` if it has none.
+    /// Formula with its coefficient c, as a user can type it; `None` if the shape has no formula.
     pub fn formula(&self) -> Option<String> {
         let Self::Powers(_, (signal, power), factor) = *self else { return None };
         let factor = factor.map(|(signal, power)| format!(" * {}", power.formula(signal.names()[1])));

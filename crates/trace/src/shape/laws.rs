@@ -1,7 +1,7 @@
 //! Random laws that compete with the shapes: white heading noise alone, plus a random moment, plus a correlated compass
 //! error, or plus waves.
 //!
-//! The size of a moment is a rudder angle over the standard deviation of a heading, both in the same unit.
+//! The size of a moment is a rudder angle over the standard deviation of a heading, in equal units.
 
 use ship::narrow_band::NarrowBand;
 

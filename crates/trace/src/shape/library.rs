@@ -1,4 +1,4 @@
-//! Library of all shapes that are tried.
+//! Library of the shapes that are tried.
 
 use document::trace::Dependence;
 

@@ -1,9 +1,9 @@
 //! Shape analysis: whether the residual of a structure is a moment of some shape, a random moment, or instrument noise.
 //!
 //! A random moment can follow almost any heading, so a shape competes with every random law, and the law is
-//! re-estimated beside the shape. The gain is G = ½ (h₀ − h) nats, with the criterion h₀ of the best law without shapes
-//! and h of the best law with them. Shapes are functions of predicted states, because smoothed states contain the
-//! random moment.
+//! re-estimated together with the shape. The gain is G = ½ (h₀ − h) nats, with the criterion h₀ of the best law without
+//! shapes and h of the best law with them. Shapes are functions of predicted states, because smoothed states contain
+//! the random moment.
 
 mod criterion;
 mod dictionary;
@@ -43,7 +43,7 @@ const MIN_SMOOTH_GAIN: f64 = 1.5;
 const MAX_ROUNDS: usize = 3;
 const TIME_TOLERANCE: f64 = 0.02;
 
-/// Time unit of the lags over T, and the largest T for it, s.
+/// Time unit of the lags over T, and the maximum T for it, s.
 const UNIT: f64 = 1.0 / 16.0;
 const MAX_TIME_S: f64 = 1000.0;
 
@@ -58,16 +58,16 @@ pub struct NamedShape {
     pub size: f64,
 }
 
-/// Minimum loss of a listed shape over that of the clearest one.
+/// Minimum loss of a listed shape, relative to the clearest shape.
 const MIN_LOSS_RATIO: f64 = 0.25;
 
-/// Distance, as a share of the record, within which a moment that begins near a change of the ship belongs to it.
+/// Maximum distance, as a share of the record, of a moment that belongs to a change of the ship.
 const MAX_DISTANCE_SHARE: f64 = 0.1;
 
 /// Size of a random moment as a rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentSize {
-    /// Root mean square over the longest record, rad; for a white moment that of its mean over L/U.
+    /// Root mean square over the longest record, rad; for a white moment, of its mean over L/U.
     pub rudder: f64,
     /// Spectral density of a white moment, rad² s; `None` for other kinds.
     pub white: Option<f64>,
@@ -76,7 +76,7 @@ pub struct MomentSize {
 /// Shape analysis of the residual of a structure.
 #[derive(Debug, Clone)]
 pub struct ShapeAnalysis {
-    /// Best explanation; without shapes where none is significant.
+    /// Best explanation; without shapes if none is significant.
     pub best: Explanation,
     /// Equivalent explanations, within [`EQUIVALENT_GAIN`] of the best.
     pub equivalent: Vec<Explanation>,
@@ -88,12 +88,12 @@ pub struct ShapeAnalysis {
     pub gain: f64,
     /// Criterion of the best random law without shapes.
     pub random_criterion: f64,
-    /// Power of the likelihood: below one where the noise includes a model error. Gain and losses include it, criteria
-    /// do not.
+    /// Power of the likelihood: below one if the noise includes a model error. Gain and losses include it, criteria do
+    /// not.
     pub power: f64,
-    /// `true` if a smooth moment of unknown shape is significant, where no shape is.
+    /// `true` if a smooth moment of unknown shape is significant and no shape is.
     pub is_smooth: bool,
-    /// Random moment beside the shapes.
+    /// Random moment in addition to the shapes.
     pub moment: Option<MomentSize>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,
@@ -156,7 +156,7 @@ impl ShapeAnalysis {
     }
 }
 
-/// Shape analysis of the residual of a fit, with the waves of its noise law; `None` if its columns are dependent.
+/// Shape analysis of the residual of a fit, with the waves of the noise law; `None` if its columns are dependent.
 pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
     let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..MAX_ROUNDS {
@@ -254,8 +254,8 @@ impl<'a> ShapeProblem<'a> {
         })
     }
 
-    /// Random moment of an explanation; `sd` is the standard deviation of its white noise in units of that of the
-    /// records.
+    /// Random moment of an explanation; `sd` is the standard deviation of the white noise in units of the white noise
+    /// of the records.
     fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
         let law = &self.laws[best.law];
         let (kind, _) = law.colour.correlated.filter(|_| law.is_moment())?;

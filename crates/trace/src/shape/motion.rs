@@ -1,6 +1,6 @@
 //! One-step-ahead predicted motion of a ship, and the heading response to a moment.
 //!
-//! Heading and yaw rate are those of the replay plus, under a random moment, the Kalman prediction from the rows
+//! Heading and yaw rate are taken from the replay plus, under a random moment, the Kalman prediction from the rows
 //! before. A shape of predicted states is exogenous to the row that it explains; one of smoothed states would contain
 //! the random moment itself and always explain it.
 
@@ -13,10 +13,10 @@ use ship::replay::replay_states;
 use crate::model::{Structure, step};
 use crate::record::PreparedRecord;
 
-/// Solver steps per shortest time constant.
+/// Solver steps per minimum time constant.
 const STEPS: f64 = 2.0;
 
-/// Window of the running median of the rudder, rows: a single deviating reading is no motion.
+/// Window of the running median of the rudder, rows: a single deviating reading is not a motion.
 const MEDIAN_ROWS: usize = 5;
 
 /// Predicted motion of one record, with the first-order response to a moment.
@@ -28,7 +28,7 @@ pub struct PredictedMotion<'a> {
     pub number: usize,
     /// 1/T, 1/s, and K/T, 1/s².
     pub base: [f64; 2],
-    /// Predicted heading minus the first one at every row, rad.
+    /// Predicted heading minus the first heading at every row, rad.
     pub heading: Vec<f64>,
     /// Predicted yaw rate at every row, rad/s.
     pub rate: Vec<f64>,

@@ -9,8 +9,8 @@ use crate::weights::{NoiseLaw, Weights};
 use super::criterion::LinearisedStructure;
 use super::motion::PredictedMotion;
 
-/// Minimum gap, in usual steps between headings, behind which heading and yaw rate restart, and the largest number of
-/// such gaps per record.
+/// Minimum gap, in usual steps between headings, after which heading and yaw rate restart, and maximum number of such
+/// gaps per record.
 const MIN_GAP_STEPS: f64 = 3.5;
 const MAX_GAPS: usize = 4;
 
@@ -62,7 +62,7 @@ impl<'a> StructurePoint<'a> {
         [of_base, fitted.len() - of_base]
     }
 
-    /// Linearisation with base, initial states and restarts behind gaps first (integrated), then the parameters of the
+    /// Linearisation with base, initial states and restarts after gaps first (integrated), then the parameters of the
     /// terms (penalised).
     pub fn linearised(&self, motions: &[PredictedMotion]) -> LinearisedStructure {
         let structure = &self.fit.structure;
@@ -111,9 +111,10 @@ impl<'a> StructurePoint<'a> {
         }
     }
 
-    /// Lower bound of the white-noise variance of a row over that of the records, in the record where it is largest.
+    /// Lower bound of the white-noise variance of a row relative to the variance of the record, in the record where it
+    /// is largest.
     fn min_variance(&self) -> f64 {
-        // With the gain of any ship of this length and speed, so that it is the same for every structure.
+        // With a typical gain for this length and speed, so that it is equal for every structure.
         let floors = law::floors(self.problem, self.problem.time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
@@ -147,7 +148,7 @@ fn use_predicted_rate(block: &mut HeadingSensitivities, motion: &PredictedMotion
     by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.heading_response(&moment));
 }
 
-/// Columns of a restart of heading and yaw rate behind each of the largest gaps.
+/// Columns of a restart of heading and yaw rate after each of the largest gaps.
 fn restarts(motion: &PredictedMotion) -> Vec<[Vec<f64>; 2]> {
     let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
     let lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();

@@ -1,5 +1,5 @@
-//! Forward search for shapes: all are screened beside the chosen ones under some laws; for the best, the law is chosen
-//! again among all laws, and the continuous parameters are refined.
+//! Forward search for shapes: all are screened in addition to the chosen shapes under some laws; for the best, the law
+//! is chosen again among all laws, and the continuous parameters are refined.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ const CLASSES: f64 = 11.0;
 /// Maximum number of shapes.
 const MAX_SHAPES: usize = 3;
 
-/// Finalists whose law is chosen again: number of best shapes, number of classes with their best one; and number of
+/// Finalists whose law is chosen again: number of best shapes, number of classes with their best shape; and number of
 /// finalists that are refined.
 const FINALISTS: usize = 5;
 const CLASS_FINALISTS: usize = 6;
@@ -166,8 +166,8 @@ impl ShapeSearch<'_> {
         library.par_chunks(CHUNK).flat_map_iter(products).collect()
     }
 
-    /// Least criterion of every candidate beside the `chosen` shapes over some laws, from its products with the
-    /// structure, to which those with the chosen shapes are added.
+    /// Least criterion of every candidate in addition to the `chosen` shapes over some laws, from its products with the
+    /// structure and with the chosen shapes.
     fn scan(
         &self,
         chosen: &[Arc<Candidate>],
@@ -193,8 +193,8 @@ impl ShapeSearch<'_> {
         library.par_iter().zip(products).map(criterion).collect()
     }
 
-    /// Columns of shapes multiplied by the inverse covariance of a law: their products with raw columns are those of
-    /// whitened ones.
+    /// Columns of shapes multiplied by the inverse covariance of a law: their products with raw columns equal the
+    /// products of whitened columns.
     fn weighted(&self, law: usize, shapes: &[Arc<Candidate>]) -> Vec<HeadingColumn> {
         let mut columns = self.white(law, &shapes.iter().map(Arc::as_ref).collect::<Vec<_>>()).concat();
         for (record, values) in columns.iter_mut().flatten() {
@@ -221,7 +221,7 @@ impl ShapeSearch<'_> {
         kept
     }
 
-    /// Best explanation with the criteria without each of its shapes, and all explanations that were tried.
+    /// Best explanation with the criteria without each shape, and all explanations that were tried.
     pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
         let library = self.library(unit);
         let (criterion, law) = best(self.structure).unwrap_or(NONE);
@@ -252,7 +252,7 @@ impl ShapeSearch<'_> {
     }
 
     /// Explanation after backward elimination of shapes that do not improve the criterion, with the criteria without
-    /// each of the remaining ones.
+    /// each of the remaining shapes.
     fn pruned(&self, mut best: Explanation) -> (Explanation, Vec<f64>) {
         loop {
             let fewer: Vec<Explanation> = (0..best.shapes.len()).map(|place| self.without(&best, place)).collect();
@@ -264,7 +264,7 @@ impl ShapeSearch<'_> {
         }
     }
 
-    /// Explanation without one of its shapes, under its best law.
+    /// Explanation without one shape, under the best law.
     fn without(&self, all: &Explanation, place: usize) -> Explanation {
         let mut shapes = all.shapes.clone();
         shapes.remove(place);
@@ -341,7 +341,7 @@ pub fn residual_square(linear: &Linear, shapes: &[Arc<Candidate>], step: &[f64])
     linear.blocks.iter().enumerate().map(square).sum()
 }
 
-/// Criterion and index without any law.
+/// Criterion and index if no law is possible.
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
 /// Criterion and index of the best law of structures; `None` if all are `None`.

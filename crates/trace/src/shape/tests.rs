@@ -31,12 +31,12 @@ fn plan(seed: u64) -> TrialPlan {
     TrialPlan { noise_deg: NOISE_DEG, seed, ..TrialPlan::default() }
 }
 
-/// A first-order ship in a moment (deg of rudder) over time (s).
+/// Record of a first-order ship under a moment (deg of rudder) against time (s).
 fn in_moment(seed: u64, moment_deg: impl Fn(f64) -> f64) -> Trial {
     moved(&record(&ship(Vec::new()), plan(seed)), |t| from_deg(moment_deg(t)))
 }
 
-/// A ship with a moment as a formula, whose coefficient is `c`.
+/// Record of a ship with a moment given as a formula with coefficient `c`.
 fn with_formula(formula: &str, c: f64) -> Trial {
     let effect: Arc<dyn Effect> = Formula::read(formula).expect("a formula");
     record(&ship(vec![(effect, vec![c])]), plan(5))
@@ -56,7 +56,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
     analysis(&problem, &fit, &law).expect("an analysis")
 }
 
-/// The clearest shape with its record.
+/// Clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
     let named = analysis.named(|_| 300.0);
     named.first().map(|named| (named.candidate.shape, named.candidate.only)).expect("a shape")
@@ -99,7 +99,7 @@ fn moments_of_the_motion_are_located() {
     }
 }
 
-/// Instrument noise alone gives no shape; a random-walk moment is a random moment of its size, and no shape.
+/// Instrument noise alone gives no shape; a random-walk moment gives a random moment of its size and no shape.
 #[test]
 fn chance_is_no_shape() {
     for seed in 1..4 {
@@ -123,7 +123,7 @@ fn shapes_of_time_belong_to_their_record() {
     assert_eq!((only, shape.is_of_time()), (Some(1), true), "{shape:?}");
 }
 
-/// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) + penalties, and with one column more.
+/// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) + penalties, and with one more column.
 #[test]
 fn criteria_are_those_of_dense_matrices() {
     let rows = 40;
@@ -176,7 +176,7 @@ fn criteria_are_those_of_dense_matrices() {
     assert!((dot(&left[0], &left[0]) - freedom).abs() < 1e-8);
 }
 
-/// The sizes of the laws are those of the moments in their filters.
+/// The sizes of the laws agree with the moments in their filters.
 #[test]
 fn laws_have_the_sizes_they_say() {
     let (gain, longest) = (BASE[1], 300.0);
@@ -187,7 +187,7 @@ fn laws_have_the_sizes_they_say() {
         let size = kind.size(level, longest) / gain;
         assert!((size / law.size - 1.0).abs() < 1e-9, "{kind:?} {size} {}", law.size);
     }
-    // With waves of the noise law no others are tried, and rows far apart exclude the short ones.
+    // With waves of the noise law no other waves are tried, and rows far apart exclude short waves.
     let sea = Some(ship::narrow_band::NarrowBand { sd: 1.0, frequency: 0.7, damping: 0.1 });
     assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
     assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);

@@ -9,7 +9,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::fit::{deviation, log_normaliser};
 use crate::model::{Structure, Term};
 
-/// Number of structures refitted per round, and the largest log odds against the best for a refit.
+/// Number of structures refitted per round, and the maximum log odds against the best for a refit.
 const MAX_REFITS: usize = 4;
 pub(super) const MAX_LOG_ODDS: f64 = 5.0;
 
@@ -21,7 +21,7 @@ const MAX_ADDITIONS: usize = 2;
 pub struct Support {
     /// Log evidence of the best structure with the candidate minus that of the best without it.
     pub gain: f64,
-    /// p value (χ²) of its coefficients beside all other candidates.
+    /// p value (χ²) of the coefficients with all other candidates present.
     pub p_value: f64,
 }
 
@@ -56,7 +56,7 @@ impl QuadraticPosterior {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));
             RemovableTerm { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
-        // A coefficient that would leave its bounds at the neutral value is zero.
+        // A coefficient that would leave its bounds at the neutral value is fixed at zero.
         for _ in 0..ranges.len() {
             let leaves = |number: &usize| {
                 let term = &structure.terms[*number];
@@ -93,7 +93,7 @@ impl QuadraticPosterior {
         Some(Self { covariance, mean, removable, pinned, free })
     }
 
-    /// Support of every term from the log weights of all subsets. The gain is that of its effect in any form; `effects`
+    /// Support of every term from the log weights of all subsets. The gain is for the effect in any form; `effects`
     /// identifies the terms that are forms of one effect.
     pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<Support> {
         let (kept, weights) = self.weighed();
@@ -153,7 +153,7 @@ impl QuadraticPosterior {
         order.into_iter().map(chosen).collect()
     }
 
-    /// The [`MAX_TERMS`] most relevant terms, with the covariance after the others are removed.
+    /// Subset of the [`MAX_TERMS`] most relevant terms, with the covariance after removal of the other terms.
     fn most_relevant(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<RemovableTerm>) {
         let mut covariance = self.covariance.clone();
         let mut mean = self.mean.clone();
@@ -180,7 +180,7 @@ impl QuadraticPosterior {
 }
 
 /// p value (χ², Wald 1943) of coefficients, each given as its index in a covariance and its distance from neutral;
-/// `None` without coefficients, and where the covariance is singular.
+/// `None` without coefficients, or if the covariance is singular.
 pub fn chi_square_p_value(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> Option<f64> {
     let distance = DVector::from_iterator(sizes.len(), sizes.iter().map(|(_, distance)| *distance));
     let matrix = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);

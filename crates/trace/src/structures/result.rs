@@ -28,8 +28,8 @@ pub struct Structures {
     pub all: Vec<WeighedStructure>,
     /// Probability of every candidate.
     pub probabilities: BTreeMap<TermName, f64>,
-    /// Visibility of every candidate: expected squared coefficient over its variance beside all others; a small one is
-    /// unobservable.
+    /// Visibility of every candidate: expected squared coefficient over its variance with all other candidates present;
+    /// a candidate of small visibility is unobservable.
     pub visibility: BTreeMap<TermName, f64>,
     /// Evidence for every candidate.
     pub support: BTreeMap<TermName, Support>,
@@ -51,7 +51,7 @@ impl Structures {
         kept.iter().map(|weighed| (weighed.weight / total, &weighed.fit)).collect()
     }
 
-    /// Shares the weight with structures under other noise laws, given with the odds of their law against this one.
+    /// Shares the weight with structures under other noise laws, given with the odds of their law against this law.
     pub(super) fn share_with(&mut self, rivals: Vec<(f64, Structures)>) {
         let total = 1.0 + rivals.iter().map(|(odds, _)| odds).sum::<f64>();
         self.all.iter_mut().for_each(|weighed| weighed.weight /= total);
@@ -150,8 +150,8 @@ mod tests {
         }
     }
 
-    /// Alone, odds are multiplied: p' = f p/(1 − p + f p). Together every term counts: with weights 0.5, 0.2, 0.2 and
-    /// 0.1 of none, damping, lag and both, ten times the odds make 0.5, 2, 2 and 10 of them.
+    /// For one term: p' = f p/(1 − p + f p). For several terms, weights 0.5, 0.2, 0.2 and 0.1 of none, damping, lag and
+    /// both become 0.5, 2, 2 and 10 at ten times the odds.
     #[test]
     fn prior_odds_move_the_weights_term_by_term() {
         let with = |structures: &Structures, factor, asked: Option<TermName>| {

@@ -1,5 +1,5 @@
-//! Headings that sweep through the compass at north: they were interpolated or filtered across the step from 360 to 0,
-//! through headings that the ship never had.
+//! Sweeps of the heading through the compass at north: headings interpolated or filtered across the step from 360 to 0,
+//! through values that the ship never had.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -11,7 +11,7 @@ use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::wording::counted;
 
-/// Minimum rate of a sweep over the 90th percentile of the rates.
+/// Minimum ratio of the rate in a sweep to the 90th percentile of the rates.
 const MIN_RATE_RATIO: f64 = 5.0;
 
 /// Maximum distance from north at the beginning of a sweep, rad.
@@ -23,10 +23,10 @@ const MIN_EXCURSION: f64 = 0.52;
 /// Maximum distance between beginning and end of a sweep beyond the turn of the ship, rad: 3°.
 const RETURN_TOLERANCE: f64 = 0.05;
 
-/// Minimum mean rate up to the excursion over the usual rate.
+/// Minimum ratio of the mean rate up to the excursion to the usual rate.
 const MIN_MEAN_RATIO: f64 = 3.0;
 
-/// Maximum distance between beginning and end of a sweep as a share of its excursion.
+/// Maximum distance between beginning and end of a sweep as a share of the excursion.
 const RETURN_SHARE: f64 = 0.3;
 
 /// Maximum length of a sweep, s and rows: filters of a compass take seconds.
@@ -38,7 +38,7 @@ const SETTLING: usize = 2;
 /// Maximum share of headings in sweeps.
 const MAX_SWEPT_SHARE: f64 = 0.6;
 
-/// Leaves out headings of sweeps through the compass.
+/// Omits headings of sweeps through the compass.
 pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
@@ -65,7 +65,7 @@ pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRead
     }
     let begins: Vec<usize> = sweeps.iter().map(|swept| read[swept.start + 1]).collect();
     let times = reject(Channel::Heading, time, heading, &begins, rejected);
-    // Every sweep may have left the heading a turn away.
+    // The heading after a sweep may be off by a full turn.
     for swept in &sweeps {
         let turns = ((heading[read[swept.end]] - heading[read[swept.start]]) / TAU).round() * TAU;
         heading[read[swept.start] + 1..].iter_mut().for_each(|psi| *psi -= turns);
@@ -92,7 +92,7 @@ fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -
         }
         if farthest > MIN_EXCURSION && apart < (RETURN_TOLERANCE + 2.0 * usual * elapsed).min(RETURN_SHARE * farthest) {
             let behind = heading[read[end]];
-            // A single reading is a spike, unless the heading passes north with it.
+            // A single reading is a spike, unless the heading crosses north at it.
             let passes = from_north(begin) * from_north(behind) < 0.0 || (behind - begin).abs() > PI;
             return (from_north(begin).abs() < MAX_FROM_NORTH && (end > at + 2 || passes)).then_some(at..end);
         }
@@ -105,7 +105,7 @@ mod tests {
     use super::super::tests::{clean, with};
     use super::*;
 
-    /// The headings as they are written, from 0 to 360, through a change, and read with their wrap taken out.
+    /// Headings as written, from 0 to 360, after a change, and unwrapped on reading.
     fn written(change: impl Fn(usize, &[f64]) -> f64) -> Vec<f64> {
         let made = with(Channel::Heading, |row, values| values[row].rem_euclid(TAU));
         let raw = &made.channels[&Channel::Heading];

@@ -1,5 +1,5 @@
-//! Single wrong readings: unanswered polls, spikes and jumps of a heading, a yaw rate at the end of its scale. A spike
-//! is left out; a jump is reported and left, because either side of it may be right.
+//! Single wrong readings: lost polls, spikes and jumps of a heading, a yaw rate at the end of its scale. A spike
+//! is omitted; a jump is reported and kept, because either side of it may be right.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -18,10 +18,10 @@ const MIN_HEIGHT: f64 = 0.035;
 /// Minimum height of a spike or a jump in standard deviations from the straight line between neighbours.
 const MIN_HEIGHT_SDS: f64 = 12.0;
 
-/// Minimum height of a spike over the distance between its neighbours.
+/// Minimum ratio of the height of a spike to the distance between its neighbours.
 const MIN_SPIKE_RATIO: f64 = 4.0;
 
-/// Maximum share of spikes among the readings: more are the noise of the sensor.
+/// Maximum share of spikes among the readings: a larger share is the noise of the sensor.
 const MAX_SPIKE_SHARE: f64 = 0.05;
 
 /// Minimum number of lost polls of a value, and their maximum share of a channel.
@@ -33,13 +33,13 @@ const MIN_LOST_SHARE: f64 = 0.8;
 /// Number of parts of a radian to which a repeated value is compared.
 const PER_RAD: f64 = 1e9;
 
-/// Minimum distance of a lost poll from its neighbours over the distance between them.
+/// Minimum ratio of the distance of a lost poll from its neighbours to the distance between them.
 const MIN_LOST_RATIO: f64 = 2.0;
 
 /// Minimum number of rows at the end of the scale of a yaw rate.
 const MIN_CLIPPED_ROWS: usize = 5;
 
-/// Minimum rate of the heading over the largest reading of a clipped yaw rate.
+/// Minimum ratio of the rate of the heading to the maximum reading of a clipped yaw rate.
 const MIN_CLIPPED_RATIO: f64 = 1.15;
 
 /// Rows of a channel with a reading.
@@ -69,8 +69,8 @@ fn deviation_sd(time: &[f64], values: &[f64]) -> Option<f64> {
     Some(sizes).filter(|sizes| sizes.len() > 2 * MIN_CLIPPED_ROWS).and_then(upper_median).map(|size| 1.4826 * size)
 }
 
-/// Takes lost polls as missing: single readings of the same value, with both neighbours far from it and near each
-/// other. A logger writes zero for a poll without an answer, and a calibration turns it into another number. A channel
+/// Sets lost polls to missing: single readings of the same value, with both neighbours far from it and near each
+/// other. A logger writes zero for an unanswered poll, and a calibration turns it into another number. A channel
 /// that passes through the value has neighbours on either side of it.
 pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
@@ -84,11 +84,11 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
             left * right > 0.0 && distance > MIN_HEIGHT && distance > MIN_LOST_RATIO * (left - right).abs()
         };
         let inner = rows.windows(3).filter(|rows| is_alone(rows[1], [rows[0], rows[2]])).map(|rows| rows[1]);
-        // The first and the last have their neighbours on one side.
+        // The first and the last reading have both neighbours on one side.
         let first = rows.get(..3).filter(|rows| is_alone(rows[0], [rows[1], rows[2]])).map(|rows| rows[0]);
         let last = rows.last_chunk::<3>().filter(|rows| is_alone(rows[2], [rows[1], rows[0]])).map(|rows| rows[2]);
         let alone: Vec<usize> = first.into_iter().chain(inner).chain(last).collect();
-        // Whole turns of a heading are nothing.
+        // Headings are compared modulo a full turn.
         let value = |row: usize| match channel {
             Channel::Heading => (values[row].rem_euclid(TAU) * PER_RAD).round().rem_euclid((TAU * PER_RAD).round()),
             _ => (values[row] * PER_RAD).round(),
@@ -102,7 +102,7 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
         }
         let times = reject(channel, time, values, &lost, rejected);
         lost.iter().for_each(|&row| values[row] = f64::NAN);
-        // Equal readings beside them may be lost as well; that cannot be decided.
+        // Equal readings next to them may be lost as well; that cannot be decided.
         warnings.push(WarningCode::RejectedReadings.warning(format!(
             "{} of exactly {} far from both neighbours taken as missing (polls without an answer), {times}",
             counted(lost.len(), channel.label()),
@@ -112,7 +112,7 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
     warnings
 }
 
-/// Takes spikes of heading and rudder as missing and reports jumps of the heading.
+/// Sets spikes of heading and rudder to missing and reports jumps of the heading.
 pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut warnings = Vec::new();
@@ -173,7 +173,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
     )))
 }
 
-/// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
+/// Sets a yaw rate to missing if it stays at the end of its scale while the heading turns faster.
 pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
@@ -182,7 +182,7 @@ pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     if end == 0.0 || at_end.len() < MIN_CLIPPED_ROWS {
         return None;
     }
-    // The heading over every run of rows at the end of the scale.
+    // Change of heading over every run of rows at the end of the scale.
     let (mut turned, mut expected, mut rows) = (0.0, 0.0, 0);
     for run in at_end.chunk_by(|row, next| next - row == 1 && rate[*row] == rate[*next]) {
         let (first, last) = (run[0], run[run.len() - 1]);
@@ -242,7 +242,7 @@ mod tests {
         }
     }
 
-    /// A heading that was made continuous has zeros at whole turns, and one may be the first row.
+    /// An unwrapped heading has zeros at whole turns, one of them perhaps in the first row.
     #[test]
     fn a_heading_of_north_that_was_not_read_is_missing() {
         let lost = |row: usize, values: &[f64]| if row.is_multiple_of(7) { TAU } else { values[row] - 0.4 };

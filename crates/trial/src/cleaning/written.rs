@@ -1,4 +1,4 @@
-//! Notations of a logger: a rudder from 0 to 360, a heading that is written only after a minimum change.
+//! Notations of a logger: a rudder from 0 to 360, a heading written only after a minimum change.
 
 use document::{Warning, WarningCode};
 
@@ -18,7 +18,7 @@ const MIN_DEAD_BAND: (f64, f64) = (0.007, 4.0);
 /// Minimum share of changes after a repeated heading, and minimum number of changes, of a heading written on change.
 const ON_CHANGE: (f64, usize) = (0.5, 12);
 
-/// Takes 360° from rudder angles to port where they are written as angles up to 360°.
+/// Subtracts 360° from rudder angles to port that are written as angles up to 360°.
 pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
     let mut count = 0;
     for channel in [Channel::Rudder, Channel::RudderOrder] {
@@ -39,7 +39,7 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
     })
 }
 
-/// Takes the repetitions of a heading that is written on change as missing.
+/// Sets the repetitions of a heading written on change to missing.
 pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();

@@ -78,7 +78,7 @@ fn time_runs_on_over_midnight_zones_and_missing_seconds() {
     assert_eq!(seconds(&["23:59:58", "23:59:59.5", "00:00:01", "00:00:04"]), Ok(vec![0.0, 1.5, 3.0, 6.0]));
     assert_eq!(seconds(&["31.12.2026 23:59:58", "01.01.2027 00:00:01"]), Ok(vec![0.0, 3.0]));
     assert_eq!(seconds(&["2026-11-20T14:00:00+01:00", "2026-11-20T13:00:10Z"]), Ok(vec![0.0, 10.0]));
-    // A small step back is no midnight: it is for the reader to refuse.
+    // A small step back is no midnight: the reader refuses it.
     assert_eq!(seconds(&["12:00:05", "12:00:03"]), Ok(vec![0.0, -2.0]));
 }
 

@@ -20,7 +20,7 @@ const AMIDSHIPS: f64 = 0.35;
 const STEADY_RATE: f64 = 0.2;
 const STEADY_HEADING: f64 = 0.05;
 
-/// Minimum length of a steady approach as a share of the longest; a log that begins with it may be shorter.
+/// Minimum length of a steady approach as a share of the maximum length; shorter if the log begins with it.
 const MIN_APPROACH_SHARE: f64 = 0.25;
 
 /// Revolutions of a stopped engine, as a share of the usual revolutions.
@@ -29,7 +29,7 @@ const STOPPED_SHARE: f64 = 0.5;
 /// Length of a gap in the approach, usual time steps.
 const GAP_STEPS: f64 = 30.0;
 
-/// Maximum number of holds that time the first execute; more holds do not make it more certain.
+/// Maximum number of holds for the time of the first execute; more holds do not make it more certain.
 const MAX_TIMING_HOLDS: usize = 4;
 
 /// Tolerance of the rudder about the line of its movement, as a share of the band of a hold, and minimum number of rows
@@ -37,10 +37,10 @@ const MAX_TIMING_HOLDS: usize = 4;
 const RAMP_TOLERANCE: f64 = 0.6;
 const MIN_RAMP_ROWS: usize = 3;
 
-/// Rows before a movement whose median is the rudder angle before it.
+/// Number of rows before a movement whose median is the rudder angle before it.
 const MEDIAN_ROWS: usize = 8;
 
-/// The manoeuvres of patterns that are in order of time and do not overlap.
+/// Manoeuvres of patterns, which are in order of time and do not overlap.
 pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<DetectedManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
@@ -94,14 +94,14 @@ fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
     let stopped = STOPPED_SHARE * usual(propeller.iter().map(|n| n.abs()));
     let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
-    // A single row without revolutions is a fault of the channel; the last row has no next.
+    // A single row without revolutions is a fault of the channel; the last row has no next row.
     (0..propeller.len())
         .find(|&row| is_stopped(row) && is_stopped(row + 1))
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
 /// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale`
-/// seconds before the hold or, where the rudder is slow, somewhat earlier.
+/// seconds before the hold or, if the rudder is slow, somewhat earlier.
 pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(MAX_TIMING_HOLDS)];
@@ -119,7 +119,7 @@ pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free:
         level: hold.level,
     };
     let mut local: Vec<holds::Hold> = holds.iter().map(local).collect();
-    // A movement ends slowly, which does not show its rate: the hold begins before the rudder rests.
+    // A movement ends slowly, so its end does not give its rate: the hold begins before the rudder rests.
     let angle = &record.rudder.angle[window..=end];
     let laid = |&row: &usize| {
         let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
@@ -144,11 +144,11 @@ fn half_way(angle: &[f64], hold: &holds::Hold) -> Option<usize> {
 }
 
 /// First row on the line of a movement into a hold, at a rate in rad/s. Steering to the same side just before the
-/// movement shifts the foot of that line, but is not on it.
+/// movement shifts the intersection of that line with the old level, but is not on it.
 fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f64) -> usize {
     let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
-    // The second half of the movement shows the scatter about the line: rounding and uneven times.
+    // The second half of the movement gives the scatter about the line: rounding and uneven times.
     let ramp: Vec<usize> =
         (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID_SHARE * hold.level.abs()).collect();
     if ramp.len() < MIN_RAMP_ROWS {
@@ -156,13 +156,13 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     }
     let usual = ramp.iter().map(|&row| off(row)).fold(0.0, f64::max);
     let tolerance = (RAMP_TOLERANCE * floor).max(1.2 * usual);
-    // Noise takes a row or two further off.
+    // Noise can move a row or two further off.
     let is_on = |&row: &usize| (row.saturating_sub(2)..=row).any(|row| off(row) <= tolerance);
     (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
-/// First row of the movement into the only hold of a manoeuvre, whose rate no other movement shows; `None` if the
-/// record does not show the movement.
+/// First row of the movement into the only hold of a manoeuvre, whose rate is not known from other movements; `None` if
+/// the record does not contain the movement.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
     let half = half_way(angle, hold)?;
@@ -209,7 +209,7 @@ impl ApproachSegment {
         };
         let longest = time[start] - time[rudder_from];
         let rate = pattern.swing / pattern.scale;
-        // The approach is steadier nearer to the execute: where the course was reached late, its last part remains.
+        // The approach is steadier nearer to the execute: if the course was reached late, its last part remains.
         for share in [1.0, 0.5, 0.25] {
             let first = time.partition_point(|&t| t < time[start] - share * longest).max(rudder_from);
             let duration = time[start] - time[first];
@@ -245,7 +245,7 @@ fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: u
     (earliest..start).rev().take_while(is_steady).last()
 }
 
-/// Change of a channel from the first to the last third of some rows, as a share; `None` if it was not recorded.
+/// Relative change of a channel from the first to the last third of a range of rows; `None` if it was not recorded.
 fn change(channel: Option<&[f64]>, first: usize, end: usize) -> Option<f64> {
     let values = channel?.get(first..end)?;
     let third = values.len().div_ceil(3);

@@ -3,10 +3,10 @@
 
 use estimation::statistics::median;
 
-/// Maximum number of rows of a median: more rows make the search slower and the median no better.
+/// Maximum number of rows of a median: more rows slow the search without a better median.
 const MAX_MEDIAN_ROWS: usize = 64;
 
-/// Headings of the rows that have one.
+/// Rows with a heading.
 #[derive(Debug)]
 pub(crate) struct Course {
     /// Times, s.
@@ -22,10 +22,10 @@ impl Course {
         Self { time, heading }
     }
 
-    /// Heading at a time, rad: the median within `half_width` of it, else interpolated between its neighbours where
+    /// Heading at a time, rad: the median within `half_width` of it, else interpolated between its neighbours if
     /// both are within `reach`.
     pub fn near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
-        // Symmetric: at the end of a record a one-sided median would lag behind a turn.
+        // The window is symmetric: at the end of a record a one-sided median would lag behind a turn.
         let (begin, end) = (*self.time.first()?, *self.time.last()?);
         let half_width = half_width.min(time - begin).min(end - time).max(0.0);
         let first = self.time.partition_point(|&t| t < time - half_width);
@@ -46,7 +46,7 @@ impl Course {
         }
     }
 
-    /// Change of heading between two times, rad; the median at either end is over a twentieth of the time between them.
+    /// Change of heading between two times, rad; each heading is a median over a twentieth of the time between them.
     pub fn change(&self, from: f64, to: f64) -> Option<f64> {
         let time = to - from;
         let [before, after] = [from, to].map(|t| self.near(t, 0.05 * time, 0.25 * time));
@@ -59,15 +59,15 @@ impl Course {
     }
 }
 
-/// Median of at most [`MAX_MEDIAN_ROWS`] values, spread evenly over those given.
+/// Median of at most [`MAX_MEDIAN_ROWS`] values, evenly selected.
 pub(crate) fn middle(values: &[f64]) -> Option<f64> {
     median(&mut thinned(values))
 }
 
-/// At most about [`MAX_MEDIAN_ROWS`] values, spread evenly, all of them finite.
+/// At most about [`MAX_MEDIAN_ROWS`] values, evenly selected, all finite.
 pub(crate) fn thinned(values: &[f64]) -> Vec<f64> {
     let step = values.len().div_ceil(MAX_MEDIAN_ROWS).max(1);
-    // Centred, so that a slope is thinned to its middle.
+    // The selection is centred, so that a slope is thinned to its middle.
     let skip = values.len().saturating_sub(1) % step / 2;
     values.iter().skip(skip).step_by(step).copied().filter(|x| x.is_finite()).collect()
 }

@@ -1,5 +1,5 @@
-//! Result of a search: a manoeuvre with its part of the log, and the quality of the log there. The quality is for the
-//! reader of a list; no manoeuvre is refused for it.
+//! Result of a search: a manoeuvre with its part of the log, and the quality of the log there. The quality is for
+//! information; no manoeuvre is refused because of it.
 
 use ship::angle::to_deg;
 
@@ -38,14 +38,14 @@ pub enum Approach {
 pub struct Quality {
     /// Share of the rows without a heading, 0 to 1.
     pub missing_headings: f64,
-    /// Maximum gap of the heading, s; `None` if it is not much longer than the usual time step.
+    /// Maximum gap of the heading, s; `None` if there is no gap much longer than the usual time step.
     pub longest_gap: Option<f64>,
     /// Maximum difference between the rudder angles held to one side of a zig-zag, rad.
     pub rudder_spread: f64,
     /// Approach; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
     /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
-    /// larger; positive where it grew; `None` if no speed was recorded.
+    /// larger; positive for an increase; `None` if no speed was recorded.
     pub speed_change: Option<f64>,
 }
 
@@ -91,17 +91,17 @@ impl Quality {
     }
 }
 
-/// A manoeuvre inside a log.
+/// Manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DetectedManoeuvre {
     /// Kind of manoeuvre with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds
     /// to each side, its heading the median over the executes; `None` if the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
-    /// First row of the part to analyse, s: the first execute, or before it where the approach was steady.
+    /// First row of the part to analyse, s: the first execute, or before it if the approach was steady.
     pub from: f64,
-    /// Last row of the part, s: the rudder is still held and the propeller turns.
+    /// Last row of the part, s; the rudder is still held and the propeller turns.
     pub until: f64,
-    /// Time of the first row in which the rudder moves for this manoeuvre, s; of a straight piece its first row.
+    /// Time of the first row in which the rudder moves for this manoeuvre, s; for a straight piece its first row.
     pub start: f64,
     /// Number of executes: a turn has one, a straight piece none.
     pub executes: usize,
@@ -136,7 +136,7 @@ impl DetectedManoeuvre {
     }
 }
 
-/// Conventional angle near a measured angle (rad), for a name; see [`conventional_deg`].
+/// Conventional angle near a measured angle (rad), as text for a name; see [`conventional_deg`].
 fn conventional(angle: f64, below: f64, above: f64) -> String {
     let degrees = to_deg(angle);
     conventional_deg(degrees, below, above, 0.0).map_or_else(|| format!("{degrees:.1}"), |angle| format!("{angle:.0}"))

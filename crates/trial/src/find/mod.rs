@@ -1,13 +1,13 @@
 //! Detection of manoeuvres in a long log: zig-zags, turning circles, pull-outs, spirals and straight pieces, each with
-//! its part of the log. Characteristics are read in [`crate::zigzag`]; nothing is identified or cleaned here.
+//! its part of the log. Characteristics are read in [`crate::zigzag`]; identification and cleaning are elsewhere.
 //!
 //! The log is first cut into holds of the rudder (`rudder`). A manoeuvre is a pattern of holds to which the heading
 //! responds (`zigzags`, `spirals`, `turns`); the pieces between may be straight (`straights`). The bounds of every part
 //! follow last (`bounds`).
 //!
-//! No time is fixed in seconds, because a model and a tanker differ by a factor of fifty: scales come from the holds of
-//! each manoeuvre. Positive rudder turns the ship to starboard; in a log with the other sign only straight pieces are
-//! detected.
+//! No time limit is fixed in seconds, because a model and a tanker differ by a factor of fifty: scales come from the
+//! holds of each manoeuvre. Positive rudder turns the ship to starboard; in a log with the opposite sign only straight
+//! pieces are detected.
 //!
 //! The manoeuvres are those of ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
@@ -32,7 +32,7 @@ pub use pattern::Signals;
 
 /// Manoeuvres of a log in order of time, without overlap.
 ///
-/// Empty where no manoeuvre is recognised, and for a log that violates the rules of [`Signals`]. Time and memory grow
+/// Empty if no manoeuvre is recognised, and for a log that violates the rules of [`Signals`]. Time and memory grow
 /// in proportion to the rows.
 pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
@@ -46,7 +46,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     patterns.extend(zigzags::zigzags(&record, &free));
     patterns.sort_by_key(|pattern| pattern.holds[0].first);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();
-    // A pull-out begins where its turn ends; another manoeuvre may lie between.
+    // A pull-out begins at the end of its turn; another manoeuvre may lie between.
     let turns = turns::turns(&record, &free).into_iter().filter(|turn| !overlaps(&patterns, &turn.holds[0]));
     patterns.extend(turns.collect::<Vec<_>>());
     patterns.sort_by_key(|pattern| pattern.holds[0].first);
@@ -55,7 +55,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     list
 }
 
-/// `true` where a hold shares rows with a pattern; the patterns are in order of time and do not overlap.
+/// `true` if a hold shares rows with a pattern; the patterns are in order of time and do not overlap.
 fn overlaps(patterns: &[Pattern], hold: &Hold) -> bool {
     let next = patterns.partition_point(|pattern| pattern.last() < hold.first);
     patterns.get(next).is_some_and(|pattern| pattern.first() <= hold.last)

@@ -6,14 +6,14 @@ use crate::manoeuvre::Manoeuvre;
 
 /// Channels of a search, row by row, in SI units and radians.
 ///
-/// All have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
+/// All channels have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
 pub struct Signals<'a> {
     /// Time, s.
     pub time: &'a [f64],
     /// Rudder angle or order, rad; finite in every row.
     pub rudder: &'a [f64],
-    /// Heading, rad, unwrapped; NaN where it was not read.
+    /// Heading, rad, unwrapped; NaN if missing.
     pub heading: &'a [f64],
     /// Speed, m/s.
     pub speed: Option<&'a [f64]>,
@@ -22,7 +22,7 @@ pub struct Signals<'a> {
 }
 
 impl Signals<'_> {
-    /// `true` where the channels are as documented; no manoeuvre is detected in others.
+    /// `true` if the channels are as documented; otherwise no manoeuvre is detected.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();
         self.rudder.len() == rows
@@ -33,7 +33,7 @@ impl Signals<'_> {
     }
 }
 
-/// A log with its rudder holds and its course.
+/// Log with its rudder holds and its course.
 #[derive(Clone, Copy)]
 pub(crate) struct Prepared<'a> {
     pub log: &'a Signals<'a>,
@@ -41,7 +41,7 @@ pub(crate) struct Prepared<'a> {
     pub course: &'a Course,
 }
 
-/// A detected manoeuvre without the bounds of its part.
+/// Detected manoeuvre without the bounds of the part.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
     pub manoeuvre: Manoeuvre,

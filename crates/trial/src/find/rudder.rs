@@ -1,5 +1,5 @@
 //! Holds of the rudder in a log: rows about one angle, robust against noise, rounding and spikes of the channel. The
-//! patterns of holds that make a manoeuvre are in the modules beside this one.
+//! patterns of holds of each manoeuvre are in the neighbouring modules.
 
 use std::ops::RangeInclusive;
 
@@ -9,10 +9,10 @@ use estimation::statistics::median;
 /// Minimum half-width of the band of a hold, rad: orders and feedback agree to about half a degree.
 const MIN_BAND: f64 = 0.5_f64.to_radians();
 
-/// Maximum half-width for noise and rounding, rad: steering by an autopilot is not noise.
+/// Maximum half-width for noise and rounding, rad: larger movements are steering.
 const MAX_BAND: f64 = 1.5_f64.to_radians();
 
-/// Half-width of the band as a share of its level.
+/// Half-width of the band of a hold as a share of the level.
 const BAND_SHARE: f64 = 0.11;
 
 /// Resolution of a rudder angle, rad.
@@ -27,7 +27,7 @@ const LEVEL_TOLERANCE: f64 = 0.15;
 /// Maximum pause between merged holds as a share of their total duration.
 const MAX_PAUSE_SHARE: f64 = 0.5;
 
-/// Minimum duration of a hold as a share of its neighbours.
+/// Minimum duration of a hold as a share of the adjacent holds.
 const SHORT_SHARE: f64 = 0.2;
 
 /// Maximum number of rows off the level within a hold.
@@ -39,7 +39,7 @@ const MIN_ROWS: usize = 3;
 /// Length of a gap that ends a hold, usual time steps.
 const GAP_STEPS: f64 = 30.0;
 
-/// A hold: rows with the rudder at rest.
+/// Hold: rows with the rudder at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// First row.
@@ -60,7 +60,7 @@ impl Hold {
         self.until - self.from
     }
 
-    /// Both holds and the rows between them; the level is that of the longer hold.
+    /// Union of two holds with the rows between them; the level is that of the longer hold.
     pub fn joined(self, later: Self) -> Self {
         let level = if later.duration() > self.duration() { later.level } else { self.level };
         Self { last: later.last, until: later.until, level, ..self }
@@ -74,24 +74,25 @@ pub(crate) struct RudderHolds {
     pub angle: Vec<f64>,
     /// Standard deviation of the rudder noise, rad.
     pub noise: f64,
-    /// Half-width of the narrowest band in which the rudder rests, rad.
+    /// Half-width of the narrowest band of a hold, rad.
     pub floor: f64,
     /// Usual time between rows, s; 0 for less than two rows.
     pub step: f64,
-    /// Neutral rudder angle, rad: the median of the log, or 0 where the median is not small.
+    /// Neutral rudder angle, rad: the median of the log, or 0 if the median is not small.
     pub neutral: f64,
-    /// Every hold, in order.
+    /// Holds, in order of time.
     pub holds: Vec<Hold>,
     /// Holds with neighbours of nearly the same level merged.
     pub merged: Vec<Hold>,
 }
 
 impl RudderHolds {
-    /// Holds of a rudder (rad) over time (s); a log of less than three rows has none.
+    /// Holds of a rudder (rad) over time (s); empty for a log of less than three rows.
     pub fn of(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
         let step = usual(time.windows(2).map(|pair| pair[1] - pair[0]));
-        // Second differences see noise and no movement; those of white noise have six times its variance.
+        // Second differences respond to noise and not to steady movement; for white noise their variance is six times
+        // as large.
         let noise = 1.4826 / 6.0_f64.sqrt() * usual(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
         let quantum = smallest_step(rudder);
         let floor = (3.0 * noise).max(1.1 * quantum).clamp(MIN_BAND, MAX_BAND);
@@ -103,12 +104,12 @@ impl RudderHolds {
         rudder
     }
 
-    /// `true` where the rudder of a hold is amidships or neutral.
+    /// `true` if the rudder of a hold is amidships or neutral.
     pub fn is_amidships(&self, hold: &Hold) -> bool {
         hold.level.abs().min((hold.level - self.neutral).abs()) < self.floor
     }
 
-    /// Cuts the log where the rudder leaves the band about the mean of the rows since the last cut.
+    /// Cuts the log wherever the rudder leaves the band about the mean of the rows since the last cut.
     fn cut(&self, time: &[f64]) -> Vec<Hold> {
         let mut holds = Vec::new();
         let (mut first, mut last, mut sum, mut count) = (0, 0, 0.0, 0.0);
@@ -137,7 +138,7 @@ impl RudderHolds {
     fn merged(&self) -> Vec<Hold> {
         let mut merged: Vec<Hold> = Vec::new();
         for &next in &self.holds {
-            // A rest much shorter than both neighbours is a pause or the end of a movement. Beside hours on a straight
+            // A rest much shorter than both neighbours is a pause or the end of a movement. Next to hours on a straight
             // course every rest is short.
             if let [.., before, between] = merged.as_slice()
                 && between.duration() < SHORT_SHARE * before.duration().min(next.duration())
@@ -154,7 +155,7 @@ impl RudderHolds {
         merged
     }
 
-    /// The rows of a cut without the ends of the adjacent movements; `None` if the rudder moved all the time.
+    /// The rows of a cut without the ends of the adjacent movements; `None` if the rudder moved in all of them.
     fn hold(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Hold> {
         if last + 1 - first < MIN_ROWS {
             return None;
@@ -162,7 +163,7 @@ impl RudderHolds {
         let half = (last + 1 - first) / 2;
         let (early, late) = (&self.angle[first..first + half], &self.angle[last + 1 - half..=last]);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        // A steady movement through the band has halves that are a band apart.
+        // A steady movement through the band has halves whose means differ by a band.
         if (mean(early) - mean(late)).abs() > 0.5 * band {
             return None;
         }
@@ -190,16 +191,16 @@ impl RudderHolds {
     }
 }
 
-/// `true` where two neighbouring holds belong to the same hold: similar level, short pause.
+/// `true` if two neighbouring holds are one hold: similar level, short pause.
 fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
-    // The end of a movement is near the level, too.
+    // The end of a movement is also near the level.
     let size = a.level.abs().max(b.level.abs());
     let tolerance = if shorter < SHORT_SHARE * longer { 0.5 * floor } else { floor.max(LEVEL_TOLERANCE * size) };
     (a.level - b.level).abs() <= tolerance && b.from - a.until <= MAX_PAUSE_SHARE * (a.duration() + b.duration())
 }
 
-/// Running median of three; the first and last value stay.
+/// Running median of three; the first and last value are unchanged.
 fn without_spikes(values: &[f64]) -> Vec<f64> {
     let mut calm = values.to_vec();
     for (row, x) in values.windows(3).enumerate() {
@@ -208,16 +209,16 @@ fn without_spikes(values: &[f64]) -> Vec<f64> {
     calm
 }
 
-/// Median of the finite values, 0 of none.
+/// Median of the finite values; 0 for none.
 pub(crate) fn usual(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
-/// Step of a rounded rudder that flickers, rad: the 5th percentile of the differences between rows; 0 where the rudder
+/// Step of a rounded rudder that flickers, rad: the 5th percentile of the differences between rows; 0 if the rudder
 /// seldom changes.
 fn smallest_step(rudder: &[f64]) -> f64 {
     let steps = rudder.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    // Values that differ by rounding of the arithmetic are the same.
+    // Values that differ by rounding of the arithmetic count as equal.
     let mut steps: Vec<f64> = steps.filter(|step| *step > 1e-9).collect();
     if steps.len() <= rudder.len() / 50 {
         return 0.0;

@@ -1,5 +1,5 @@
-//! Direct spirals (Dieudonné) in a log: the rudder goes from side to side in steps and rests at each until the ship
-//! turns steadily. Reverse spirals (Bech), where the rate is ordered and the rudder follows, are not recognised.
+//! Direct spirals (Dieudonné) in a log: the rudder goes from side to side in steps and rests at each step until the
+//! ship turns steadily. Reverse spirals (Bech), with ordered rates, are not recognised.
 //!
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
@@ -20,10 +20,10 @@ const MIN_AMPLITUDE: f64 = 2.0_f64.to_radians();
 /// Maximum duration of a movement as a share of the shorter adjacent hold.
 const MAX_MOVEMENT_SHARE: f64 = 0.5;
 
-/// Maximum duration of a pause in a movement as a share of both neighbours.
+/// Maximum duration of a pause in a movement as a share of both adjacent holds.
 const PAUSE_SHARE: f64 = 0.2;
 
-/// Minimum duration of a hold as a share of the usual hold.
+/// Minimum duration of a hold as a share of the median hold.
 const MIN_HOLD_SHARE: f64 = 0.4;
 
 /// Maximum ratio of the rudder angles to both sides.
@@ -34,7 +34,7 @@ const MAX_SIDE_RATIO: f64 = 2.0;
 const MAX_RATE_CHANGE: f64 = 0.04;
 const MAX_RATE_REVERSAL: f64 = 0.15;
 
-/// The spirals of a log.
+/// Spirals of a log.
 pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
     let all = &record.rudder.holds;
     let is_pause = |index: usize| {
@@ -44,7 +44,7 @@ pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
     let holds: Vec<Hold> = (0..all.len()).filter(|&index| !is_pause(index)).map(|index| all[index]).collect();
     let sweeps: Vec<&[Hold]> = sweeps(&holds).into_iter().filter(|sweep| is_answered(record, sweep)).collect();
     let mut patterns: Vec<Pattern> = Vec::new();
-    // Sweeps share the hold at which the rudder turns back.
+    // Sweeps share the hold at which the rudder reverses.
     for group in sweeps.chunk_by(|a, b| a[a.len() - 1].first == b[0].first) {
         if !group.iter().any(|sweep| is_from_side_to_side(sweep)) {
             continue;
@@ -60,7 +60,7 @@ pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
     patterns
 }
 
-/// Sweeps: runs of holds, each further to the same side than the hold before.
+/// Sweeps: runs of holds, each further to the same side than the previous hold.
 fn sweeps(holds: &[Hold]) -> Vec<&[Hold]> {
     let step = |index: usize| {
         let (a, b) = (&holds[index], &holds[index + 1]);
@@ -91,7 +91,7 @@ fn is_from_side_to_side(sweep: &[Hold]) -> bool {
     sweep.len() >= MIN_HOLDS && smaller >= MIN_AMPLITUDE && larger <= MAX_SIDE_RATIO * smaller
 }
 
-/// `true` where the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.
+/// `true` if the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.
 fn is_answered(record: &Prepared, sweep: &[Hold]) -> bool {
     let usual = usual(sweep.iter().map(Hold::duration));
     if sweep.iter().any(|hold| hold.duration() < MIN_HOLD_SHARE * usual) {

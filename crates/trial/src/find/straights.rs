@@ -1,6 +1,6 @@
 //! Straight pieces between the manoeuvres of a log: the heading stays near a course and the rudder near amidships, by
-//! hand, by autopilot or without steering. A ship at rest also keeps her heading; she is left out where speed or
-//! propeller shows it.
+//! hand, by autopilot or without steering. A ship at rest also keeps her heading; it is excluded if speed or
+//! propeller determines that.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use super::detection::{DetectedManoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
 use super::rudder::usual;
 
-/// Maximum range of headings on a course, rad: an autopilot keeps ±1 degree, in waves ±2.
+/// Maximum range of headings on a course, rad: an autopilot keeps ±1°, in waves ±2°.
 const MAX_HEADING_RANGE: f64 = 5.0_f64.to_radians();
 
-/// Maximum rudder off its neutral angle, rad.
+/// Maximum deviation of the rudder from its neutral angle, rad.
 const MAX_RUDDER: f64 = 7.0_f64.to_radians();
 
 /// Minimum duration of a piece, time scales of the manoeuvres of the log.
@@ -54,7 +54,7 @@ pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<Detect
     list.sort_by(|a, b| a.from.total_cmp(&b.from));
 }
 
-/// Straight pieces among some rows; `is_straight` tests speed, propeller and rudder of a row, not its heading.
+/// Straight pieces in a range of rows; `is_straight` tests speed, propeller and rudder of a row, not its heading.
 fn pieces_in(
     record: &Prepared,
     is_straight: impl Fn(usize) -> bool,
@@ -96,7 +96,7 @@ impl Piece {
         Self { first: row, last: row, lowest: psi, highest: psi, read: time }
     }
 
-    /// Takes a row along unless its heading is off the course.
+    /// Includes a row unless its heading is off the course; `true` if included.
     fn takes(&mut self, row: usize, psi: f64, time: f64) -> bool {
         let (lowest, highest) = (self.lowest.min(psi), self.highest.max(psi));
         // NaN and infinite headings fail the comparison.

@@ -1,4 +1,4 @@
-//! Logs of a simulated ship with one manoeuvre or several, and logs that hold none.
+//! Logs of a simulated ship with one manoeuvre or several, and logs without manoeuvres.
 
 mod confusers;
 mod ship;
@@ -9,7 +9,7 @@ use self::ship::Sea;
 use super::{Approach, DetectedManoeuvre, manoeuvres};
 use crate::Manoeuvre;
 
-/// A zig-zag after twelve minutes on a course, and straight on.
+/// A zig-zag after twelve minutes on a course, followed by a straight course.
 fn half_an_hour(step: f64) -> (Sea, (f64, f64)) {
     let mut sea = Sea::new(step);
     sea.keep(720.0);
@@ -48,7 +48,7 @@ fn an_unsteady_approach_is_left_out() {
     let (mut sea, part) = half_an_hour(0.2);
     let rows = sea.time.len();
     for row in 0..rows {
-        // The ship gathers way until some time in the trial.
+        // The speed increases until some time in the trial.
         sea.speed[row] = 8.0 * (sea.time[row] / 900.0).min(1.0);
     }
     let detected = sea.detected();
@@ -193,7 +193,7 @@ fn all_kinds_are_told_apart() {
     ];
     let mut list = manoeuvres(&sea.log());
     assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].start));
-    // A course that is reached slowly may be two.
+    // A course that is reached slowly may count as two pieces.
     list.dedup_by(|piece, before| piece.manoeuvre.is_none() && before.manoeuvre.is_none());
     let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, expected);
@@ -201,7 +201,7 @@ fn all_kinds_are_told_apart() {
     assert_eq!((rudder_deg(8), list[8].executes, rudder_deg(4)), (Some(15.0), 13, Some(35.0)));
 }
 
-/// Hours with the rudder at rest, beside which every hold of a manoeuvre is short.
+/// Hours with the rudder at rest, compared with which every hold of a manoeuvre is short.
 #[test]
 fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
     for hours in [0.1, 0.5, 2.0, 12.0] {
@@ -228,7 +228,7 @@ fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
     }
 }
 
-/// Parts, without what changes its sign.
+/// Parts, without the values whose sign changes.
 fn parts(list: &[DetectedManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
     list.iter().map(|part| (part.from, part.until, part.start, part.executes)).collect()
 }
@@ -257,7 +257,7 @@ fn the_unit_of_time_does_not_matter() {
     }
 }
 
-/// A day at 10 Hz, with and without noise; its time is printed, 0.5 s is meant.
+/// A day at 10 Hz, with and without noise; its time is printed; the aim is 0.5 s.
 #[test]
 fn a_day_at_ten_hertz() {
     let mut sea = Sea::new(0.1);
@@ -276,7 +276,7 @@ fn a_day_at_ten_hertz() {
         let detected = sea.detected();
         println!("{} rows in {:.3} s", sea.time.len(), start.elapsed().as_secs_f64());
         let executes: Vec<usize> = detected.iter().map(|manoeuvre| manoeuvre.executes).collect();
-        // In noise one hold of very many may be taken for two.
+        // In noise one of very many holds may be split into two.
         let expected = [6, 6, 1].repeat(11);
         let others = executes.iter().zip(&expected).filter(|(executes, expected)| executes != expected).count();
         let allowed = usize::from(noise_deg > 0.0);

@@ -1,5 +1,5 @@
 //! Turning circles and pull-outs in a log: the rudder rests at an angle until the ship has turned, and then amidships.
-//! A change of course is neither.
+//! A change of course is neither of them.
 //!
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
@@ -31,7 +31,7 @@ const MIN_SCALES: f64 = 2.0;
 /// Maximum change of a steady yaw rate from a time scale to the next, as a share of the rate of the turn.
 const MAX_RATE_CHANGE: f64 = 0.04;
 
-/// The turning circles and pull-outs among holds that are in order of time.
+/// Turning circles and pull-outs among holds, which are in order of time.
 pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     let mut patterns = Vec::new();
     for (index, hold) in holds.iter().enumerate() {
@@ -55,7 +55,7 @@ fn turned(record: &Prepared, hold: &Hold) -> Option<f64> {
     (turned * rudder.signum() >= MIN_TURN).then_some(turned)
 }
 
-/// `true` where a hold has no gap in which the rudder may have moved.
+/// `true` if a hold has no gap in which the rudder may have moved.
 fn is_whole(record: &Prepared, hold: &Hold) -> bool {
     let rows = &record.log.time[hold.first..=hold.last];
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
@@ -67,7 +67,7 @@ fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT_TURN / rate;
     let soon = |hold: &&Hold| hold.from - turn.until <= time.max(0.25 * turn.duration());
-    // Between two turns the rudder was not amidships.
+    // Between two turns the rudder is not amidships.
     let mut reach = next.iter().take_while(soon).take_while(|hold| turned(record, hold).is_none());
     let amidships = reach.find(|hold| hold.duration() >= MIN_SCALES * time)?;
     let neutral = record.rudder.neutral;

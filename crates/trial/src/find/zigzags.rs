@@ -1,5 +1,5 @@
-//! Zig-zags in a log: the rudder rests at nearly the same angle to alternate sides, goes over quickly, and the heading
-//! swings about a course with it. The bounds of the part are set in `bounds`.
+//! Zig-zags in a log: the rudder rests at nearly the same angle to alternate sides, is reversed quickly, and the
+//! heading swings about a course. The bounds of the part are set in `bounds`.
 //!
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
@@ -34,7 +34,7 @@ const MIN_HELD_SHARE: f64 = 0.3;
 const MAX_SWING_RATIO: f64 = 1.7;
 
 /// Change of heading in the first hold, as a share of the swings: half a swing from the base course, somewhat more
-/// where the hold begins within a reversal. With only three holds the bounds are narrow, against chance.
+/// if the hold begins within a reversal. With only three holds the bounds are narrow, against chance.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
 const ONLY_SWING: (f64, f64) = (0.4, 0.62);
 
@@ -44,7 +44,7 @@ const APPROACH_SHARE: f64 = 0.5;
 const MAX_APPROACH_TURN: f64 = 0.12;
 const MAX_AMIDSHIPS_SHARE: f64 = 0.5;
 
-/// Rudder angle and change of heading of a clear zig-zag, rad; one of them is enough. An autopilot that keeps a course
+/// Rudder angle and change of heading of a clear zig-zag, rad; one of them is sufficient. An autopilot on a course
 /// uses 3 degrees of rudder and lets the heading vary by one.
 const CLEAR_RUDDER: f64 = 4.0_f64.to_radians();
 const CLEAR_HEADING: f64 = 2.0_f64.to_radians();
@@ -62,7 +62,7 @@ const MAX_LAST_SWINGS: f64 = 4.0;
 /// Minimum number of holds.
 const MIN_HOLDS: usize = 3;
 
-/// The zig-zags among holds that are in order of time.
+/// Zig-zags among holds, which are in order of time.
 pub(crate) fn zigzags(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     let mut patterns: Vec<Pattern> = Vec::new();
     let mut start = 0;
@@ -143,7 +143,7 @@ fn answered(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
         return Vec::new();
     }
     let headings: Vec<Option<f64>> = holds.iter().map(|hold| heading_at_end(record, hold)).collect();
-    // Swing under the rudder of hold `index`, from the execute that began it to the one that ended it.
+    // Swing under the rudder of hold `index`, from the execute at its beginning to the execute at its end.
     let swing = |index: usize| -> Option<f64> {
         let change = headings[index]? - headings[index - 1]?;
         let size = change * side(holds, index);
@@ -166,7 +166,7 @@ fn answered(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
         patterns.extend(pattern(record, &holds[begin - 1..=index + 1], &headings[begin - 1..=index + 1]));
         index += 1;
     }
-    // Runs of swings of different size share the holds where one ends and the next begins.
+    // Runs of swings of different size share the hold between them.
     patterns.dedup_by(|next: &mut Pattern, last: &mut Pattern| {
         let shared = next.first() <= last.last();
         if shared && next.holds.len() > last.holds.len() {
@@ -177,13 +177,13 @@ fn answered(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     patterns
 }
 
-/// +1 where a hold is to starboard of its neighbour, else −1.
+/// +1 if a hold is to starboard of its neighbour, else −1.
 fn side(holds: &[Hold], index: usize) -> f64 {
     let neighbour = if index > 0 { index - 1 } else { index + 1 };
     (holds[index].level - holds[neighbour].level).signum()
 }
 
-/// Heading when the rudder leaves a hold: between its last row and the next.
+/// Heading at the end of a hold: between its last row and the next.
 fn heading_at_end(record: &Prepared, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
     record.course.near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
@@ -215,7 +215,7 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
     if holds.len() < MIN_HOLDS || !is_held(record, holds) {
         return None;
     }
-    // Half the difference of the sides: independent of a neutral rudder off zero.
+    // Half the difference of the sides, which is independent of a neutral rudder off zero.
     let level = |first: usize| usual(holds.iter().skip(first).step_by(2).map(|hold| hold.level));
     let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
@@ -230,10 +230,10 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
     })
 }
 
-/// `true` where the ship went straight with the rudder about amidships before the first of three holds, which began at
-/// the time `from` (s) and the heading `began` (rad), and where the log does not show it.
+/// `true` if the ship went straight with the rudder about amidships before the first of three holds, which began at
+/// the time `from` (s) and the heading `began` (rad), and if the log does not contain the approach.
 fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, swing: f64) -> bool {
-    // In the second hold the heading has twice as far to go, and the ship first stops a turn.
+    // In the second hold the change of heading is twice as large, and the ship first stops a turn.
     if holds[1].duration() <= holds[0].duration() {
         return false;
     }
@@ -246,7 +246,7 @@ fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, 
         && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
 }
 
-/// `true` where the rudder is held for a sufficient share of the time and no gap of the log hides a hold.
+/// `true` if the rudder is held for a sufficient share of the time and no gap of the log hides a hold.
 fn is_held(record: &Prepared, holds: &[Hold]) -> bool {
     let held: f64 = holds.iter().map(Hold::duration).sum();
     let (first, last) = (holds[0], holds[holds.len() - 1]);

@@ -2,7 +2,7 @@
 
 use crate::cleaning::readings;
 
-/// Autocorrelation of the deviations of two sensors: below the first at lag 1, above the second at lag 2. That of white
+/// Bounds of the autocorrelation of the deviations of two sensors: maximum at lag 1, minimum at lag 2. That of white
 /// noise is −0.67 and 0.17.
 const CORRELATIONS: [f64; 2] = [-0.75, 0.6];
 
@@ -12,14 +12,14 @@ const MIN_DISAGREEMENT: f64 = 0.006;
 /// Minimum number of deviations.
 const MIN_DEVIATIONS: usize = 40;
 
-/// Maximum share of the sum of squares beside repeated readings; a staircase (written on change, or in coarse steps)
-/// has more.
+/// Maximum share of the sum of squares next to repeated readings; a staircase (written on change, or in coarse steps)
+/// has a larger share.
 const MAX_REPEATED_SHARE: f64 = 0.5;
 
 /// Disagreement of the two sensors of a channel (rms), in the unit of the values; `None` for a single sensor.
 ///
-/// Where two smooth signals alternate, the deviation of a reading from the straight line between its neighbours changes
-/// its sign from reading to reading.
+/// If two smooth signals alternate, the deviation of a reading from the straight line between its neighbours changes
+/// its sign at every reading.
 pub(super) fn alternation(time: &[f64], values: &[f64]) -> Option<f64> {
     let (mut deviations, mut beside_repeated) = (Vec::new(), 0.0);
     for ([before, at, after], deviation) in readings::deviations(time, values) {
@@ -60,7 +60,7 @@ mod tests {
         let noise = |row: usize| 0.02 * ((row as f64 * 12.9898).sin() * 43758.5453).fract();
         assert_eq!(alternation(&time, &values(&|row, t| signal(t) + noise(row))), None);
         assert_eq!(alternation(&time, &values(&|_, t| (signal(t) / 0.02).round() * 0.02)), None);
-        // Held for every other row, as a channel that is written on change.
+        // Values held for every other row, as in a channel written on change.
         assert_eq!(alternation(&time, &values(&|row, _| 0.02 * (row / 2) as f64)), None);
     }
 }

@@ -5,14 +5,15 @@ use crate::record::Trial;
 /// Minimum number of changes.
 const MIN_CHANGES: usize = 60;
 
-/// Minimum correlation of the changes of the yaw rate and of the derivative of the heading; two instruments have less.
+/// Minimum correlation of the changes of the yaw rate and of the derivative of the heading; two instruments have a
+/// lower one.
 const MIN_CORRELATION: f64 = 0.95;
 
-/// Maximum correlation of successive changes of a derivative that consists of noise and jumps of the heading. The turns
-/// of a ship are smooth, and two instruments agree on them.
+/// Maximum correlation between successive changes of a derivative that consists of noise and jumps of the heading. The
+/// turns of a ship are smooth, and two instruments agree on them.
 const MAX_AUTOCORRELATION: f64 = -0.2;
 
-/// `true` where the yaw rate repeats the noise and the jumps of the heading, as its derivative does.
+/// `true` if the yaw rate repeats the noise and the jumps of the heading, as its derivative does.
 pub(crate) fn is_derivative(trial: &Trial) -> bool {
     if trial.heading_from_yaw_rate() {
         return false;
@@ -28,7 +29,7 @@ pub(crate) fn is_derivative(trial: &Trial) -> bool {
     })
 }
 
-/// `true` where the changes of a rate equal those of a difference quotient over `rows` rows that is mostly noise.
+/// `true` if the changes of a rate equal those of a difference quotient over `rows` rows that is mostly noise.
 fn repeats(slopes: &[f64], rates: &[f64], rows: usize) -> bool {
     let changes = |values: &[f64]| values.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>();
     let [slopes, rates] = [slopes, rates].map(changes);
@@ -54,7 +55,7 @@ mod tests {
         assert!(repeats(&slopes, &rounded, 2));
         let gyro: Vec<f64> = (1..399).map(|row| 0.005 * (0.05 * row as f64).cos() + 2e-3 * noise(row, 7.0)).collect();
         assert!(!repeats(&slopes, &gyro, 2));
-        // Without noise both are right.
+        // Without noise the derivative and the reading are equal.
         let smooth: Vec<f64> = (0..398).map(|row| 0.015 * (0.05 * f64::from(row)).cos()).collect();
         assert!(!repeats(&smooth, &smooth, 2));
     }

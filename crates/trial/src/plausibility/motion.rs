@@ -1,12 +1,12 @@
-//! Movement of a channel: range, reversals and mean rate. Ratios of these figures hold for ships of every size.
+//! Movement of a channel: range, reversals and mean rate. Ratios of these numbers hold for ships of every size.
 
-/// Minimum and largest finite value; ∞ and −∞ without finite values.
+/// Minimum and maximum finite value; ∞ and −∞ without finite values.
 pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Maximum minus smallest finite value; 0 without finite values.
+/// Maximum minus minimum finite value; 0 without finite values.
 pub(crate) fn range(values: &[f64]) -> f64 {
     let (low, high) = extremes(values.iter().copied());
     if low <= high { high - low } else { 0.0 }
@@ -35,7 +35,7 @@ pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
     turned / duration
 }
 
-/// Changes of a channel with their duration (s), over a hundredth of its readings each, so that noise matters little.
+/// Changes of a channel with their duration (s), over a hundredth of its readings each, to reduce the effect of noise.
 pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     const PARTS: usize = 100;
     let read = values.iter().filter(|value| value.is_finite()).count();

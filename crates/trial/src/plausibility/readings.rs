@@ -11,14 +11,14 @@ use crate::record::Trial;
 use crate::wording::{counted, instant, shortened};
 use crate::zigzag::quantum;
 
-/// Minimum number of rows of a value that noise does not repeat.
+/// Minimum number of rows with one value that noise does not repeat.
 const MIN_STILL_ROWS: usize = 20;
 
 /// Maximum probability that noise repeats a value over as many rows somewhere in the record.
 const MAX_CHANCE: f64 = 1e-6;
 
-/// Minimum share and number of rows of a noisy channel that turn back at once and by more than a digit. A helmsman
-/// turns back later, and a channel between two digits turns back by a digit.
+/// Minimum share and number of immediate reversals by more than a digit in a noisy channel. A helmsman
+/// reverses later, and a channel between two digits reverses by a digit.
 const MIN_NOISY: (f64, usize) = (0.08, 10);
 
 /// Minimum noise of a noisy channel, deg.
@@ -27,10 +27,10 @@ const MIN_NOISE_DEG: f64 = 0.03;
 /// Minimum step of a coarse scale, deg; usual digits of rudder and heading are finer.
 const MIN_COARSE_STEP_DEG: f64 = 1.5;
 
-/// Minimum number of changes to the next value of a coarse scale, and their minimum share: an order changes by more.
+/// Minimum number of changes to the next value of a coarse scale, and their minimum share: an order has larger changes.
 const MIN_NEXT: (usize, f64) = (8, 0.6);
 
-/// Minimum number of values of a coarse scale: an order has three.
+/// Minimum number of values of a coarse scale: an order has three values.
 const MIN_VALUES: usize = 5;
 
 /// Minimum number of pauses within movements, and their minimum share of the changes: a rudder of constant rate, read
@@ -62,7 +62,7 @@ fn runs(values: &[f64]) -> Vec<Range<usize>> {
     runs.filter(|run| run.len() >= MIN_STILL_ROWS).collect()
 }
 
-/// Last decimal of the larger half of the values, rad: numbers with a fixed count of significant digits have finer
+/// Last decimal of the larger half of the values, rad; numbers with a fixed count of significant digits have finer
 /// decimals near zero. Zero for values without decimals of a degree.
 fn digit(values: &[f64]) -> f64 {
     let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
@@ -71,7 +71,7 @@ fn digit(values: &[f64]) -> f64 {
     [1.0, 0.1, 0.01, 1e-3].into_iter().find(is_decimal).map_or(0.0, f64::to_radians)
 }
 
-/// Message of a noisy channel that stands still: clipped or frozen.
+/// Message of a noisy channel without movement: clipped or frozen.
 fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let mut still = runs(values);
     let least = (1.5 * digit(values)).max(MIN_NOISE_DEG.to_radians());
@@ -86,7 +86,7 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     if turned < MIN_NOISY.1 || (turned as f64) < MIN_NOISY.0 * rows as f64 {
         return None;
     }
-    // Coarse digits repeat a value by chance.
+    // Coarse digits repeat values by chance.
     let again = (equal as f64 / rows as f64).max(0.01);
     let longest = (MAX_CHANCE / values.len() as f64).ln() / again.ln();
     still.retain(|run| run.len() as f64 > longest);

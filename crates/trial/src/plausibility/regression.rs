@@ -1,5 +1,5 @@
 //! Regressions for the checks of signs and units. They use integrals of the recorded signals, so that noise is smoothed
-//! and no derivative is needed.
+//! and no derivative is required.
 //!
 //! Source: Frisch & Waugh (1933), Partial time regressions as compared with individual trends, Econometrica 1(4).
 
@@ -10,7 +10,7 @@ use crate::record::{Trial, integrate};
 /// Maximum number of rows of a regression; longer records are thinned after integration.
 const MAX_ROWS: usize = 2000;
 
-/// Partial regression of a signal on another, with nuisance signals taken out of both.
+/// Partial regression of a signal on another, with nuisance signals projected out of both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PartialSlope {
     /// Slope: units of the response per unit of the regressor.
@@ -22,7 +22,7 @@ pub(crate) struct PartialSlope {
 /// b = K/T (1/s²) of the first-order response by regression on integrals.
 ///
 /// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
-/// and rudder bias need not be known. `None` if nothing is left to explain, or numbers overflow.
+/// and rudder bias may be unknown. `None` without residual variance, or if numbers overflow.
 pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice) = (0.0, vec![0.0]);
@@ -41,7 +41,7 @@ pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     partial_slope(thinned(observed).map(row).collect())
 }
 
-/// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
+/// K (1/s) of a steadily turning ship, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
 /// rudder.
 pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
@@ -64,9 +64,10 @@ pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
         .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
 }
 
-/// Slope of the heading on the integral of the yaw rate: 1 where both agree in unit and sign.
+/// Slope of the heading on the integral of the yaw rate: 1 if both agree in unit and sign.
 ///
-/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as above, or without a recorded yaw rate.
+/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `rudder_on_heading`, or without a recorded yaw
+/// rate.
 pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
     if trial.heading_from_yaw_rate() {
         return None;
@@ -77,14 +78,14 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
     partial_slope(thinned(both).map(|i| [1.0, time[i] - time[0], integral[i], psi[i]]).collect())
 }
 
-/// Every n-th of some rows; at most [`MAX_ROWS`] are kept.
+/// Every n-th row of a range, at most [`MAX_ROWS`].
 pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterator<Item = usize> {
     let every = rows.clone().count() / MAX_ROWS + 1;
     rows.step_by(every)
 }
 
-/// Partial slope of the last column on the last but one, with all other columns taken out of both (Frisch & Waugh
-/// 1933): the last corner of R in the QR decomposition of the columns.
+/// Partial slope of the last column on the last but one, with all other columns projected out of both (Frisch & Waugh
+/// 1933): the last entries of R in the QR decomposition of the columns.
 pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();

@@ -1,4 +1,4 @@
-//! Checks of the recorded rudder: sign, scale, unit of the time, and whether it is an order in place of an angle.
+//! Checks of the recorded rudder: sign, scale, unit of the time, and distinction of an order from an angle.
 
 use document::{Warning, WarningCode};
 use estimation::statistics::median;
@@ -21,16 +21,16 @@ const RUDDER_RATES_DEG_S: std::ops::RangeInclusive<f64> = 0.3..=100.0;
 /// Minimum share of steps among the strokes of an order.
 const MIN_STEP_SHARE: f64 = 0.8;
 
-/// Maximum movement beside a step: in standard deviations of the noise, and as a share of the stroke.
+/// Maximum movement next to a step: in standard deviations of the noise, and as a share of the stroke.
 const MAX_BESIDE_STEP: (f64, f64) = (8.0, 0.1);
 
 /// Maximum negative angle of a rudder on a single side, deg.
 const MAX_OTHER_SIDE_DEG: f64 = 1.0;
 
-/// Shares of its largest angle below and above which a rudder without sign is amidships and laid.
+/// Shares of its maximum angle below and above which a rudder without sign is amidships and laid.
 const AMIDSHIPS_AND_LAID: [f64; 2] = [0.35, 0.75];
 
-/// Minimum share of the turning to either side of a ship that turns to both.
+/// Minimum share of the turning to either side by a ship that turns to both sides.
 const MIN_SIDE_SHARE: f64 = 0.25;
 
 /// Tolerance of the recorded angle at a held order, as a share of the order.
@@ -49,7 +49,7 @@ pub(super) fn rudder_movements(trial: &Trial) -> impl Iterator<Item = Warning> {
     [against_order, clock_of_rudder(&strokes), held(trial), unsigned(trial)].into_iter().flatten()
 }
 
-/// Warning of a rudder without sign: it goes to a single side repeatedly while the ship turns to both.
+/// Warning of a rudder without sign: it moves repeatedly to a single side while the ship turns to both sides.
 fn unsigned(trial: &Trial) -> Option<Warning> {
     let rudder = trial.rudder();
     let (low, high) = extremes(rudder.iter().copied());
@@ -99,7 +99,7 @@ fn in_per_cent(held_deg: f64) -> Option<f64> {
     (usual_deg > 0.0 && (order_deg - usual_deg).abs() < 0.04).then_some(usual_deg)
 }
 
-/// Stroke of the rudder: a movement to one side, with its largest change between two rows.
+/// Stroke of the rudder: a movement to one side, with its maximum change between two rows.
 struct RudderStroke {
     length_deg: f64,
     duration_s: f64,
@@ -130,7 +130,7 @@ fn noise_deg(rudder: &[f64]) -> f64 {
     to_deg(1.4826 * median(&mut sizes).unwrap_or(0.0))
 }
 
-/// Warning of steps in place of strokes: an order under the name of the angle. Noise beside a step is allowed.
+/// Warning of steps in place of strokes: an order under the name of the angle. Noise next to a step is allowed.
 fn steps(strokes: &[RudderStroke], noise_deg: f64) -> Option<Warning> {
     let is_step = |stroke: &&RudderStroke| {
         let beside_deg = stroke.length_deg - stroke.largest_deg;
@@ -151,7 +151,7 @@ fn steps(strokes: &[RudderStroke], noise_deg: f64) -> Option<Warning> {
     })
 }
 
-/// Warning of strokes at the rate of no steering gear over several rows: the unit of the time is wrong.
+/// Warning of strokes over several rows at an impossible rate of a steering gear: the unit of the time is wrong.
 fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<Warning> {
     let seen = strokes.iter().filter(|stroke| stroke.rows >= 3);
     let mut rates: Vec<f64> = seen.map(|stroke| stroke.length_deg / stroke.duration_s).collect();
@@ -164,7 +164,7 @@ fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<Warning> {
     })
 }
 
-/// Warning of a feedback off its order: the ratio of both at rest is 1 for a calibrated feedback.
+/// Warning of a feedback that differs from its order: their ratio at rest is 1 for a calibrated feedback.
 fn feedback(trial: &Trial, order: &[f64]) -> Option<Warning> {
     let rudder = trial.rudder();
     let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
@@ -191,7 +191,7 @@ mod tests {
     use crate::record::{Columns, Origin};
     use ship::angle::from_deg;
 
-    /// Warnings of a rudder that goes to and fro between ±20° at a rate (deg/s), read every `step` s, and of its order.
+    /// Warnings of a rudder that alternates between ±20° at a rate (deg/s), read every `step` s, and of its order.
     fn warnings(rate_deg_s: f64, step: f64, scale: f64, with_order: bool) -> String {
         warnings_read_by(rate_deg_s, step, with_order, |_, angle| scale * angle)
     }

@@ -1,4 +1,4 @@
-//! Every check on records made for it: the right record passes, the wrong one is named.
+//! Every check on synthetic records: correct records pass, faulty ones give their message.
 
 use std::collections::BTreeMap;
 
@@ -53,14 +53,14 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
 fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausible> {
     let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
     let checked = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
-    // The rudder of these records has no steering gear, and that is said of each.
+    // The rudder of these records has no steering gear, and each gives a warning of that.
     checked
         .map(|warnings| warnings.into_iter().filter(|warning| !warning.text.contains("looks like the order")).collect())
 }
 
 const PER_DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// What is wrong with a channel, and one of the complaints about it.
+/// Fault of a channel, and parts of its message.
 const WRONG: [(Channel, f64, &[&str]); 9] = [
     (Channel::Rudder, -1.0, &["RudderFlipped"]),
     (Channel::YawRate, -1.0, &["culprit: \"yaw-rate\""]),
@@ -73,7 +73,7 @@ const WRONG: [(Channel, f64, &[&str]); 9] = [
     (Channel::Heading, 1.0 / PER_DEGREE, &["HeadingInDegrees", "YawRateUnit"]),
 ];
 
-/// Nobody is told to give a column the name that it has.
+/// No message advises a column name that the column already has.
 #[test]
 fn a_column_that_is_named_so_already_is_thought_of() {
     for (channel, factor) in [(Channel::Rudder, 20.0), (Channel::Rudder, 0.01), (Channel::Heading, 60.0)] {
@@ -121,7 +121,7 @@ fn a_turning_circle_a_dither_and_course_keeping_in_wind_are_not_refused() {
     let dither = sail(0.1, 16.0, 300.0, |t, _, _| (from_deg(10.0) * (1.5 * t).sin(), 0.0));
     let warnings = verdict(dither).expect("a dither moves the heading little");
     assert!(warnings.iter().any(|warning| warning.text.contains("radians")), "{warnings:?}");
-    // The rudder answers the heading: gusts of many periods, a helmsman with counter-rudder.
+    // The rudder depends on the heading: gusts of many periods, a helmsman with counter-rudder.
     for gust in [0.5, 1.0, 2.0] {
         for (p, d) in [(1.0, 0.0), (1.0, 10.0), (3.0, 20.0), (0.5, 30.0)] {
             let keeping = sail(0.1, 16.0, 600.0, |t, psi, r| {

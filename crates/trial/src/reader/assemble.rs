@@ -1,5 +1,5 @@
 //! Assembly of channels with different sampling instants into the columns of a record. A row is an instant with a
-//! reading of heading, rudder or yaw rate; other observed channels are missing there. The rudder is interpolated
+//! reading of heading, rudder or yaw rate; other observed channels are missing in it. The rudder is interpolated
 //! linearly between its readings, as the steering gear moves; so are model inputs such as speed and wind. Gaps are not
 //! interpolated.
 
@@ -16,7 +16,7 @@ use estimation::statistics::upper_median;
 /// Maximum interval between two readings for interpolation, usual intervals.
 const MAX_INTERVAL: f64 = 3.0;
 
-/// Maximum share of rows left out without a warning of a gap.
+/// Maximum share of omitted rows without a warning of a gap.
 const MAX_LEFT_OUT_SHARE: f64 = 0.2;
 
 /// Tolerance of equal instants, s.
@@ -35,7 +35,7 @@ pub(super) fn columns(series: &[Series]) -> Columns {
     Columns { time, channels, unknown: Vec::new() }
 }
 
-/// Values of a channel at the rows: its readings, interpolated between them for a model input.
+/// Values of a channel at the rows: its readings, for a model input interpolated between them.
 fn at_rows(series: &Series, time: &[f64]) -> Vec<f64> {
     let mut values = vec![f64::NAN; time.len()];
     if OBSERVED.contains(&series.channel) {
@@ -72,7 +72,7 @@ fn is_direction(channel: Channel) -> bool {
     matches!(channel, Channel::WindRelativeFrom | Channel::WindTrueFrom)
 }
 
-/// A turn wrapped to −π to π, rad.
+/// Angle wrapped to −π to π, rad.
 fn wrapped(turn: f64) -> f64 {
     turn - (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
@@ -116,7 +116,7 @@ pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
     ))
 }
 
-/// Gives every row a rudder angle: interpolated between two readings without a gap; other rows are left out.
+/// Gives every row a rudder angle: interpolated between two readings without a gap; other rows are omitted.
 pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
@@ -143,7 +143,7 @@ pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     ];
     let notes = notes.into_iter().filter(|(count, _)| *count > 0);
     let notes = notes.map(|(count, text)| format!("{} {text}", counted(count, "row"))).collect::<Vec<_>>();
-    // Where many rows are left out, the movement of the rudder is unknown.
+    // If many rows are omitted, the movement of the rudder is unknown.
     let code =
         if left_out as f64 > MAX_LEFT_OUT_SHARE * keep.len() as f64 { WarningCode::Gap } else { WarningCode::LeftOut };
     Some(code.warning(notes.join("; ")))
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(columns.time[..4], [0.0, 0.2, 0.5, 1.0]);
         let text = interpolate_rudder(&mut columns).expect("rows were filled").text;
         assert!(text.contains("is interpolated between its readings"), "{text}");
-        // From the first reading of the rudder to its last.
+        // From the first to the last reading of the rudder.
         assert_eq!((columns.time[0], columns.time[columns.time.len() - 1]), (0.2, 9.2));
         for (row, &t) in columns.time.iter().enumerate() {
             approx::assert_relative_eq!(columns.channels[&Channel::Rudder][row], 2.0 * t, max_relative = 1e-12);

@@ -1,4 +1,5 @@
-//! Part of a log that becomes a record: the selected manoeuvre, else its only zig-zag. A log with several is refused.
+//! Part of a log that becomes a record: the selected manoeuvre, else its only zig-zag. A log with several zig-zags is
+//! refused.
 
 use document::{Warning, WarningCode};
 use ship::Particulars;
@@ -10,12 +11,12 @@ use crate::channel::Channel;
 use crate::find::{self, DetectedManoeuvre, Signals};
 use crate::manoeuvre::Manoeuvre;
 
-/// Maximum share of time outside the zig-zag for a record to be used whole; more is a run-up, a stop, the way back to
-/// the course or another manoeuvre, and is cut.
+/// Maximum share of time outside the zig-zag of a record used as a whole; a larger share is a run-up, a stop, the way
+/// back to the course or another manoeuvre, and is cut.
 const MAX_SURPLUS_SHARE: f64 = 0.02;
 
 impl Log {
-    /// The manoeuvres of the log, in order of time; none if it has no heading.
+    /// Manoeuvres of the log, in order of time; empty without a heading.
     pub fn manoeuvres(&self) -> Vec<DetectedManoeuvre> {
         let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
             return Vec::new();
@@ -29,18 +30,18 @@ impl Log {
         })
     }
 
-    /// The record of the one zig-zag that the log holds, or of the whole log where none is recognised; the warnings say
-    /// which part. `ship` overrides the sidecar.
+    /// Record of the only zig-zag in the log, or of the whole log if none is recognised; the warnings state the
+    /// part. `ship` overrides the sidecar.
     ///
-    /// Fails as [`into_trial`](Self::into_trial) does, and where the log holds several zig-zags.
+    /// Fails as [`into_trial`](Self::into_trial) does, and if the log contains several zig-zags.
     pub fn into_zig_zag(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
         self.chosen(None)?.into_trial(ship)
     }
 
-    /// The part with the manoeuvre of this number, from 1; without a number that with its zig-zag, where the log holds
-    /// one and much beside it. The choice is a warning of the log.
+    /// Part with the manoeuvre of this number, from 1; without a number the part of the only zig-zag, if much of
+    /// the log is outside it. The choice is a warning of the log.
     ///
-    /// Fails for a number that no manoeuvre has, and, without one, where the log holds several zig-zags.
+    /// Fails for a number without a manoeuvre, and, without a number, if the log contains several zig-zags.
     pub fn chosen(mut self, number: Option<usize>) -> Result<Self, ReadError> {
         if number.is_none() && self.has_declared_part() {
             return Ok(self);
@@ -84,20 +85,20 @@ impl Log {
         self.part(from, until)
     }
 
-    /// A time of the log as text: seconds, and the reading of the clock.
+    /// Time of the log as text: seconds, and the reading of the clock.
     fn shown(&self, time: f64) -> String {
         let clock = self.clock.map(|clock| format!(" ({})", clock.at(time)));
         format!("{time:.1} s{}", clock.unwrap_or_default())
     }
 }
 
-/// The zig-zags among some manoeuvres, with their numbers.
+/// Zig-zags in a list of manoeuvres, with their numbers.
 fn zig_zags(manoeuvres: &[DetectedManoeuvre]) -> Vec<(usize, &DetectedManoeuvre)> {
     let numbered = (1..).zip(manoeuvres);
     numbered.filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect()
 }
 
-/// The warning of a log in which no zig-zag is recognised and something else is.
+/// Warning of a log without a recognised zig-zag but with another manoeuvre.
 fn unrecognised(manoeuvres: &[DetectedManoeuvre], file: &str) -> Option<Warning> {
     let has_straight = manoeuvres.iter().any(|entry| entry.manoeuvre.is_none());
     let text = format!(

@@ -1,4 +1,4 @@
-//! Numbers in another unit than their name says: counts of a converter, tenths and hundredths of a degree, a rudder
+//! Numbers in another unit than their name states: counts of a converter, tenths and hundredths of a degree, a rudder
 //! with its side in another column, milliseconds since 1970.
 
 use document::{Warning, WarningCode};
@@ -12,13 +12,13 @@ use crate::cleaning::{IMPOSSIBLE_RUDDER, MAX_IMPOSSIBLE_SHARE};
 use crate::plausibility::{extremes, range, reversals};
 use crate::wording::shortened;
 
-/// Maximum angle of a rudder, deg: few go beyond 45°.
+/// Maximum angle of a rudder, deg: few exceed 45°.
 const MAX_RUDDER_DEG: f64 = 46.0;
 
 /// Step of a heading in tenths of a degree at north, as a number in the file.
 const TENTHS_WRAP: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
 
-/// Minimum range of a heading in tenths of a degree over the range of its rudder in degrees.
+/// Minimum ratio of the range of a heading in tenths of a degree to the range of its rudder in degrees.
 const MIN_TENTHS_RATIO: f64 = 5.0;
 
 /// Kind of the numbers of a column that are not degrees.
@@ -28,7 +28,7 @@ enum Numbers {
     Parts(f64),
     /// Counts of a converter: the count at zero.
     Counts(f64),
-    /// Neither.
+    /// Neither of them.
     NoAngle,
 }
 
@@ -88,7 +88,7 @@ fn rudder_numbers(rudder: &RawColumn) -> Option<Numbers> {
     })
 }
 
-/// `true` for a heading in tenths of a degree: it wraps at 3600, or moves farther than any ship does in a zig-zag with
+/// `true` for a heading in tenths of a degree: it wraps at 3600, or moves further than any ship in a zig-zag with
 /// its rudder.
 fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     if !heading.is_whole || heading.largest > 3600.0 {
@@ -97,7 +97,7 @@ fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     let ratio = rudder.filter(|rudder| reversals(&rudder.values) >= 2);
     let ratio = ratio.map(|rudder| range(&heading.values) / range(&rudder.values));
     let wraps = TENTHS_WRAP.contains(&heading.largest_step);
-    // A single wild reading may step as far, but does not move the heading.
+    // A single wrong reading may step as far, but does not move the heading.
     match ratio {
         Some(ratio) => (wraps && ratio > MIN_TENTHS_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
         None => wraps,
@@ -130,7 +130,7 @@ pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
     Some(WarningCode::TurnedSign.warning(text))
 }
 
-/// Refuses a time in milliseconds or microseconds since 1970 under a name that says seconds.
+/// Refuses a time in milliseconds or microseconds since 1970 under a name in seconds.
 pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
     let unit =
         [(1e-3, "ms"), (1e-6, "us")].into_iter().find(|(factor, _)| (EPOCH[0]..EPOCH[1]).contains(&(first * factor)));

@@ -17,9 +17,9 @@ use crate::wording::shortened;
 /// Number of rows whose values are summarised.
 const SUMMARISED_ROWS: usize = 1000;
 
-/// Draft of a sidecar for the table at `path`; the columns of a table without names are described by their index.
+/// Draft of a sidecar for the table at `path`; columns without names are described by their index.
 ///
-/// Fails as reading does up to the header; for sentences, which need no sidecar; and for a line within the first
+/// Fails as the reader does up to the header; for sentences, which require no sidecar; and for a line within the first
 /// thousand rows that cannot be read.
 pub fn describe(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
@@ -72,7 +72,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
     Ok(text + END)
 }
 
-/// Remark on a column, and the value of its key `is` where the sidecar has to describe it.
+/// Remark on a column, and the value of its key `is` if the sidecar must describe it.
 fn description(name: &str, quoted: &str, meaning: Option<ColumnMeaning>) -> (String, Option<String>) {
     let recognised = || "Recognised by its name and unit; check it.".to_owned();
     match meaning {

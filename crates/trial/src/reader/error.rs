@@ -1,4 +1,4 @@
-//! Errors of a file: each message has the place, the value found, the expected value and a remedy.
+//! Errors of a file: each message states the place, the value found, the expected value and a remedy.
 
 use std::path::{Path, PathBuf};
 
@@ -16,10 +16,10 @@ use crate::wording::{end, instant, listed};
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ReadError {
-    /// The file itself is at fault.
+    /// Fault of the file itself.
     #[error("{}: {problem}", file.display())]
     Table { file: PathBuf, problem: Problem },
-    /// The sidecar that describes the file is at fault.
+    /// Fault of the sidecar of the file.
     #[error(transparent)]
     Sidecar(#[from] SidecarError),
 }
@@ -29,7 +29,7 @@ impl ReadError {
         ReadError::Table { file: file.to_path_buf(), problem }
     }
 
-    /// The message without content of the file, for a reader who did not name the file.
+    /// Message without content of the file, for a reader other than the person who named it.
     pub fn without_content(&self) -> String {
         match self {
             Self::Table { problem: Problem::File(_), .. } => self.to_string(),
@@ -53,7 +53,7 @@ pub enum Problem {
     /// The file cannot be opened or read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A sidecar was named in place of its table.
+    /// Sidecar in place of its table.
     #[error("this file is a sidecar, not a table; name the table beside it")]
     IsSidecar,
     /// The file is empty.
@@ -62,7 +62,7 @@ pub enum Problem {
     /// Bytes that are not text.
     #[error("line {line} holds a zero byte, so this is not a text table; export the table as CSV")]
     Binary { line: usize },
-    /// UTF-16, as some spreadsheets write "Unicode text".
+    /// UTF-16, which some spreadsheets call "Unicode text".
     #[error("line 1 starts with the mark of UTF-16 text; save the file as CSV in UTF-8")]
     Utf16,
     /// Not UTF-8.
@@ -71,66 +71,66 @@ pub enum Problem {
          \"windows-1252\"` under [table] in a sidecar NAME.trial.toml"
     )]
     NotUtf8 { line: usize, byte: u8 },
-    /// A line that is too long for a table.
+    /// Line above the maximum length.
     #[error("line {line} is longer than {limit} bytes, so this is not a table with one row per line; export it as CSV")]
     LongLine { line: usize, limit: usize },
-    /// Numbers where names were expected.
+    /// Numbers in place of names.
     #[error(
         "line {line} holds numbers ({text}) where a header was expected; add a header such as \
          `t_s,heading_deg,rudder_deg`, or describe the columns in a sidecar NAME.trial.toml (`header = false` under \
          [table], one [[column]] with `index` and `is` each)"
     )]
     NoHeader { line: usize, text: String },
-    /// A needed column is not there.
+    /// Absent required column.
     #[error(
         "line {line}: no column holds the {wanted}; expected {accepted}, found {}; rename the column, or describe it in a \
          sidecar NAME.trial.toml ([[column]] with `name` and `is`)",
         listed(columns)
     )]
     NoColumn { line: usize, wanted: &'static str, accepted: String, columns: Vec<String> },
-    /// A course over ground and no heading.
+    /// Course over ground and no heading.
     #[error(
         "line {line}: no column holds the heading; `{column}` is the course over ground, which is no heading (they differ \
          by the drift angle, up to 20 degrees in a turn); use a record with the compass, or write `is = \"heading_deg\"` \
          for the column in a sidecar NAME.trial.toml if it is a heading"
     )]
     CourseOnly { line: usize, column: String },
-    /// Files or sentences without a needed channel.
+    /// Files or sentences without a required channel.
     #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(channels))]
     NoChannel { wanted: &'static str, channels: Vec<String> },
-    /// Rudder and heading of different times.
+    /// Rudder and heading without common times.
     #[error(
         "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; \
          check that both belong to the same trial and count time from the same instant", instant(rudder_s[0]),
         instant(rudder_s[1]), instant(heading_s[0]), instant(heading_s[1])
     )]
     NoOverlap { rudder_s: [f64; 2], heading_s: [f64; 2] },
-    /// Two files that count time in different ways.
+    /// Two files with different kinds of time.
     #[error(
         "{} has {}, this file has {}: they cannot be joined; give both files stamps of date and time, or both seconds from \
          the same instant", first.display(), if *stamped { "time stamps" } else { "times in seconds" },
         if *stamped { "times in seconds" } else { "time stamps" }
     )]
     TwoClocks { first: PathBuf, stamped: bool },
-    /// A file without columns to describe.
+    /// File without columns to describe.
     #[error("this file holds sentences or messages (NMEA), which state their quantities; it needs no sidecar")]
     NeedsNoSidecar,
-    /// A format that is recognised but not read.
+    /// Format that is recognised but not read.
     #[error("this is {format}; {cure}")]
     Format { format: &'static str, cure: &'static str },
-    /// A damaged file of a known format.
+    /// Damaged file of a known format.
     #[error("this is {format} and cannot be read: {damage}; it is damaged or cut short: copy or export it again")]
     Damaged { format: &'static str, damage: String },
-    /// A file of a table format without a table.
+    /// File of a table format without a table.
     #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(content))]
     NoTable { format: &'static str, wanted: &'static str, content: Vec<String> },
-    /// A channel in a cell array of MATLAB.
+    /// Channel in a cell array of MATLAB.
     #[error(
         "column {column} is a cell array, not a vector of numbers; convert it in MATLAB, `{column} = cell2mat({column})` \
          (for texts `str2double({column})`), and save the file again"
     )]
     CellArray { column: String },
-    /// A needed column without a unit.
+    /// Required column without a unit.
     #[error(
         "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it \
          {}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
@@ -153,7 +153,7 @@ pub enum Problem {
         is_angle(quantity)
     )]
     Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
-    /// Neither degrees nor parts of them.
+    /// Numbers that are neither degrees nor parts of them.
     #[error(
         "line {line}: the {quantity} `{column}` reaches {}, which is impossible in degrees; if its numbers have another \
          scale, write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees per unit",
@@ -161,25 +161,25 @@ pub enum Problem {
         is_angle(quantity)
     )]
     NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
-    /// Milliseconds under a name that says seconds.
+    /// Milliseconds under a name in seconds.
     #[error(
         "line {line}: the time `{column}` begins at {first}, which is after the year 2100 in seconds, and a present date in \
          {unit}; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""
     )]
     EpochUnit { line: usize, column: String, first: f64, unit: &'static str },
-    /// A time without a unit that cannot be seconds.
+    /// Time without a unit that cannot be seconds.
     #[error(
         "line {line}: the time `{column}` has no unit, and in seconds the ship would turn impossibly fast or slowly; name \
          it t_s, t_ms or t_min, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
     )]
     OpenTime { line: usize, column: String },
-    /// A cell that should be a stamp.
+    /// Cell that should be a stamp.
     #[error(
         "line {line}, column `{column}`: found `{value}`, expected a date and time such as `2026-11-20T14:03:05.2` or \
          `20.11.2026 14:03:05`; correct the cell"
     )]
     NotAStamp { line: usize, column: String, value: String },
-    /// A date with two possible readings.
+    /// Date with two possible readings.
     #[error(
         "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write \
          dates as 2026-11-20"
@@ -191,34 +191,34 @@ pub enum Problem {
          true` for it in a sidecar NAME.trial.toml"
     )]
     Duplicate { line: usize, quantity: &'static str, first: String, second: String },
-    /// A header without rows, or comments only.
+    /// Header without rows, or comments only.
     #[error("there is no row of numbers after line {line}; expected a header and at least {needed} rows below it")]
     NoRows { line: usize, needed: usize },
-    /// A cell that should be a number.
+    /// Cell that should be a number.
     #[error(
         "line {line}, column `{column}`: found `{value}`, expected a number (or an empty cell or NaN where nothing was \
          recorded); correct the cell"
     )]
     NotANumber { line: usize, column: String, value: String },
-    /// A row that does not fit the header.
+    /// Row with another number of cells than the header.
     #[error(
         "line {line} has {cells} cells, expected {expected} as in the first line of the table; correct the row, or the \
          separator in a sidecar NAME.trial.toml"
     )]
     Cells { line: usize, cells: usize, expected: usize },
-    /// Time goes back.
+    /// Decreasing time.
     #[error(
         "line {line}: time runs backwards, {time} s after {before} s; sort or cut the file, or rebuild time from its step \
          with `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
     TimeBackwards { line: usize, before: f64, time: f64 },
-    /// Time stands still while other values change.
+    /// Repeated time with different values.
     #[error(
         "line {line}: time {time} s occurs twice with different values; if it was printed with too few digits, rebuild it \
          with `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
     TimeRepeats { line: usize, time: f64 },
-    /// A needed column without a value.
+    /// Required column without a value.
     #[error(
         "the column `{column}` has no value in any row used; expected the {quantity}: check that the sensor was recorded"
     )]
@@ -230,10 +230,10 @@ pub enum Problem {
         end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
-    /// No manoeuvre has the number that was requested.
+    /// Requested number without a manoeuvre.
     #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
     ManoeuvreParseError { file: String, number: usize, count: usize },
-    /// Several zig-zags, of which one has to be chosen: a line for each.
+    /// Several zig-zags without a selected one; a line for each.
     #[error("there are {count} zig-zags in this log; choose one:{lines}")]
     SeveralZigZags { count: usize, lines: String },
     /// Too few usable rows.
@@ -249,7 +249,7 @@ pub enum Problem {
         estimate.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
     )]
     TooManyRows { limit: usize, columns: usize, estimate: Option<u64>, every: u64 },
-    /// A log with too many damaged lines.
+    /// Log with too many damaged lines.
     #[error(
         "{damaged} of {lines} lines are damaged ({wrong} with a wrong checksum, {broken} cut short or not text), expected at \
          most half; check the speed and the wiring of the serial line, or export the log again"
@@ -262,13 +262,13 @@ pub enum Problem {
          (`time-step-s` is not possible for sentences)"
     )]
     NoClock { sentences: usize, clocks: usize },
-    /// A log whose clock starts anew.
+    /// Log whose clock restarts.
     #[error(
         "line {line}: the clock of the log goes back from {before} to {after}, expected a single recording; cut the log \
          there and use the parts one by one"
     )]
     ClockBack { line: usize, before: String, after: String },
-    /// A log without a quantity of a record.
+    /// Log without a used quantity.
     #[error(
         "none of the {sentences} sentences of the log holds a quantity that is used; expected a heading (HDT, THS, HDG) and \
          a rudder angle (RSA): check which sentences were recorded"
@@ -279,10 +279,10 @@ pub enum Problem {
         "line {line}: the log holds more than {limit} numbers, which is the limit; use the part with the manoeuvre"
     )]
     TooManyReadings { line: usize, limit: usize },
-    /// The record is implausible.
+    /// Implausible record.
     #[error(transparent)]
     Implausible(#[from] Implausible),
-    /// The columns are not a record.
+    /// Columns that are not a record.
     #[error(transparent)]
     Record(#[from] TrialError),
 }

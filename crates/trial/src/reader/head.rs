@@ -12,34 +12,34 @@ use crate::names;
 use crate::sidecar::{Sidecar, Which};
 use crate::wording::shortened;
 
-/// Maximum number of lines before the header: programs write the ship and the trial there.
+/// Maximum number of lines before the header: some programs state the ship and the trial there.
 const MAX_PREAMBLE_LINES: usize = 60;
 
-/// Number of lines read for the head: with a header and its units after the longest preamble, a row is among them.
+/// Number of lines read for the head: with a header and units after the maximum preamble, a row is among them.
 const HEAD_LINES: usize = MAX_PREAMBLE_LINES + 4;
 
-/// A line with its number.
+/// Line with its number.
 type NumberedLine = (usize, String);
 
-/// Head of a table, with the rows that were read along with it.
+/// Head of a table, with the rows read with it.
 #[derive(Debug)]
 pub(super) struct Head {
     /// Names of the columns.
     pub names: Vec<String>,
-    /// Units below the names, where a row holds them.
+    /// Units below the names, if a row contains them.
     units: Vec<Option<Unit>>,
     /// Line of the names.
     pub line: usize,
     /// Separator of the cells.
     pub separator: Separator,
-    /// The first rows with their lines.
+    /// First rows with their lines.
     pub rows: Vec<NumberedLine>,
     /// Number of lines skipped before the names.
     pub skipped: usize,
 }
 
 impl Head {
-    /// The unit below the name of a column.
+    /// Unit below the name of a column.
     pub fn unit(&self, index: usize) -> Option<Unit> {
         self.units.get(index).copied().flatten()
     }
@@ -50,7 +50,7 @@ impl Head {
     }
 }
 
-/// Reads the lines that are not empty below the first `skipped`, and the comment above them.
+/// Reads the nonempty lines below the first `skipped`, and the comment above them.
 fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedLine>, NumberedLine), Problem> {
     while lines.number() < skipped && lines.skip()? {}
     let (mut begin, mut comment) = (Vec::new(), NumberedLine::default());
@@ -71,7 +71,7 @@ fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedL
     }
 }
 
-/// Reads a table up to its first row; `declared` is the separator that a sidecar declares.
+/// Reads a table up to its first row; `declared` is the separator declared by a sidecar.
 pub(super) fn find<R: Read>(
     lines: &mut Lines<R>,
     declared: Option<Separator>,
@@ -83,7 +83,7 @@ pub(super) fn find<R: Read>(
     let numbers = separator_of_numbers(text);
     let count_names = |cells: &[&str]| cells.iter().filter(|name| has_meaning(name, sidecar)).count();
     let has_names = |line: &str, separator: Separator| count_names(&split(line, separator)) >= 2;
-    // Two names are enough: with blanks, `Time UTC` between tabs would count as two.
+    // Two names are sufficient: with blanks, `Time UTC` between tabs would count as two.
     let separator_of = |line: &str| declared.unwrap_or_else(|| recognise(line, |cells| count_names(cells).min(2)));
     let names_of = |line: &str, separator| split(line, separator).into_iter().map(unquoted).collect();
     let without_units =
@@ -93,7 +93,7 @@ pub(super) fn find<R: Read>(
         let names = (1..=split(text, separator).len()).map(|number| format!("column_{number}")).collect();
         (without_units(*line, names, separator), 0)
     } else if let Some(separator) = numbers {
-        // The rows begin in the first line. Some programs write the names into the comment above.
+        // The rows begin in the first line. Some programs write the names in the comment above.
         let name_separator = separator_of(&comment);
         if !has_names(&comment, name_separator) {
             return Err(Problem::NoHeader { line: *line, text: shortened(text) });
@@ -133,12 +133,12 @@ pub(super) fn separator_of_numbers(line: &str) -> Option<Separator> {
         let all = cells.iter().all(|text| cell(text, separator) != Cell::Text);
         if all { cells.len() } else { 0 }
     };
-    // The earlier separator wins a tie, so the search runs from the last.
+    // Ties go to the earlier separator, so the search runs from the last.
     let best = Separator::ALL.into_iter().rev().max_by_key(|&separator| count(separator))?;
     (count(best) > 0).then_some(best)
 }
 
-/// `true` for a name with a meaning, or a name that the sidecar describes.
+/// `true` for a name with a meaning, or a name described in the sidecar.
 fn has_meaning(name: &str, sidecar: &Sidecar) -> bool {
     let is_described = || sidecar.columns.iter().any(|column| column.which == Which::Name(name.to_owned()));
     names::meaning(name).is_some() || is_described()

@@ -1,4 +1,4 @@
-//! Kind of a file by its first bytes and lines, whatever its name: compressed or plain, table, sentences or messages.
+//! Kind of a file by its first bytes and lines, not by its name: compressed or plain, table, sentences or messages.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -13,14 +13,14 @@ use super::messages::{self, MessageFormat};
 use super::nmea;
 use crate::file::{self, FileError, Limited};
 
-/// Bytes and lines that tell sentences from a table.
+/// Number of bytes that distinguish sentences from a table.
 const HEAD_BYTES: u64 = 1 << 14;
 const HEAD_LINES: usize = 60;
 
 /// Text of a file, from its first byte on.
 pub(super) struct Text<'a> {
     pub bytes: Box<dyn Read + 'a>,
-    /// Hash of the file, where it differs from the hash of the text.
+    /// Hash of the file, if it differs from the hash of the text.
     pub on_disk: Option<Hash>,
     /// `true` for a text that was generated here from a binary table.
     pub is_generated: bool,
@@ -28,11 +28,11 @@ pub(super) struct Text<'a> {
 
 /// Content of a file.
 pub(super) enum Content<'a> {
-    /// A table.
+    /// Table.
     Table(Text<'a>),
-    /// Sentences, one a line.
+    /// Sentences, one per line.
     Sentences(Text<'a>),
-    /// Messages, one a line.
+    /// Messages, one per line.
     Messages(Text<'a>, MessageFormat),
 }
 
@@ -50,7 +50,7 @@ pub(super) fn stem(path: &Path) -> String {
     inner.file_stem().map_or_else(|| "record".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Opens a file and recognises its content; with its size in bytes where that is the length of its text.
+/// Opens a file and recognises its content; with its size in bytes if that is the length of its text.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD)?;
     let (size, content) = (file.size, recognise(Box::new(file))?);
@@ -59,7 +59,7 @@ pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Probl
     Ok((content, size))
 }
 
-/// The first bytes of an input, and all its bytes.
+/// First bytes of an input, and all its bytes.
 fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a>), Problem> {
     let mut first = Vec::new();
     (&mut input).take(HEAD_BYTES).read_to_end(&mut first).map_err(FileError::from)?;

@@ -9,7 +9,7 @@ use crate::plausibility::range;
 use crate::plausibility::regression::{partial_slope, rudder_on_heading, thinned, turn_with_rudder};
 use crate::record::{Origin, Trial, integrate};
 
-/// Minimum share of a channel that its reference explains.
+/// Minimum share of a channel explained by its reference.
 const MIN_SHARE: f64 = 0.5;
 
 /// Maximum lag, s, and as a share of the log.
@@ -37,7 +37,7 @@ pub struct ChannelRelation {
 pub struct ChannelInspection {
     /// Statistics of the readings.
     pub readings: ChannelReadings,
-    /// `true` where positive values turn the ship to starboard; `None` if the log does not show it.
+    /// `true` if positive values turn the ship to starboard; `None` if the log does not determine it.
     pub to_starboard: Option<bool>,
     /// Relation of the yaw rate to the heading, or of the rudder to its order.
     pub relation: Option<ChannelRelation>,
@@ -63,7 +63,7 @@ impl Log {
         self.readings().into_iter().map(inspection).collect()
     }
 
-    /// `true` where positive rudder turns the ship to starboard; `None` if the log does not show it.
+    /// `true` if positive rudder turns the ship to starboard; `None` if the log does not determine it.
     fn turns_with_rudder(&self) -> Option<bool> {
         let origin = Origin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("", origin, self.columns.clone()).ok()?;
@@ -73,7 +73,7 @@ impl Log {
     }
 
     /// Relation of a transformed channel x to a reference y: y = c₀ + c₁ t + s x(t + lag), with the lag that explains
-    /// the largest share.
+    /// maximum explained share.
     fn relation(
         &self,
         [channel, reference]: [Channel; 2],
@@ -112,8 +112,8 @@ mod tests {
     use super::*;
     use std::fmt::Write;
 
-    /// A ship of K = 0.1 1/s and T = 15 s, whose rudder follows its order 2 s later, seen by a yaw rate with `sign`
-    /// in deg/min and 3 s late.
+    /// A ship of K = 0.1 1/s and T = 15 s, whose rudder follows its order 2 s later, recorded with a yaw rate of `sign`
+    /// in deg/min, 3 s late.
     fn log(sign: f64, row: impl Fn(usize) -> bool) -> Log {
         let mut text = String::from("t_s,heading_deg,rudder_deg,rudder_order_deg,yaw_rate_deg_min,speed_kn\n");
         let order = |t: f64| if (t % 80.0) < 40.0 { 10.0 } else { -10.0 };
@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(inspected(&all, Channel::Speed).readings.step, None);
     }
 
-    /// Signs that contradict each other are told and not refused.
+    /// Contradictory signs are reported and not refused.
     #[test]
     fn a_turned_sign_is_seen() {
         let all = log(-1.0, |_| true).inspect();

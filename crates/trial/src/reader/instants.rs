@@ -2,11 +2,11 @@
 
 use estimation::statistics::upper_median;
 
-/// Spreads rows that share a stamp evenly over the time to the next stamp. Returns the typical number of rows per
+/// Spreads rows with a shared stamp evenly over the time to the next stamp. Returns the typical number of rows per
 /// stamp; `None` if no rows share a stamp.
 ///
-/// `time` (s) does not fall. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
-/// first and the last stamp may be incomplete: their rows take the end and the beginning of their width.
+/// `time` (s) does not decrease. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
+/// first and the last stamp may be incomplete: their rows fill the end and the beginning of their width.
 pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
     let mut begins: Vec<usize> = (0..time.len()).filter(|&row| row == 0 || time[row] != time[row - 1]).collect();
     if begins.len() == time.len() || begins.len() < 3 {

@@ -1,5 +1,5 @@
-//! Layout of a table: the content of every column, decided before the rows are read, from the header, a row of units,
-//! the sidecar and the first row.
+//! Layout of a table: the content of every column, determined before the rows are read, from the header, a row of
+//! units, the sidecar and the first row.
 
 use std::path::Path;
 
@@ -22,47 +22,47 @@ pub(super) enum Content {
     Time(f64),
     /// Stamps of date and time, or of the time of day.
     Stamp,
-    /// The dates that belong to stamps of the time of day.
+    /// Dates that belong to stamps of the time of day.
     Date,
-    /// A channel; the factor to SI units, with the scale of the column.
+    /// Channel; the factor to SI units, with the scale of the column.
     Channel(Channel, f64),
     /// Latitude, rad.
     Latitude,
     /// Longitude, rad.
     Longitude,
-    /// An unknown quantity, carried unchanged.
+    /// Unknown quantity, kept unchanged.
     #[default]
     Unknown,
-    /// A column that is left out.
+    /// Omitted column.
     Ignored,
 }
 
 impl Content {
-    /// `true` for a column whose values are kept.
+    /// `true` for a column with kept values.
     pub fn is_kept(self) -> bool {
         !matches!(self, Self::Time(_) | Self::Stamp | Self::Date | Self::Ignored)
     }
 }
 
-/// Certainty of the meaning of a column; the first is the best.
+/// Certainty of the meaning of a column; best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     /// Described by the sidecar.
     Described,
-    /// A `quantity_unit` name.
+    /// `quantity_unit` name.
     Contract,
-    /// A customary name.
+    /// Customary name.
     Usual,
-    /// A speed over ground instead of the speed.
+    /// Speed over ground in place of the speed.
     Substitute,
 }
 
-/// A column of a table: its content, statistics of its cells, and its values in the rows kept.
+/// Column of a table: its content, statistics of its cells, and its values in the rows kept.
 #[derive(Debug, Default)]
 pub(super) struct RawColumn {
     pub name: String,
     pub content: Content,
-    /// `true` for a column without a unit; until the unit is settled, values are in the unit of written files.
+    /// `true` for a column without a unit; until the unit is determined, values are in the unit of written files.
     pub open: bool,
     claim: Option<(ColumnMeaning, Rank)>,
     scale: f64,
@@ -74,11 +74,11 @@ pub(super) struct RawColumn {
     pub largest: f64,
     /// Maximum step between two numbers.
     pub largest_step: f64,
-    /// `true` while all numbers are whole.
+    /// `true` if all numbers so far are whole.
     pub is_whole: bool,
     /// Number of cells with a side (port, starboard).
     pub sides: usize,
-    /// Number of sentinels, and the last of them.
+    /// Number of sentinels, and the last sentinel.
     pub sentinels: (usize, f64),
     /// Number of cells with text.
     pub text: usize,
@@ -103,30 +103,30 @@ impl RawColumn {
     }
 }
 
-/// The columns of a table.
+/// Columns of a table.
 #[derive(Debug)]
 pub(super) struct Layout {
     pub columns: Vec<RawColumn>,
-    /// Number of columns that are cells of a row; the columns behind them have formulas.
+    /// Number of columns that are cells of a row; the further columns have formulas.
     pub cells: usize,
-    /// Formulas of the columns behind the cells, each with the indices of the columns that it names.
+    /// Formulas of the further columns, each with the indices of the columns that it names.
     pub formulas: Vec<(ColumnFormula, Vec<usize>)>,
-    /// `true` where the rudder order is used for a missing rudder angle.
+    /// `true` if the rudder order replaces a missing rudder angle.
     order_is_rudder: bool,
     /// Line of the names.
     pub line: usize,
     /// Columns recognised by customary names, for a warning.
     pub recognised: Vec<String>,
-    /// Decisions between columns.
+    /// Warnings of choices between columns.
     pub warnings: Vec<Warning>,
 }
 
 impl Layout {
     /// Layout of a table by its head and its sidecar.
     ///
-    /// A sidecar goes before the names, and a `quantity_unit` name before any other. Fails if the sidecar describes a
-    /// column that is absent, when two columns claim the same quantity with equal certainty, when time is absent, and
-    /// when the table of a `whole` record has no rudder or neither heading nor yaw rate.
+    /// A sidecar precedes the names, and a `quantity_unit` name any other name. Fails if the sidecar describes a
+    /// column that is absent, if two columns have the same quantity with equal certainty, if time is absent, and
+    /// if the table of a `whole` record has no rudder or neither heading nor yaw rate.
     pub fn new(head: &Head, table: &Path, sidecar: &Sidecar, whole: bool) -> Result<Self, ReadError> {
         let rebuilt = sidecar.table.time_step_s.is_some();
         let column = |(index, name): (usize, &String)| {
@@ -171,7 +171,7 @@ impl Layout {
         self.columns.iter().position(|column| wanted(column.content))
     }
 
-    /// Column of the rudder: the angle, or the order where there is no angle.
+    /// Column of the rudder: the angle, or the order without an angle.
     pub fn rudder(&self) -> Option<usize> {
         self.index(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
     }
@@ -194,7 +194,7 @@ impl Layout {
     /// Applies the descriptions of the sidecar, which replace the meaning of the names.
     fn describe(&mut self, table: &Path, sidecar: &Sidecar) -> Result<(), ReadError> {
         let mut seen = vec![false; self.columns.len()];
-        // A formula names columns of the table: those before it.
+        // A formula refers to columns of the table, which precede it.
         for described in &sidecar.columns {
             let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
             let table = table.to_path_buf();
@@ -243,7 +243,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Assigns to every channel the column with the best claim.
+    /// Assigns to every channel the column of the highest rank.
     fn settle_channels(&mut self) -> Result<(), Problem> {
         for channel in Channel::ALL {
             let claim = |(index, column): (usize, &RawColumn)| match column.claim? {
@@ -297,14 +297,15 @@ impl Layout {
         Problem::Duplicate { line: self.line, quantity, first, second }
     }
 
-    /// Chooses the column of time, and the dates that belong to it.
+    /// Chooses the column of time, and its dates.
     fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
         let cells = head.first();
         let first = |index: usize| cells.get(index).copied().unwrap_or_default();
         let is_number = |index: usize| cell(first(index), head.separator).number().is_some();
         let stamp = |index: usize| Stamp::parse(first(index));
         let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
-        // Order: described or `quantity_unit`, a number with a unit, a stamp with its date, a time of day, a number.
+        // Order of preference: described or `quantity_unit`, a number with a unit, a stamp with its date, a time of
+        // day, a number.
         let candidate = |(index, column): (usize, &RawColumn)| {
             let (meaning, rank) = column.claim?;
             let unit = match meaning {
@@ -368,7 +369,7 @@ impl Layout {
     }
 }
 
-/// Meaning of a name with its certainty; a name without a unit gets the unit below it.
+/// Meaning of a name with its certainty; a name without a unit has the unit below it.
 fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
     let named = meaning(name)?;
     let rank = if contract(name).is_some() { Rank::Contract } else { Rank::Usual };

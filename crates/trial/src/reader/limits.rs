@@ -5,10 +5,10 @@ use crate::record::Trial;
 
 use super::error::Problem;
 
-/// Maximum number of rows of a log: eleven days at 20 Hz.
+/// Maximum number of rows of a log, eleven days at 20 Hz.
 pub const MAX_ROWS: usize = 20_000_000;
 
-/// Maximum number of cells of a record (8 bytes each): bounds the memory of tables with very many columns.
+/// Maximum number of cells of a record (8 bytes each): a bound on the memory of tables with very many columns.
 pub const MAX_CELLS: usize = 50_000_000;
 
 /// Kind of file of a record; its maximum size is 20 characters for each of [`MAX_CELLS`].

@@ -22,13 +22,13 @@ impl Hash {
         Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
     }
 
-    /// The hash, hexadecimal; the hash of the file once it has been read to the end.
+    /// Hash, hexadecimal; after the last byte that of the file.
     pub fn finish(self) -> String {
         format!("{:x}", self.0.take().finalize())
     }
 }
 
-/// Reader that hashes its bytes in large pieces; hashing line by line would be slower.
+/// Reader that hashes its bytes in large pieces, which is faster than line by line.
 pub struct Hashed<R> {
     input: R,
     hash: Hash,
@@ -49,7 +49,7 @@ impl<R: Read> Read for Hashed<R> {
     }
 }
 
-/// The lines of a file, one after the other.
+/// Lines of a file, in order.
 pub struct Lines<R> {
     input: BufReader<Hashed<R>>,
     hash: Hash,
@@ -85,7 +85,7 @@ impl<R: Read> Lines<R> {
     fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
         self.bytes.clear();
         if self.number == 0 {
-            // Old programs of the Macintosh end their lines with a carriage return alone.
+            // Old Macintosh programs end lines with a carriage return alone.
             let begin = self.input.fill_buf().map_err(Problem::from_input)?;
             self.end = if begin.contains(&b'\r') && !begin.contains(&b'\n') { b'\r' } else { b'\n' };
         }
@@ -103,7 +103,7 @@ impl<R: Read> Lines<R> {
         Ok((length > 0).then_some((length, whole)))
     }
 
-    /// Reads past one line without decoding it; `false` at the end of the file.
+    /// Skips one line without decoding it; `false` at the end of the file.
     pub fn skip(&mut self) -> Result<bool, Problem> {
         let Some((length, _)) = self.take_line()? else { return Ok(false) };
         let line = self.number;
@@ -119,7 +119,7 @@ impl<R: Read> Lines<R> {
         Ok(true)
     }
 
-    /// The next line without its end; `None` at the end of the file.
+    /// Next line without its end; `None` at the end of the file.
     pub fn next_line(&mut self) -> Result<Option<&str>, Problem> {
         if !self.skip()? {
             return Ok(None);
@@ -129,7 +129,7 @@ impl<R: Read> Lines<R> {
             if valid == self.bytes.len() {
                 return Ok(std::str::from_utf8(&self.bytes).ok());
             }
-            // Only degree sign and accented letters are decoded as Windows 1252, as old programs write them.
+            // Only the degree sign and accented letters are decoded as Windows 1252, as written by old programs.
             if self.bytes.iter().any(|byte| matches!(byte, 0x80..=0x9f)) {
                 return Err(Problem::NotUtf8 { line: self.number, byte: self.bytes[valid] });
             }
@@ -139,7 +139,7 @@ impl<R: Read> Lines<R> {
         Ok(Some(&self.text))
     }
 
-    /// Bytes of the next line without its end, text or not: for logs, where noise spoils a line and not the file.
+    /// Bytes of the next line without its end, text or not: for logs, in which noise damages a line and not the file.
     ///
     /// A line longer than [`MAX_LINE_BYTES`] is cut one byte beyond that, and its remainder is skipped; `None` at the
     /// end of the file.

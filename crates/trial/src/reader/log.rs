@@ -1,4 +1,4 @@
-//! Reading of logs: the content of one or several files, cleaned and on a common clock, and the record of a part of it.
+//! Reader of logs: the content of one or several files, cleaned and on a common clock, and the record of a part of it.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -25,20 +25,20 @@ use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
 
-/// A record with the warnings of the reader.
+/// Record with the warnings of the reader.
 #[derive(Debug, Clone)]
 pub struct ReadRecord {
-    /// The record.
+    /// Record.
     pub trial: Trial,
     /// Warnings of the record, without the name of its file.
     pub warnings: Vec<Warning>,
 }
 
 impl Log {
-    /// Reads the log at `path`, or on standard input for `-`, as the sidecar at `sidecar` describes it, and joins the
-    /// channels of `joined`, each as the sidecar beside it describes.
+    /// Reads the log at `path`, or from standard input for `-`, with the sidecar at `sidecar`, and joins the
+    /// channels of `joined`, each with the sidecar next to it.
     ///
-    /// Fails as [`read_with`] does, except for the checks of a record, and where two files have no time in common.
+    /// Fails as [`read_with`] does, except for the checks of a record, and if two files have no time in common.
     pub fn open(path: &Path, sidecar: Option<&Path>, joined: &[PathBuf]) -> Result<Self, ReadError> {
         if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
             return Err(ReadError::table(path, Problem::IsSidecar));
@@ -54,7 +54,7 @@ impl Log {
         Ok(log)
     }
 
-    /// Reads a log from `input`; `path` is its name, and `size` (bytes) serves to estimate the rows of a file that is
+    /// Reads a log from `input`; `path` is its name, and `size` (bytes) gives an estimate of the rows of a file that is
     /// too long.
     ///
     /// Fails as [`open`](Self::open) does, except for faults of the file system.
@@ -68,7 +68,7 @@ impl Log {
         Self::of_content(path, content, size, sidecar.cloned(), true)
     }
 
-    /// Reads a file; a `whole` record needs rudder and heading.
+    /// Reads a file; a `whole` record requires rudder and heading.
     fn of_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
         let sidecar = sidecar.map(Sidecar::load).transpose()?;
         let name = display_path(path);
@@ -184,7 +184,7 @@ impl Log {
         Ok(())
     }
 
-    /// `true` for columns that completion leaves as they were read.
+    /// `true` for columns unchanged by completion.
     fn is_complete(&self) -> bool {
         let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
         let has = |channel: Channel| self.columns.channels.contains_key(&channel);
@@ -198,23 +198,23 @@ impl Log {
         &self.columns.time
     }
 
-    /// Day of the first row, as 2026-11-20; `None` for a log without stamps that hold dates.
+    /// Day of the first row, as 2026-11-20; `None` for a log without dates in its stamps.
     pub fn date(&self) -> Option<String> {
         self.clock?.date_at(*self.time().first()?)
     }
 
-    /// A channel, row by row, where the log has it; SI units and radians.
+    /// Channel, row by row, if present; SI units and radians.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.columns.channels.get(&channel).map(Vec::as_slice)
     }
 
-    /// `true` where the sidecar declares a part.
+    /// `true` if the sidecar declares a part.
     pub fn has_declared_part(&self) -> bool {
         let part = self.sidecar.part();
         part.start().is_finite() || part.end().is_finite()
     }
 
-    /// The part between two times, s, both included. Fails if it holds no row.
+    /// Part between two times, s, both included. Fails if it contains no row.
     pub fn part(mut self, from: f64, until: f64) -> Result<Self, ReadError> {
         let time = &self.columns.time;
         let rows = time.partition_point(|&t| t < from)..time.partition_point(|&t| t <= until);
@@ -237,7 +237,7 @@ impl Log {
         Ok(self)
     }
 
-    /// The record of the log; `ship` overrides the particulars of the sidecar.
+    /// Record of the log; `ship` overrides the particulars of the sidecar.
     ///
     /// Fails if the log has too few rows, or is implausible ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
@@ -290,7 +290,7 @@ fn offset(first: &Clock, second: &Clock) -> f64 {
     let seconds = second.second - first.second + zone;
     match first.day.zip(second.day) {
         Some((first, second)) => seconds + DAY * (second - first) as f64,
-        // Times of day without a date: the nearest.
+        // Times of day without a date: the nearest difference.
         None => (seconds + 0.5 * DAY).rem_euclid(DAY) - 0.5 * DAY,
     }
 }
@@ -300,7 +300,7 @@ fn joined_hash(first: &str, second: &str) -> String {
     lines::sha256(format!("{first} {second}").as_bytes())
 }
 
-/// Log of sentences or messages; a `whole` record needs rudder and heading.
+/// Log of sentences or messages; a `whole` record requires rudder and heading.
 fn of_series(
     path: &Path,
     read: Result<(Vec<Series>, Log), Problem>,
@@ -312,7 +312,7 @@ fn of_series(
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
-/// Log of channels with their own instants, each cleaned by itself, in the part that the sidecar declares.
+/// Log of channels with their own instants, each cleaned separately, in the part declared by the sidecar.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
@@ -333,25 +333,25 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     Log { columns, ..log }
 }
 
-/// Reads the trial at `path`, with the sidecar beside it if there is one.
+/// Reads the trial at `path`, with the sidecar next to it, if any.
 ///
 /// Fails as [`read_with`] does.
 pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
     read_with(path, Sidecar::existing_beside(path).as_deref())
 }
 
-/// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` uses the header only.
+/// Reads the trial at `path` with the sidecar at `sidecar`; `None` uses the header only.
 ///
-/// Fails with [`ReadError`] when the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format,
-/// when a needed channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
+/// Fails with [`ReadError`] if the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format,
+/// if a required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
 /// or more than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible
 /// ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
     Log::open(path, sidecar, &[])?.into_trial(None)
 }
 
-/// Reads a trial from `input`; `path` is its name, and `size` (bytes) serves to estimate the rows of a file that is too
-/// long.
+/// Reads a trial from `input`; `path` is its name, and `size` (bytes) gives an estimate of the rows of a file that is
+/// too long.
 ///
 /// Fails as [`read_with`] does, except for faults of the file system.
 pub fn read_bytes(

@@ -1,6 +1,6 @@
-//! Logs of messages, each with its stamp, its source and one or a few quantities: NMEA 2000 as canboat writes it (JSON
-//! lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as Signal K exports
-//! them. Every channel comes from a single source, which a warning names.
+//! Logs of messages, each with its stamp, its source and one or a few quantities: NMEA 2000 in the notation of canboat
+//! (JSON lines, or plain lines of hexadecimal bytes), and long tables of time, path, value and source as exported by
+//! Signal K. Every channel comes from a single source, which a warning names.
 
 mod can;
 mod canboat;
@@ -27,7 +27,7 @@ use table::LongTable;
 /// Maximum share of a sparse source among the readings of the busiest source.
 const SPARSE_SHARE: f64 = 0.2;
 
-/// Maximum rudder and maximum heading of a log in radians, where no line states the unit.
+/// Maximum rudder and maximum heading of a log in radians, if no line states the unit.
 const MAX_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
 pub(super) use can::{is_log as is_can_log, is_python_can};
@@ -49,7 +49,7 @@ pub(super) fn format<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Option
     lines.map(str::trim).find(|line| !line.is_empty()).and_then(LongTable::of).map(|_| MessageFormat::Long)
 }
 
-/// A channel of a source; the lower `class` is the better quantity for the channel.
+/// Channel of a source; a lower `class` is a better quantity for the channel.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct MessageSource {
     channel: Channel,
@@ -97,7 +97,7 @@ impl MessageLog {
         Ok(())
     }
 
-    /// The series of the best source of every channel, with warnings of the choice.
+    /// Series of the best source of every channel, with warnings of the choice.
     fn choice(self) -> (Vec<Series>, Vec<Warning>) {
         let (mut series, mut warnings) = (Vec::new(), Vec::new());
         for channel in Channel::ALL {
@@ -137,7 +137,7 @@ impl MessageLog {
 
 /// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails on an invalid stamp, and where no message holds a quantity that is used.
+/// Fails for an invalid stamp, and if no message contains a used quantity.
 pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Result<(Vec<Series>, Log), Problem> {
     let mut log = MessageLog::default();
     let (mut canboat, mut table) = (Canboat::default(), None);
@@ -176,7 +176,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
     Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
 }
 
-/// Converts angles to radians: canboat writes degrees, or radians with an option.
+/// Converts angles to radians: canboat writes degrees, with an option radians.
 fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
     let largest = |channel: Channel| {
         let signal = series.iter().find(|signal| signal.channel == channel);

@@ -1,12 +1,12 @@
-//! Reader of measured trials: a table, text or binary, with a sidecar where its columns need a description, becomes a
+//! Reader of measured trials: a table, text or binary, with a sidecar if its columns require a description, becomes a
 //! [`Trial`](crate::Trial), or a single error with its place and a remedy. Every decision of the reader is a warning.
 //!
 //! A table has one row per line below a header of `quantity_unit` names (see [`crate::channel`]), separated by commas,
-//! semicolons, tabs or blanks. Lines that start with `#` and empty lines are skipped; a commented header is used when
-//! the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are left out, so that the
-//! rudder is interpolated between its neighbours; rows without heading stay. A speed that was not recorded is √(u² +
-//! v²) of surge and sway. Sentinels of loggers, impossible rudder angles, repeated values and a frozen heading are left
-//! out and reported, unless a sidecar has `plausibility = false`. Other tables are described in [`crate::sidecar`].
+//! semicolons, tabs or blanks. Lines that start with `#` and empty lines are skipped; a commented header is used if
+//! the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are omitted, so that the
+//! rudder is interpolated between its neighbours; rows without heading are kept. A speed that was not recorded is √(u²
+//! + v²) of surge and sway. Sentinels of loggers, impossible rudder angles, repeated values and a frozen heading are
+//! omitted and reported, unless a sidecar has `plausibility = false`. Other tables are described in [`crate::sidecar`].
 
 mod assemble;
 mod choice;

@@ -1,5 +1,5 @@
-//! Projection of latitude and longitude to metres north and east of the first position: a plane is exact enough for a
-//! track of a few miles.
+//! Projection of latitude and longitude to metres north and east of the first position: a plane is sufficiently exact
+//! for a track of a few miles.
 //!
 //! Source: radii of curvature of the WGS 84 ellipsoid, NIMA TR 8350.2, third edition.
 
@@ -9,7 +9,7 @@ use crate::channel::Channel;
 
 /// Semi-major axis of the ellipsoid, m (WGS 84; NIMA TR 8350.2, third edition, table 3.1).
 const A: f64 = 6_378_137.0;
-/// First eccentricity squared (same, table 3.3).
+/// First eccentricity squared (WGS 84; NIMA TR 8350.2, third edition, table 3.3).
 const E2: f64 = 6.694_379_990_14e-3;
 
 /// Metres north and east of the first position, from latitude and longitude (rad); NaN for a row without a position,

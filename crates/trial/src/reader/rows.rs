@@ -1,5 +1,5 @@
-//! Rows of a table: cells to SI units, part and thinning, rows that are left out, and the limit of memory. Only the
-//! rows kept are held; [`super::table`] makes columns of them.
+//! Rows of a table: cells to SI units, part and thinning, omitted rows, and the limit of memory. Only the
+//! kept rows are in memory; [`super::table`] makes columns of them.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -21,29 +21,29 @@ use crate::wording::shortened;
 pub(super) struct Counts {
     pub rows: usize,
     pub no_time: usize,
-    /// Rows with neither rudder nor heading nor yaw rate.
+    /// Number of rows with neither rudder nor heading nor yaw rate.
     pub nothing: usize,
     pub repeated: usize,
-    /// Times that do not fit their neighbours.
+    /// Times out of order with their neighbours.
     pub astray: Vec<f64>,
     pub short: usize,
     pub decimal_commas: usize,
 }
 
-/// The last rows, to distinguish a single stray time from a clock that starts again.
+/// State of the last rows, to distinguish a single stray time from a clock that restarts.
 #[derive(Debug, Default)]
 struct Before {
-    /// The last row with a time, as it was read.
+    /// Last row with a time, as read.
     last: Option<(f64, Vec<f64>)>,
-    /// Time of the row before that.
+    /// Time of the row before the last one.
     earlier: Option<f64>,
-    /// `true` where the last row was kept.
+    /// `true` if the last row was kept.
     kept: bool,
-    /// Line and time of a row left out because its time is before the last time.
+    /// Line and time of a row omitted because its time is before the last time.
     astray: Option<(usize, f64)>,
 }
 
-/// The rows kept so far.
+/// Rows kept so far.
 pub(super) struct Rows<'a> {
     pub(super) layout: Layout,
     separator: Separator,
@@ -53,7 +53,7 @@ pub(super) struct Rows<'a> {
     pub(super) time_place: Option<usize>,
     date_place: Option<usize>,
     heading_place: Option<usize>,
-    /// Columns of the channels of which a row needs at least one.
+    /// Columns of the channels of which a row requires at least one.
     wanted: Vec<usize>,
     pub(super) stamps: Option<Stamps>,
     /// `true` while no stamp has a fraction of a second.
@@ -110,7 +110,7 @@ impl<'a> Rows<'a> {
 
     /// Checks the number of rows after `consumed` of the `size` bytes of the file.
     ///
-    /// Fails beyond [`MAX_ROWS`] and [`MAX_CELLS`], and early where the size of the file predicts far too many rows.
+    /// Fails beyond [`MAX_ROWS`] and [`MAX_CELLS`], and early if the size of the file predicts far too many rows.
     pub fn check_length(&self, consumed: u64, size: Option<u64>) -> Result<(), Problem> {
         const ESTIMATE_ROWS: usize = 10_000;
         const MIN_EXCESS: f64 = 1.5;
@@ -275,8 +275,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// `true` for a row that follows the last one in time. An exact copy of the last row and a single row with a stray
-    /// time do not; fails if time continues from an earlier time.
+    /// `true` for a row later than the last one. An exact copy of the last row and a single row with a stray
+    /// time give `false`. Fails if time continues from an earlier time.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;
         let Some((last, row)) = &mut self.before.last else {
@@ -292,7 +292,7 @@ impl<'a> Rows<'a> {
                 self.before.astray = Some((number, time));
                 return Ok(false);
             }
-            // The row fits the last but one: the time of the last row was too late.
+            // The row follows the last but one: the time of the last row was too late.
             self.counts.astray.push(*last);
             if self.before.kept {
                 self.time.pop();
@@ -315,7 +315,7 @@ impl<'a> Rows<'a> {
         Ok(true)
     }
 
-    /// Unwraps the heading before rows are left out: thinning may turn a fast turn into steps beyond 180°.
+    /// Unwraps the heading before rows are omitted: thinning may turn a fast turn into steps beyond 180°.
     fn unwrap(&mut self, place: usize) {
         let heading = self.row[place];
         if heading.is_nan() {
@@ -330,7 +330,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Sign of a word for a side; port is negative.
+/// Sign of a word for a side, negative for port.
 fn side_word(text: &str) -> Option<f64> {
     const PORT: [&str; 8] = ["p", "port", "l", "left", "bb", "backbord", "babord", "bâbord"];
     const STARBOARD: [&str; 10] =
@@ -340,7 +340,7 @@ fn side_word(text: &str) -> Option<f64> {
     if is_side(&PORT) { Some(-1.0) } else { is_side(&STARBOARD).then_some(1.0) }
 }
 
-/// A rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).
+/// Rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).
 fn side(text: &str, channel: Option<Channel>, separator: Separator) -> Option<f64> {
     let plain = text.trim_end_matches(['°', 'º']).trim();
     let (mut number, mut sign) = (plain, 1.0);

@@ -1,4 +1,4 @@
-//! Corrections of the rudder before it becomes part of a record: a rudder written on change holds its value, and a
+//! Corrections of the rudder before it enters a record: a rudder written on change holds its value, and a
 //! sidecar may declare a delay of the rudder, or the column as an order.
 
 use document::{Warning, WarningCode};
@@ -23,7 +23,7 @@ const MAX_HELD_READINGS: f64 = 1000.0;
 /// Holds the value of a rudder written on change between two readings, at the usual interval. `None` for a rudder that
 /// is not written on change.
 ///
-/// In a rudder written on change no reading repeats the reading before, and over a long rest the rudder moves no
+/// In a rudder written on change no reading repeats the previous one, and over a long rest the rudder moves no
 /// further than between two rows of a movement.
 pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
     let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|x| columns.channels.contains_key(x))?;
@@ -124,7 +124,7 @@ mod tests {
             assert!((angle - 2.0 * t).abs() < 1e-12, "{t} s: {angle}");
             assert!(!(6.5 < *t && *t < 27.5), "{t} s lies in the gap");
         }
-        // From the first heading to the last rudder, and the headings as they were.
+        // From the first heading to the last rudder, with unchanged headings.
         assert_eq!((moved.time[0], moved.time[moved.time.len() - 1]), (-2.5, 36.5));
         assert!(moved.time.iter().zip(&moved.channels[&Channel::Heading]).all(|(t, psi)| psi.is_nan() || psi == t));
     }

@@ -1,5 +1,5 @@
-//! Logs and channels of files before they are a record: series with their own instants, and the columns that
-//! [`super::assemble`] makes of them.
+//! Logs and channels of files before they become a record: series with their own instants, and the columns made by
+//! [`super::assemble`].
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -16,10 +16,10 @@ use crate::sidecar::Sidecar;
 /// Maximum change by rounding of the arithmetic, in SI units and radians.
 const ROUNDING: f64 = 1e-9;
 
-/// A channel with its own sampling instants.
+/// Channel with its own sampling instants.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
-    /// The channel; values are in SI units and radians.
+    /// Channel; values are in SI units and radians.
     pub channel: Channel,
     /// Instants, s, on the clock of the file; strictly increasing.
     pub time: Vec<f64>,
@@ -29,13 +29,13 @@ pub(super) struct Series {
     pub source: Option<String>,
 }
 
-/// Readings of a log for [`Log::inspect`], as they were before the log was joined or completed.
+/// Readings of a log for [`Log::inspect`], before the log was joined or completed.
 #[derive(Debug, Clone, Default)]
 pub(super) enum Readings {
-    /// The columns of the log, which hold nothing but readings.
+    /// Columns of the log, which contain readings only.
     #[default]
     InColumns,
-    /// The columns as they were read.
+    /// The columns as read.
     Columns(Columns),
     /// Channels with their own instants, each with the shift (s) from its clock to that of the log.
     Series(Vec<(Series, f64)>),
@@ -46,7 +46,7 @@ pub(super) enum Readings {
 pub struct Log {
     pub(super) path: PathBuf,
     pub(super) columns: Columns,
-    /// Clock at time 0, where the files have stamps.
+    /// Clock at time 0, if the files have stamps.
     pub clock: Option<Clock>,
     /// SHA-256 of the bytes, hexadecimal.
     pub(super) sha256: String,
@@ -56,7 +56,7 @@ pub struct Log {
     pub(super) part: Option<[f64; 2]>,
     /// Decisions and remarks of the reader.
     pub warnings: Vec<Warning>,
-    /// Readings taken as missing or reported as doubtful.
+    /// Readings set to missing or reported as doubtful.
     pub(super) rejected: Vec<RejectedReading>,
     /// Names of the columns of channels.
     pub(super) names: Vec<(Channel, String)>,
@@ -64,10 +64,10 @@ pub struct Log {
     pub(super) readings: Readings,
 }
 
-/// Statistics of the readings of a channel, in SI units and radians; a heading unwrapped.
+/// Statistics of the readings of a channel, in SI units and radians; headings unwrapped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelReadings {
-    /// The channel.
+    /// Channel.
     pub channel: Channel,
     /// Name of the column or instrument; `None` for a derived channel.
     pub source: Option<String>,
@@ -75,9 +75,9 @@ pub struct ChannelReadings {
     pub count: usize,
     /// Median interval between readings, s.
     pub interval: Option<f64>,
-    /// Beginning and length of the longest gap between readings, s.
+    /// Beginning and length of the maximum gap between readings, s.
     pub longest: Option<[f64; 2]>,
-    /// Minimum and largest reading.
+    /// Minimum and maximum reading.
     pub range: [f64; 2],
     /// Minimum change between two readings.
     pub step: Option<f64>,
@@ -110,7 +110,7 @@ impl ChannelReadings {
 }
 
 impl Series {
-    /// The series within a part of its log, s, both ends included.
+    /// Series within a part of the log, s, both ends included.
     pub(super) fn within(mut self, part: &RangeInclusive<f64>) -> Self {
         let rows = self.time.partition_point(|t| t < part.start())..self.time.partition_point(|t| t <= part.end());
         for column in [&mut self.time, &mut self.values] {
@@ -150,7 +150,7 @@ impl Log {
 mod tests {
     use super::*;
 
-    /// A damaged file may hold any number.
+    /// A damaged file may contain any number.
     #[test]
     fn headings_of_any_size_pass_north_once_a_row() {
         let values = vec![6.2, 6.4, 1e300, -1e300, 1e300];

@@ -28,7 +28,7 @@ use crate::record::Columns;
 use crate::sidecar::Sidecar;
 use crate::wording::{counted, instant, listed, shortened};
 
-/// Reads a table; a `whole` record needs rudder and heading.
+/// Reads a table; a `whole` record requires rudder and heading.
 pub(super) fn read(
     path: &Path,
     input: Text,
@@ -37,7 +37,7 @@ pub(super) fn read(
     whole: bool,
 ) -> Result<Log, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
-    // A generated text has tabs between its cells and is UTF-8, whatever a sidecar declares.
+    // A generated text has tabs between its cells and is UTF-8, independently of a sidecar.
     let (separator, encoding) = match input.is_generated {
         true => (Some(Separator::Tab), Encoding::Utf8),
         false => (sidecar.table.separator, sidecar.table.encoding),
@@ -151,7 +151,7 @@ impl Rows<'_> {
         })
     }
 
-    /// Refuses a part without rows, and needed columns without a value.
+    /// Refuses a part without rows, and required columns without a value.
     fn check_values(&self) -> Result<(), Problem> {
         let (counts, layout) = (&self.counts, &self.layout);
         let all_missing =

@@ -1,4 +1,4 @@
-//! What the reader accepts, and one message for each thing it does not.
+//! Input accepted by the reader, and one message for each refused input.
 
 use std::fmt::Write as _;
 use std::io::Read;
@@ -14,7 +14,7 @@ use crate::plausibility;
 use crate::record::Origin;
 use crate::sidecar::{Sidecar, SidecarProblem};
 
-/// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row a second, headings wrapped to 0..360.
+/// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row per second, headings wrapped to 0..360.
 pub(super) fn rows() -> Vec<[f64; 3]> {
     let (mut psi, mut r, mut order, mut delta) = (350.0_f64, 0.0, 10.0_f64, 10.0_f64);
     (0..240)
@@ -54,7 +54,7 @@ pub(super) fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
     read_bytes(Path::new("run.csv"), bytes.as_ref(), None, None)
 }
 
-/// The problem with a table, after its message was seen to name the file and hold `parts`.
+/// Problem of a table, after a check that its message names the file and contains `parts`.
 fn problem(bytes: impl AsRef<[u8]>, parts: &[&str]) -> Problem {
     complaint(parse(bytes), parts)
 }
@@ -258,7 +258,7 @@ fn records_with_too_little_in_them_are_refused() {
         .collect();
     let refusal = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
     assert!(matches!(refusal, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
-    // What the message says mends it.
+    // The remedy in the message is effective.
     let corrected = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
     assert_eq!(corrected.warnings, []);
     let unchecked = parse_with(&flipped, "[check]\nplausibility = false\n").expect("the check is off");
@@ -406,7 +406,7 @@ fn latitude_and_longitude_are_metres_from_the_first() {
     assert_eq!(trial.channel(Channel::East).expect("a position")[1], 0.0);
 }
 
-/// A rudder cannot be later than the log is long.
+/// The delay of a rudder is shorter than the log.
 #[test]
 fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
     let read = |late: f64| parse_with(simple(), &format!("[rudder]\nlate-s = {late}"));
@@ -421,7 +421,7 @@ fn a_rudder_later_than_the_log_is_long_is_an_error_of_the_sidecar() {
     }
 }
 
-/// What a sidecar says of the weather belongs to the record, whatever becomes of that.
+/// The declared weather of a sidecar is kept in the record and in its copies.
 #[test]
 fn a_declared_calm_stays_with_the_record() {
     let sidecar = "weather = \"none\"\n[ship]\nlength-m = 7.0\nspeed-m-s = 1.18\n";

@@ -1,5 +1,5 @@
-//! Units of columns without a unit, from their values where only one unit fits. Where two units fit, the table is
-//! refused, or the channel is left out if it is not needed.
+//! Units of columns without a unit, from their values if only one unit fits. If two units fit, the table is
+//! refused, or the channel is omitted if it is not required.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +13,17 @@ use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::wording::shortened;
 
-/// Maximum number of a rudder in radians: 45°. In degrees the rudder of a manoeuvre goes further.
+/// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
 const MAX_RUDDER_RAD: f64 = 0.8;
 
 /// Minimum number of a rudder in degrees: 90° in radians.
 const MIN_RUDDER_DEG: f64 = 1.6;
 
-/// Bounds of the range of the heading over the range of the rudder in a zig-zag: a factor of 56 apart, less than the
+/// Bounds of the ratio of the range of heading to that of rudder in a zig-zag: a factor of 56 apart, less than the
 /// 57.3 between degrees and radians.
 pub(super) const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
 
-/// The same bounds for a rudder laid to a single side: course changes and turning circles.
+/// Bounds of the same ratio for a rudder laid to a single side: course changes and turning circles.
 const TURN: [f64; 2] = [1.0, 500.0];
 
 /// Maximum continuous heading in radians: six circles.
@@ -32,10 +32,10 @@ const MAX_HEADING_RAD: f64 = 38.0;
 /// Minimum rate of a rudder, rad/s: 0.2 °/s.
 const MIN_RUDDER_RATE: f64 = 3.5e-3;
 
-/// Seconds since 1970 from the years 1990 to 2100.
+/// Seconds since 1970 of the years 1990 to 2100.
 pub(super) const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
 
-/// Days since 1899-12-30, as spreadsheets count, from the years 2000 to 2100.
+/// Days since 1899-12-30, as counted by spreadsheets, of the years 2000 to 2100.
 const SERIAL_DAY: [f64; 2] = [36_526.0, 73_415.0];
 
 /// Day 0 of spreadsheets, counted from 1970-01-01.
@@ -43,17 +43,17 @@ const SERIAL_ZERO: i64 = -25_569;
 
 type Channels = BTreeMap<Channel, Vec<f64>>;
 
-/// A channel without a unit.
+/// Channel without a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct UnitlessColumn {
     pub channel: Channel,
-    /// Name of its column.
+    /// Name of the column.
     pub name: String,
     /// Maximum absolute number.
     pub largest: f64,
 }
 
-/// Settles the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
+/// Determines the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
 ///
 /// Fails if heading, rudder, a yaw rate used for the heading, or time could have two units.
 pub(super) fn settle(
@@ -64,7 +64,7 @@ pub(super) fn settle(
 ) -> Result<Vec<Warning>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    // The heading needs the rudder, and the yaw rate needs the heading.
+    // The unit of the heading requires that of the rudder, and the yaw rate that of the heading.
     const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
     open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
     let (time, channels) = (&log.columns.time, &mut log.columns.channels);
@@ -114,7 +114,7 @@ pub(super) fn settle(
     Ok(warnings)
 }
 
-/// Warning of a column that is left out because its values do not show its unit.
+/// Warning of a column omitted because its values do not determine its unit.
 fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warning {
     let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
     WarningCode::LeftOut.warning(format!(
@@ -202,7 +202,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.to_si()))).copied()
 }
 
-/// Settles a time without a unit: a count since 1970 or 1899, or seconds where ships can turn at such rates.
+/// Determines the unit of a time without one: a count since 1970 or 1899, or seconds if ships can turn at such rates.
 fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let name = shortened(name);
     let times = &mut log.columns.time;
@@ -239,7 +239,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
             return Err(refusal());
         }
     }
-    // A second in minutes is 0.016667, which is no step of a clock in seconds.
+    // A second in minutes is 0.016667, which is not a step of a clock in seconds.
     if let Some(step) = upper_median(times.windows(2).map(|pair| pair[1] - pair[0])) {
         let is_round = |step: f64| (100.0 * step - (100.0 * step).round()).abs() < 0.02;
         if step < 1.0 && !is_round(step) && is_round(60.0 * step) {

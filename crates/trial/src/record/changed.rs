@@ -1,4 +1,4 @@
-//! Derived records: without channels, readings or a current, with another rudder, at another scale.
+//! Derived records: without some channels, readings or a current, with another rudder, at another scale.
 
 use ship::Particulars;
 
@@ -6,14 +6,14 @@ use super::{RecordedRudder, RejectedReading, Trial, signal};
 use crate::channel::Channel;
 
 impl Trial {
-    /// The same record without some channels; heading and rudder cannot be left out.
+    /// The same record without some channels; heading and rudder are always kept.
     pub fn without(mut self, channels: &[Channel]) -> Self {
         self.channels.retain(|channel, _| *channel == Channel::Heading || !channels.contains(channel));
         self
     }
 
-    /// The same record with the drift of a uniform current (north and east, m/s) taken from its positions; the position
-    /// of the first row stays.
+    /// The same record with the drift of a uniform current (north and east, m/s) removed from its positions; the
+    /// position of the first row is unchanged.
     pub fn without_current(mut self, velocity: [f64; 2]) -> Self {
         let since: Vec<f64> = self.time().iter().map(|time| time - self.time()[0]).collect();
         for (channel, speed) in [Channel::North, Channel::East].into_iter().zip(velocity) {
@@ -23,7 +23,7 @@ impl Trial {
         self
     }
 
-    /// The same record without the headings read at some times, s.
+    /// The same record without the headings at given times, s.
     pub fn without_readings(mut self, times: &[f64]) -> Self {
         let rows: Vec<usize> = (0..self.len()).filter(|&row| times.contains(&self.time()[row])).collect();
         if let Some(heading) = self.channels.get_mut(&Channel::Heading) {
@@ -32,15 +32,15 @@ impl Trial {
         self
     }
 
-    /// The same record with other rudder angles, rad; `None` if these are not one finite angle for every row.
+    /// The same record with other rudder angles, rad; `None` unless there is one finite angle for every row.
     pub fn with_rudder(mut self, angles: Vec<f64>) -> Option<Self> {
         self.rudder = RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?);
         Some(self)
     }
 
-    /// The record of a similar ship of another length and approach speed: times are multiplied by
+    /// Record of a similar ship of another length and approach speed: times are multiplied by
     /// (L₂/V₂)/(L₁/V₁), yaw rate and propeller rate divided by it, speeds multiplied by V₂/V₁ and lengths by L₂/L₁.
-    /// Angles and unknown columns stay.
+    /// Angles and unknown columns are unchanged.
     ///
     /// Dimensionless quantities (K', T') are invariant. `None` if length and speed of this ship are not declared
     /// or a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.

@@ -9,13 +9,13 @@ const RATE_TOLERANCE: f64 = 0.002;
 /// Minimum share of the intervals in which the rudder rests or moves at the rate of the gear.
 const MIN_STRAIGHT_SHARE: f64 = 2.0 / 3.0;
 
-/// Maximum share of the bent intervals whose corner cannot be located.
+/// Maximum share of bent intervals with a corner that cannot be located.
 const MAX_UNRESOLVED_SHARE: f64 = 0.25;
 
 /// Distance from a row, as a share of the interval, within which a corner coincides with the row.
 const ROW_TOLERANCE: f64 = 1e-6;
 
-/// An instant between two rows at which the rudder changes its rate.
+/// Instant between two rows at which the rudder changes its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// Row before the corner.
@@ -28,26 +28,26 @@ pub struct Corner {
     pub after: f64,
 }
 
-/// A recorded rudder: its rows and the corners between them.
+/// Recorded rudder: its rows and the corners between them.
 #[derive(Debug, Clone)]
 pub(super) struct RecordedRudder {
-    /// The rows.
+    /// Rows.
     pub rows: Polyline,
-    /// The corners between them.
+    /// Corners between them.
     pub corners: Vec<Corner>,
-    /// Rows and corners together, where there are corners.
+    /// Rows and corners together, if there are corners.
     path: Option<Polyline>,
 }
 
 impl RecordedRudder {
-    /// The rudder of some rows, with the corners that they imply.
+    /// Rudder of some rows, with the corners that they imply.
     pub fn new(rows: Polyline) -> Self {
         let corners = corners(&rows);
         let path = (!corners.is_empty()).then(|| through(&rows, &corners)).flatten();
         Self { rows, corners, path }
     }
 
-    /// The rudder as a signal, through rows and corners.
+    /// Rudder as a signal, through rows and corners.
     pub fn path(&self) -> &Polyline {
         self.path.as_ref().unwrap_or(&self.rows)
     }
@@ -80,9 +80,9 @@ enum Piece {
 
 /// Corners of a rudder that rests or moves at the rate of the gear, in the order of time.
 ///
-/// δ(t) = δ_i + ṙ₁ (t − t_i) before the corner and δ_(i+1) − ṙ₂ (t_(i+1) − t) after it, where ṙ₁ and ṙ₂ are the rates
-/// of the neighbouring intervals; where a neighbour is bent itself, the rudder moves there at the rate of the gear.
-/// Empty where the rudder has no constant rate: noise, whole degrees, another kind of steering. A stroke that begins
+/// δ(t) = δ_i + ṙ₁ (t − t_i) before the corner and δ_(i+1) − ṙ₂ (t_(i+1) − t) after it, with ṙ₁ and ṙ₂ are the rates
+/// of the neighbouring intervals; if a neighbour is bent itself, the rudder moves in it at the rate of the gear.
+/// Empty if the rudder has no constant rate: noise, whole degrees, another kind of steering. A stroke that begins
 /// and ends between the same two rows is not detected.
 fn corners(rudder: &Polyline) -> Vec<Corner> {
     let (time, angle) = (rudder.times(), rudder.values());
@@ -111,7 +111,7 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
             let moving = rate.copysign(step);
             let (before, after) = match (pieces[row - 1], pieces[row + 1]) {
                 (Piece::Straight(before), Piece::Straight(after)) => (before, after),
-                // A stroke with one row in it: it leaves a rest, or comes to one.
+                // A stroke with one row in it: it begins or ends at rest.
                 (Piece::Straight(before), Piece::Bent) if before.abs() <= tolerance => (before, moving),
                 (Piece::Bent, Piece::Straight(after)) if after.abs() <= tolerance => (moving, after),
                 _ => return None,
@@ -156,7 +156,7 @@ mod tests {
         Polyline::new(time, angle).expect("rows")
     }
 
-    /// Strokes of 2.5 a second between ±10.
+    /// Strokes of 2.5 per second between ±10.
     const STROKES: [(f64, f64); 8] =
         [(0.0, 0.0), (3.3, 0.0), (7.3, 10.0), (30.8, 10.0), (38.8, -10.0), (70.1, -10.0), (78.1, 10.0), (120.0, 10.0)];
 
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_rudder_without_one_rate_keeps_its_rows() {
         let whole_degrees = read(&STROKES, 1.0, f64::round);
-        // A helm that is never at rest, and one that jumps.
+        // A rudder that never rests, and one that jumps.
         let clipped = (0..200).map(|t| (3.0 * (f64::from(t) / 6.0).sin()).clamp(-1.0, 1.0)).collect();
         let clipped = Polyline::new((0..200).map(f64::from).collect(), clipped).expect("rows");
         let smooth = Polyline::new((0..200).map(f64::from).collect(), (0..200).map(|t| f64::from(t).sin()).collect());

@@ -3,7 +3,7 @@
 use super::Trial;
 use crate::channel::Channel;
 
-/// Relative wind: speed, m/s, and the angle it comes from, clockwise from the bow, rad, −π to π.
+/// Relative wind: speed, m/s, and the direction from which it comes, clockwise from the bow, rad, −π to π.
 ///
 /// The true wind blows at `speed` (m/s) from `from` (rad, clockwise from north); the ship makes `ahead` (m/s). The
 /// drift angle is neglected.
@@ -14,8 +14,8 @@ pub fn relative_wind(speed: f64, from: f64, ahead: f64, heading: f64) -> (f64, f
 }
 
 impl Trial {
-    /// Relative wind of every row: speed, m/s, and the angle it comes from, clockwise from the bow, rad. As measured,
-    /// else from the true wind and the speed of the ship.
+    /// Relative wind of every row: speed, m/s, and the direction from which it comes, clockwise from the bow, rad:
+    /// measured, else from the true wind and the speed of the ship.
     pub fn relative_wind(&self) -> Option<[Vec<f64>; 2]> {
         let measured = [Channel::WindRelativeSpeed, Channel::WindRelativeFrom].map(|channel| self.channel(channel));
         if let [Some(speed), Some(from)] = measured {
@@ -29,7 +29,7 @@ impl Trial {
         Some([speed, from])
     }
 
-    /// Mean true wind: root mean square speed, m/s, and the mean direction it comes from, clockwise from north, rad.
+    /// Mean true wind: root mean square speed, m/s, and mean direction from which it comes, clockwise from north, rad.
     /// `None` without the relative wind and the speed of the ship.
     pub fn mean_wind(&self) -> Option<[f64; 2]> {
         let ([speed, from], ship) = (self.relative_wind()?, self.channel(Channel::Speed)?);
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::record::{Columns, Origin};
 
-    /// A true wind of 5 m/s from 0.7 rad on a ship that turns at 2 m/s: each wind follows from the other.
+    /// A true wind of 5 m/s from 0.7 rad on a ship that turns at 2 m/s: relative and true wind follow from each other.
     #[test]
     fn relative_and_true_wind_tell_one_another() {
         let rows: Vec<f64> = (0..100).map(f64::from).collect();

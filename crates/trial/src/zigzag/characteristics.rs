@@ -16,14 +16,14 @@ use crate::plausibility::range;
 use crate::record::Trial;
 use estimation::statistics::median;
 
-/// Maximum yaw rate at a first execute, as a share of the largest; at a reversal it is 0.7 or more.
+/// Maximum yaw rate at a first execute, as a share of the maximum; at a reversal it is 0.7 or more.
 const MAX_START_RATE: f64 = 0.4;
 
 /// Maximum distance from the middle course at a first execute, as a share of the execute heading; at a peak it is
 /// beyond 1.
 const MAX_START_HEADING: f64 = 0.6;
 
-/// Minimum rudder off amidships in the first row, as a share of the rudder of the trial, of a first execute that began
+/// Minimum rudder off amidships in the first row, as a share of the rudder of the trial, for a first execute that began
 /// before the record.
 const MIN_BEGUN_SHARE: f64 = 0.1;
 
@@ -39,8 +39,8 @@ const MIN_APPROACH_ROWS: usize = 3;
 impl ZigZag {
     /// Characteristics of the zig-zag of a record.
     ///
-    /// Fails if the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to
-    /// both sides with two reversals, is not held there, or the heading moves against it; or when headings are missing
+    /// Fails if the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid by at least half a degree to
+    /// both sides with two reversals, is not held there, or the heading moves against it; or if headings are missing
     /// at an execute.
     pub fn of(trial: &Trial) -> Result<Self, ZigZagError> {
         read(trial)
@@ -54,7 +54,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
     let (opening, closing) = (movements[0].start.value, movements[movements.len() - 1].start.value);
     let rough_period = 2.0 * (closing - opening) / (movements.len() - 1) as f64;
-    // A record has at least as many headings as a `Heading` needs.
+    // A record has at least as many headings as a `Heading` requires.
     let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading)
         .expect("a trial has at least 8 headings");
     let mut executes: Vec<Execute> =
@@ -114,7 +114,7 @@ fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagErro
         .at(time.value)
         .ok_or(ZigZagError::NoHeading { time: time.value, reach: heading.widest_half_width() })?;
     let yaw_rate = heading.rate_at(time.value);
-    // An error of the execute time moves the heading along with the turn.
+    // An error of the execute time shifts the heading along the turn.
     let timing = yaw_rate.and_then(|rate| Some((rate.value * time.sd?).abs()));
     Ok(Execute {
         time,
@@ -125,7 +125,7 @@ fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagErro
     })
 }
 
-/// Check that the heading goes to the side of the rudder between two reversals.
+/// Check that the heading moves to the side of the rudder between two reversals.
 fn check_direction(reversals: &[Execute]) -> Result<(), ZigZagError> {
     for pair in reversals.windows(2) {
         let change = pair[1].heading.value - pair[0].heading.value;
@@ -152,7 +152,7 @@ fn middle_course(reversals: &[Execute]) -> Quantity {
     Quantity::mean(&[mean(Side::Port), mean(Side::Starboard)]).expect("there are two sides")
 }
 
-/// `true` where the ship runs straight on the middle course when the rudder moves into its first hold: this is the
+/// `true` if the ship runs straight on the middle course at the movement into the first hold: this is the
 /// first execute of the trial. Otherwise the record begins within a reversal.
 fn starts_straight(
     start: f64,
@@ -176,25 +176,25 @@ fn starts_straight(
     rate.abs() <= MAX_START_RATE * largest.value && off_course.abs() <= MAX_START_HEADING * amplitude
 }
 
-/// `true` where the record begins within the movement of the first execute.
+/// `true` if the record begins within the movement of the first execute.
 fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
     let amidships = 0.5 * (holds[0].level + holds[1].level);
     first.foot == 0 && (first.before - amidships).abs() > MIN_BEGUN_SHARE * holds[0].level.abs()
 }
 
-/// `true` where the record has half a fit of headings before an execute: a one-sided fit misses the bend there.
+/// `true` if the record has half a fit of headings before an execute: a one-sided fit misses the bend there.
 fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
     execute.time.value - heading.half_width >= heading.time[0]
 }
 
-/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` if the noise leaves the
-/// rate with more than the standard deviation `precise`.
+/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` if the standard deviation of
+/// the rate exceeds `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
     let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
     (fit.slope_gain(time) * heading.noise.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
 }
 
-/// Base course of a record that shows its first execute.
+/// Base course of a record with its first execute.
 fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Heading) -> BaseCourse {
     let tolerance = STEADY_RUDDER * hold.level.abs();
     let moved = trial.rudder()[..=first.foot].iter().rposition(|delta| (delta - first.before).abs() > tolerance);
@@ -212,7 +212,7 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
 
 /// Nominal pair from the held rudder and the headings at the reversals; the helm is late rather than early.
 ///
-/// Headings count from the middle course: it is less noisy than the first heading of a record, and it is valid where
+/// Headings are relative to the middle course: it is less noisy than the first heading of a record, and valid if
 /// the approach was not on the course of the trial.
 fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
     let mut angles: Vec<f64> =
@@ -260,7 +260,7 @@ fn crossing(heading: &Heading, level: f64, level_sd: Option<f64>, side: Side, fr
     Some(time.widened(level_sd.map(|sd| sd / rate.value.abs())))
 }
 
-/// Distance travelled between two times, m: trapezoid integral of the speed over the rows that have it.
+/// Distance travelled between two times, m: trapezoid integral of the speed over the rows with a speed.
 fn distance(trial: &Trial, from: f64, to: f64) -> Option<f64> {
     let speed = trial.channel(Channel::Speed)?;
     let rows: Vec<(f64, f64)> =

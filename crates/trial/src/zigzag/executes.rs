@@ -10,7 +10,7 @@ use estimation::statistics::median;
 /// movement.
 const MIN_MOVING: (f64, f64) = (4.0, 0.01);
 
-/// A movement of the rudder into a hold.
+/// Movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Movement {
     /// Time at which the rudder starts to move, s.
@@ -23,7 +23,7 @@ pub struct Movement {
     pub foot: usize,
     /// Rate of the rudder, rad/s; `None` if the movement is too fast for the sampling.
     pub rate: Option<f64>,
-    /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; `None` for other movements.
+    /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; otherwise `None`.
     least_rate: Option<f64>,
 }
 
@@ -51,15 +51,15 @@ pub struct RudderMovements<'a> {
     holds: &'a [Hold],
     /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
     noise: f64,
-    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound where a ramp is
+    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound if a ramp is
     /// about as long as a sampling interval, `None` if it is shorter.
     pub rate: Option<f64>,
-    /// `true` where the rate is a lower bound.
+    /// `true` if the rate is a lower bound.
     rate_is_bound: bool,
 }
 
 impl<'a> RudderMovements<'a> {
-    /// The rudder with its holds; the noise is declared, or estimated from row to row within the holds.
+    /// Rudder with its holds; the noise is declared, or estimated from row to row within the holds.
     pub fn new(time: &'a [f64], angle: &'a [f64], holds: &'a [Hold], declared_noise: Option<f64>) -> Self {
         let noise = declared_noise.unwrap_or_else(|| {
             let mut steps: Vec<f64> = holds
@@ -67,15 +67,15 @@ impl<'a> RudderMovements<'a> {
                 .flat_map(|hold| angle[hold.first..=hold.last].windows(2))
                 .map(|pair| (pair[1] - pair[0]).abs())
                 .collect();
-            // A step between rows carries the noise of both.
+            // A step between rows contains the noise of both.
             median(&mut steps).map_or(0.0, |step| 1.4826 * step / std::f64::consts::SQRT_2)
         });
         let noise = noise.max(quantum(angle) / 12.0_f64.sqrt());
         let mut rudder = Self { time, angle, holds, noise, rate: None, rate_is_bound: false };
         let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
         let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
-        // Where most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
-        // tightest bound is near the rate. Where few have one, ramps are much shorter and the rate remains unknown.
+        // If most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
+        // tightest bound is near the rate. If few have one, ramps are much shorter and the rate remains unknown.
         let bounds: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.least_rate).collect();
         let tightest = bounds.iter().copied().max_by(f64::total_cmp).filter(|_| 2 * bounds.len() >= reversals.len());
         rudder.rate = median(&mut rates).or(tightest);
@@ -83,7 +83,7 @@ impl<'a> RudderMovements<'a> {
         rudder
     }
 
-    /// The movement into hold `index` from the hold before it; `index` is 1 or more.
+    /// Movement into hold `index` from the previous hold; `index` is 1 or more.
     pub fn reversal(&self, index: usize) -> Movement {
         let (from, to) = (&self.holds[index - 1], &self.holds[index]);
         let foot = self.foot(from.level, to);
@@ -103,16 +103,17 @@ impl<'a> RudderMovements<'a> {
         self.movement(before, to)
     }
 
-    /// The movement into the first hold from the steering before it; `None` if the record starts in the hold.
+    /// Movement into the first hold from the steering before it; `None` if the record starts in the hold.
     pub fn first(&self) -> Option<Movement> {
         let to = &self.holds[0];
         if to.first == 0 {
             return None;
         }
-        // Back along the steep part: manual steering may already have moved the rudder to the same side.
+        // The search goes back along the steep part: manual steering may already have moved the rudder to the same
+        // side.
         let steps = (self.time[to.first] - self.time[0]) / to.first as f64;
         let rate = self.rate.unwrap_or(2.0 * to.level.abs() / steps);
-        // Long enough for a ramp to stand out of the noise.
+        // Minimum length at which a ramp exceeds the noise.
         let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise) / rate;
         let mut row = to.first;
         while row > 0 {
@@ -124,8 +125,8 @@ impl<'a> RudderMovements<'a> {
             }
             row -= 1;
         }
-        // The lookback ends a little after the true foot. The angle just before it counts, not the mean of the steering
-        // before.
+        // The lookback ends a little after the true foot. The angle just before it is used, not the mean of the
+        // steering before.
         let clear = row_before(self.time, row, 0.3 * look_back);
         let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
@@ -138,7 +139,8 @@ impl<'a> RudderMovements<'a> {
         (0..to.first).rev().find(|&row| progress(self.angle[row], before, to.level) <= 0.1).unwrap_or(0)
     }
 
-    /// Times the movement from `before` into a hold: where the line through its ramp meets the level before.
+    /// Time of the movement from `before` into a hold: the intersection of the line through its ramp with the level
+    /// before.
     fn movement(&self, level: Level, to: &Hold) -> Movement {
         let before = level.angle;
         let foot = self.foot(before, to);
@@ -178,7 +180,7 @@ impl<'a> RudderMovements<'a> {
                 (uniform(earliest, (latest - under_way).max(earliest)), None)
             }
         };
-        // Noise can put the foot of a line anywhere; the rudder did not move before the record or after it was laid.
+        // Noise can shift the foot of a line far; the rudder did not move before the record or after it was laid.
         let start = Quantity { value: start.value.clamp(self.time[0], latest), ..start };
         Movement { start, before, after: to.level, foot, rate, least_rate }
     }
@@ -216,22 +218,22 @@ pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
     time.partition_point(|&t| t <= time[row] - by).saturating_sub(1).min(row)
 }
 
-/// Step of a rounded channel: the smallest distance between two of its values. Close to zero for a channel that is not
+/// Step of a rounded channel: the minimum distance between two of its values. Close to zero for a channel that is not
 /// rounded.
 pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);
-    // Values that differ by rounding of the arithmetic are the same.
+    // Values that differ by rounding of the arithmetic count as equal.
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 1e-9);
     steps.min_by(f64::total_cmp).unwrap_or(0.0)
 }
 
-/// Share of the way from `before` to `after` that the rudder has done.
+/// Completed share of the movement of the rudder from `before` to `after`.
 fn progress(angle: f64, before: f64, after: f64) -> f64 {
     (angle - before) / (after - before)
 }
 
-/// Middle of the interval of an event, with the standard deviation of a uniform distribution.
+/// Midpoint of the interval of an event, with the standard deviation of a uniform distribution.
 fn uniform(from: f64, to: f64) -> Quantity {
     Quantity::new(0.5 * (from + to), Some((to - from).max(0.0) / 12.0_f64.sqrt()))
 }
@@ -293,7 +295,7 @@ mod tests {
         }
     }
 
-    /// A ship that turns fast has the rudder back before it is at rest for long.
+    /// A ship that turns fast reverses the rudder soon after it rests.
     #[test]
     fn a_movement_after_a_short_hold_starts_at_its_corner() {
         let rate = from_deg(2.5);
@@ -312,7 +314,7 @@ mod tests {
         }
     }
 
-    /// The helm is at 60 % of the angle to the same side when the order comes.
+    /// The rudder is at 60 % of the angle to the same side at the time of the order.
     #[test]
     fn manual_steering_before_the_first_execute_does_not_move_it() {
         let time: Vec<f64> = (0..1100).map(|k| 0.1 * f64::from(k)).collect();

@@ -14,33 +14,33 @@ use document::Quantity;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ZigZagError {
-    /// The rudder is never laid.
+    /// Rudder that is never laid.
     #[error("not a zig-zag: the largest rudder angle is {largest_deg:.2} deg, a zig-zag needs {needed_deg:.1} deg")]
     NoRudder { largest_deg: f64, needed_deg: f64 },
-    /// The rudder does not go from one side to the other often enough.
+    /// Too few movements of the rudder from one side to the opposite side.
     #[error("not a zig-zag: the rudder has {reversals} reversals from side to side, a zig-zag needs {needed}")]
     TooFewReversals { reversals: usize, needed: usize },
-    /// The rudder moves all the time, as under an autopilot or in a random manoeuvre.
+    /// Rudder that moves all the time, as under an autopilot or in a random manoeuvre.
     #[error(
         "not a zig-zag: the rudder is held for {:.0} % of the rows, a zig-zag needs {:.0} %", 100.0 * share, 100.0 * needed
     )]
     NotHeld { share: f64, needed: f64 },
-    /// Between two reversals the heading moved against the rudder: its sign is flipped, or this is another manoeuvre.
+    /// Heading that moves against the rudder between two reversals: a flipped sign, or another manoeuvre.
     #[error(
         "not a zig-zag: from {from:.1} s to {to:.1} s the rudder is at {rudder_deg:.1} deg and the heading changes by \
          {change_deg:.2} deg; is the rudder sign flipped?"
     )]
     HeadingAgainstRudder { from: f64, to: f64, rudder_deg: f64, change_deg: f64 },
-    /// Headings are missing where the rudder was reversed.
+    /// Missing headings at a reversal of the rudder.
     #[error("no heading within {reach:.1} s of the execute at {time:.1} s")]
     NoHeading { time: f64, reach: f64 },
 }
 
-/// A side of the ship.
+/// Side of the ship.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// Right, seen forward: positive rudder, growing heading.
+    /// Right, seen forward: positive rudder, increasing heading.
     #[default]
     Starboard,
     /// Left, seen forward.
@@ -48,7 +48,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a signed angle.
+    /// Side of a signed angle.
     pub fn of(angle: f64) -> Self {
         if angle < 0.0 { Self::Port } else { Self::Starboard }
     }
@@ -97,20 +97,20 @@ pub enum BaseCourseSource {
     Approach,
     /// First heading: the record begins with, or less than three headings before, the first execute.
     FirstHeading,
-    /// Midway between the headings at the executes of either side: the record begins within the trial.
+    /// Midway between the mean headings at the executes to starboard and to port: the record begins within the trial.
     Executes,
 }
 
 /// Base course of a zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseCourse {
-    /// The course, rad.
+    /// Course, rad.
     pub heading: Quantity,
     /// Source of the course.
     pub source: BaseCourseSource,
 }
 
-/// A movement of the rudder from its angle, or from amidships, to the other side.
+/// Execute: a movement of the rudder from its angle, or from amidships, to the opposite side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Execute {
     /// Time at which the rudder starts to move, s, on the clock of the record.
@@ -126,7 +126,7 @@ pub struct Execute {
 }
 
 impl Execute {
-    /// The side the rudder is put to.
+    /// Side to which the rudder is put.
     pub fn side(&self) -> Side {
         Side::of(self.rudder_after)
     }
@@ -141,8 +141,8 @@ pub struct Overshoot {
     pub peak_time: Quantity,
     /// Heading at the peak, rad.
     pub peak_heading: Quantity,
-    /// Overshoot angle, rad, positive: from the heading at the execute to the peak, in the direction of the turn
-    /// before.
+    /// Overshoot angle, rad, positive: from the heading at the execute to the peak, in the direction of the previous
+    /// turn.
     ///
     /// Source: MSC.137(76); ITTC 7.5-04-02-01.
     pub angle: Quantity,
@@ -150,9 +150,9 @@ pub struct Overshoot {
     pub time_to_check_yaw: Quantity,
 }
 
-/// Characteristics of a zig-zag trial. Angles in rad, times in s; `None` or empty where a record does not show them.
+/// Characteristics of a zig-zag trial. Angles in rad, times in s; `None` or empty if the record does not contain them.
 ///
-/// A record that begins within the trial has no first execute, and all that counts from it is `None`. Times from a
+/// A record that begins within the trial has no first execute, and all times from it are `None`. Times from a
 /// first execute are `None` if the record begins within its movement.
 ///
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
@@ -165,18 +165,18 @@ pub struct ZigZag {
     pub side: Option<Side>,
     /// Base course of the trial.
     pub base_course: BaseCourse,
-    /// Executes in the order of time; the first one included where the record shows it.
+    /// Executes in the order of time; including the first one if recorded.
     pub executes: Vec<Execute>,
     /// Initial turning time t_a, s: from the first execute to a change of heading by the nominal ψ.
     pub initial_turning_time: Option<Quantity>,
-    /// Distance travelled in that time, m: integral of the recorded speed; `None` if the record has none.
+    /// Distance travelled in that time, m: integral of the recorded speed; `None` without a speed.
     pub initial_turning_distance: Option<f64>,
-    /// `true` where the record begins too near to its first reversal for the heading there to be measured.
+    /// `true` if the record begins too near to its first reversal for a measurement of the heading there.
     pub begins_at_reversal: bool,
-    /// Overshoots in the order of time, one for every reversal whose beginning and peak the record shows.
+    /// Overshoots in the order of time, one for every reversal with recorded beginning and peak.
     pub overshoots: Vec<Overshoot>,
     /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute contains
-    /// the initial transient and counts only where it is the only cycle.
+    /// the initial transient and is used only if it is the only cycle.
     pub period: Option<Quantity>,
     /// Reach t_A, s: from the first execute to the base course after the second execute.
     pub reach: Option<Quantity>,
@@ -185,15 +185,15 @@ pub struct ZigZag {
     /// Maximum |yaw rate| between the first execute and the end of the last hold, rad/s. As the maximum of many noisy
     /// slopes it is biased upwards by about one standard deviation.
     pub largest_yaw_rate: Option<Quantity>,
-    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is
+    /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound if a ramp is
     /// about as long as a sampling interval; `None` if it is shorter.
     pub rudder_rate: Option<f64>,
-    /// Standard deviation of the heading noise behind the uncertainties, rad: declared, or a robust estimate from the
-    /// record ([`super::noise_sd`]).
+    /// Standard deviation of the heading noise, from which the uncertainties follow, rad: declared, or a robust
+    /// estimate from the record ([`super::noise_sd`]).
     pub heading_noise: Option<f64>,
 }
 
-/// Maximum yaw rate at the first execute after a straight approach, as a share of the largest of the record.
+/// Maximum yaw rate at the first execute after a straight approach, as a share of the maximum of the record.
 pub const MAX_APPROACH_RATE_SHARE: f64 = 0.1;
 
 /// Tolerance of a yaw rate, standard deviations.
@@ -201,7 +201,7 @@ const TOLERANCE_SDS: f64 = 3.0;
 
 impl ZigZag {
     /// Yaw rate at the first execute after a straight approach, rad/s: at most [`MAX_APPROACH_RATE_SHARE`] of the
-    /// largest yaw rate, within its error. `None` for a record that begins in a turn or within the trial.
+    /// maximum yaw rate, within its error. `None` for a record that begins in a turn or within the trial.
     pub fn straight_yaw_rate(&self) -> Option<Quantity> {
         self.side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
@@ -209,29 +209,30 @@ impl ZigZag {
         (rate.value.abs() <= limit).then_some(rate)
     }
 
-    /// Yaw rate at the first execute after a straight approach that the record shows, rad/s.
+    /// Yaw rate at the first execute after a recorded straight approach, rad/s.
     pub fn approach_yaw_rate(&self) -> Option<Quantity> {
         self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
 
-    /// Period of the first executes.
+    /// Period from the first executes.
     pub fn period_of(&self, executes: usize) -> Option<Quantity> {
         period(self.executes.get(..executes).unwrap_or(&self.executes), self.side.is_some())
     }
 
-    /// `true` where the record begins within the trial, without its first execute.
+    /// `true` if the record begins within the trial, without its first execute.
     pub fn lacks_first_execute(&self) -> bool {
         self.side.is_none()
     }
 
     /// The n-th overshoot of the trial, counted from 1 at the second execute; `None` if the record begins within the
-    /// trial (nothing can be counted) or does not show that peak.
+    /// trial (no overshoot can be counted) or does not contain that peak.
     pub fn nth_overshoot(&self, n: usize) -> Option<&Overshoot> {
         self.side?;
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
 
-    /// Overshoots in the order of their executes, from the first of the record on; `None` if a peak was not seen.
+    /// Overshoots in the order of their executes, from the first of the record on; `None` for a peak that was not
+    /// recorded.
     pub fn swings(&self) -> impl Iterator<Item = Option<&Overshoot>> {
         let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
         (usize::from(self.side.is_some())..end)

@@ -15,23 +15,25 @@ const NOISE_WINDOW: f64 = 0.02;
 /// Maximum half-width of a local fit, periods: in a wider window a cubic does not follow a swing.
 const MAX_HALF_WIDTH: f64 = 0.1;
 
-/// Width of a fit for slopes over that for values. Slopes, and with them the times of peaks, are noisier (variance h⁻³
-/// against h⁻¹), so that their best window is wider.
+/// Ratio of the width of a fit for slopes to that for values. Slopes, and with them the times of peaks, are noisier
+/// (variance h⁻³ against h⁻¹), so their optimal window is wider.
 const SLOPE_WIDENING: f64 = 1.5;
 
-/// Factors by which a local fit is widened until it has enough headings.
+/// Factors by which a local fit is widened until it contains sufficient headings.
 const WIDENINGS: [f64; 5] = [1.0, 1.5, 2.25, 3.4, 5.1];
 
-/// Maximum number of local fits for a single figure of a record.
+/// Maximum number of local fits for a single characteristic of a record.
 const MAX_FITS: usize = 2000;
 
 /// Robust standard deviation of the white noise of a sampled signal, in the unit of the signal.
 ///
 /// Every value is compared with the cubic fitted to the samples within `half_width` (s) of it; the result is 1.4826
-/// times the median absolute residual, each residual divided by √(1 − leverage). Jumps and outliers in less than a few
-/// tenths of the rows do not matter. NaN values are skipped. `None` if fewer than 8 windows hold 6 values or more.
+/// times the median absolute residual, each residual divided by √(1 − leverage). The result is robust against jumps and
+/// outliers in less than a few tenths of the rows. NaN values are skipped. `None` if fewer than 8 windows contain 6
+/// values or more.
 pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
-    // A median over some rows is as good; over all of a densely sampled record it would cost their square.
+    // A median over a part of the rows is as good; the time for all rows of a densely sampled record grows as their
+    // square.
     let every = time.len().div_ceil(MAX_FITS);
     let mut residuals: Vec<f64> = time
         .iter()
@@ -50,7 +52,7 @@ pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
     median(&mut residuals).map(|deviation| 1.4826 * deviation)
 }
 
-/// Observed headings of a record, relative to the first of them so that a large heading costs no digits.
+/// Observed headings of a record, relative to the first heading, so that a large heading does not cost digits.
 #[derive(Debug, Clone)]
 pub(super) struct Heading {
     pub time: Vec<f64>,
@@ -66,11 +68,11 @@ pub(super) struct Heading {
 }
 
 impl Heading {
-    /// The observed headings of a manoeuvre with the given period (s).
+    /// Observed headings of a manoeuvre with the given period (s).
     ///
-    /// The half-width of the fits balances noise against the bend of the heading where a rudder ramp starts or ends: h
-    /// = 0.35 P ((σ/A)² Δt/P)^(1/7), with the period P, the amplitude A and the sampling interval Δt. (The variance of
-    /// a local cubic falls as σ²Δt/h, its bias at a jump J of ψ''' grows as J h³/192, and J is about 6 A (2π/P)³ for
+    /// The half-width of the fits balances noise against the bend of the heading at the start or end of a rudder ramp:
+    /// h = 0.35 P ((σ/A)² Δt/P)^(1/7), with the period P, the amplitude A and the sampling interval Δt. (The variance
+    /// of a local cubic falls as σ²Δt/h, its bias at a jump J of ψ''' grows as J h³/192, and J is about 6 A (2π/P)³ for
     /// ships whose rudder ramp is a tenth of the period.) `None` with fewer than 8 headings.
     pub fn new(time: &[f64], heading: &[f64], period: f64, declared_noise: Option<f64>) -> Option<Self> {
         let (time, mut relative): (Vec<f64>, Vec<f64>) =
@@ -97,12 +99,12 @@ impl Heading {
         SLOPE_WIDENING * self.half_width
     }
 
-    /// Half-width of the widest fit tried where headings are missing, s.
+    /// Maximum half-width of a fit at missing headings, s.
     pub fn widest_half_width(&self) -> f64 {
         WIDENINGS[WIDENINGS.len() - 1] * self.half_width
     }
 
-    /// The local cubic at time `t`; widened where headings are missing, `None` if the gap is longer than that.
+    /// Local cubic at time `t`; widened if headings are missing, `None` if the gap is longer than the maximum width.
     fn local(&self, t: f64, half_width: f64) -> Option<Cubic> {
         WIDENINGS.iter().find_map(|widening| Cubic::fit(&self.time, &self.relative, t, widening * half_width))
     }
@@ -117,7 +119,7 @@ impl Heading {
         Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise))
     }
 
-    /// The largest |yaw rate| between two times, at the rows whose fit has samples on both sides.
+    /// Maximum |yaw rate| between two times, at the rows whose fit has samples on both sides.
     ///
     /// The maximum of many noisy slopes is biased upwards by about one standard deviation.
     pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
@@ -133,8 +135,8 @@ impl Heading {
 
     /// Time and heading of the peak towards `side` (+1 or −1) between two times.
     ///
-    /// `None` if the record does not show the peak: the heading is largest at the end of the span, or nearer to it
-    /// than half a fit, or beside a gap longer than a fit.
+    /// `None` if the record does not contain the peak: the heading has its maximum at the end of the span, or nearer to
+    /// it than half a fit, or next to a gap longer than a fit.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
         let rows = self.rows(from, to);
         let every = rows.len().div_ceil(MAX_FITS).max(1);
@@ -145,7 +147,7 @@ impl Heading {
             .0;
         let half_width = self.slope_half_width();
         let mut fit = self.local(self.time[highest], half_width)?;
-        // A cubic centred on the peak has no first-order error there; two iterations are enough.
+        // A cubic centred on the peak has no first-order error there; two iterations are sufficient.
         for _ in 0..2 {
             fit = self.local(fit.stationary_point()?, half_width)?;
         }
@@ -155,7 +157,7 @@ impl Heading {
         is_seen.then(|| (fit.time_of_peak(t, self.noise), fit.value_at(t, self.noise)))
     }
 
-    /// `true` where the headings have a gap between two times, longer than a local fit and the usual steps.
+    /// `true` if the headings have a gap between two times, longer than a local fit and the usual steps.
     fn has_a_gap(&self, from: f64, to: f64) -> bool {
         let within = self.rows(from, to);
         let around = within.start.saturating_sub(1)..(within.end + 1).min(self.time.len());
@@ -165,7 +167,7 @@ impl Heading {
     /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1
     /// falling).
     ///
-    /// The standard deviation is that of the heading there over the slope.
+    /// The standard deviation is that of the heading divided by the slope.
     pub fn crossing(&self, level: f64, side: f64, from: f64, to: f64) -> Option<Quantity> {
         let row = self.rows(from, to).find(|&row| {
             let t = self.time[row];

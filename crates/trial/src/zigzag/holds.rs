@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 use super::findings::ZigZagError;
 use estimation::statistics::median;
 
-/// Minimum share of the level of a side at which the rudder counts as laid to that side. It is high because manual
+/// Minimum share of the level of a side at which the rudder is laid to that side. It is high because manual
 /// steering before a first execute can use more than half the rudder of the trial.
 pub const LAID_SHARE: f64 = 0.85;
 
@@ -17,20 +17,20 @@ const MIN_RUDDER_DEG: f64 = 0.5;
 /// 0.15.
 const MIN_HELD_SHARE: f64 = 0.3;
 
-/// A hold: rows with the rudder laid to a side.
+/// Hold: rows with the rudder laid to a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
     /// +1 starboard, −1 port.
     pub side: f64,
     /// First row beyond [`LAID_SHARE`] of the level.
     pub first: usize,
-    /// Last such row.
+    /// Last row beyond [`LAID_SHARE`] of the level.
     pub last: usize,
     /// Median rudder angle, rad, signed.
     pub level: f64,
 }
 
-/// The holds of a record, alternating between the sides.
+/// Holds of a record, alternating between the sides.
 ///
 /// Fails if the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
 pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
@@ -40,7 +40,7 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     if to_deg(largest) < MIN_RUDDER_DEG {
         return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: MIN_RUDDER_DEG });
     }
-    // A neutral rudder of a degree or two in a turning circle is not the other side of a zig-zag.
+    // A neutral rudder of a degree or two in a turning circle is not a second side of a zig-zag.
     let side_of = |delta: f64| {
         [(1.0, starboard), (-1.0, port)]
             .into_iter()
@@ -78,9 +78,9 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     Ok(holds)
 }
 
-/// Angle to which the rudder is laid on a side, rad; 0 where it is never on that side.
+/// Angle to which the rudder is laid on a side, rad; 0 if it is never on that side.
 ///
-/// Median of the angles above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach matter.
+/// Median of the angles above 0.6 of the 98 % quantile: robust against spikes and the small angles of an approach.
 fn level(rudder: &[f64], side: f64) -> f64 {
     let mut angles: Vec<f64> = rudder.iter().map(|delta| side * delta).filter(|&delta| delta > 0.0).collect();
     if angles.is_empty() {

@@ -8,32 +8,32 @@ use nalgebra::{SMatrix, SVector};
 
 use document::Quantity;
 
-/// A polynomial with `N` coefficients, fitted with equal weights to the samples within `half_width` of `centre`.
+/// Polynomial with `N` coefficients, fitted with equal weights to the samples within `half_width` of `centre`.
 ///
 /// y(t) = Σ cₖ xᵏ, x = (t − centre)/half_width, k = 0..N−1.
 #[derive(Debug, Clone)]
 pub(super) struct Local<const N: usize> {
     pub centre: f64,
     pub half_width: f64,
-    /// Samples in the window.
+    /// Number of samples in the window.
     pub samples: usize,
     coefficients: SVector<f64, N>,
     /// (XᵀX)⁻¹: the covariance of the coefficients over the noise variance.
     inverse_gram: SMatrix<f64, N, N>,
 }
 
-/// A parabola.
+/// Local parabola.
 pub(super) type Parabola = Local<3>;
-/// A cubic.
+/// Local cubic.
 pub(super) type Cubic = Local<4>;
 
 impl<const N: usize> Local<N> {
-    /// Fits the samples within `half_width` of `centre`; NaN values are skipped.
+    /// Fit to the samples within `half_width` of `centre`; NaN values are skipped.
     ///
-    /// `None` if the window holds fewer than `N` values or they do not determine the polynomial. `time` must
+    /// `None` if the window contains fewer than `N` values or they do not determine the polynomial. `time` must
     /// increase.
     pub fn fit(time: &[f64], value: &[f64], centre: f64, half_width: f64) -> Option<Self> {
-        // Times such as 0.1 k have rounding errors: a sample on the rim of the window counts as inside.
+        // Times such as 0.1 k have rounding errors: a sample at the edge of the window counts as inside.
         let reach = half_width * (1.0 + 1e-9);
         let first = time.partition_point(|&t| t < centre - reach);
         let last = time.partition_point(|&t| t <= centre + reach);
@@ -95,27 +95,27 @@ impl<const N: usize> Local<N> {
         slopes.dot(&(self.inverse_gram * slopes)).max(0.0).sqrt() / self.half_width
     }
 
-    /// Value at time `t`, with its standard deviation where that of the white noise is given.
+    /// Value at time `t`, with its standard deviation if that of the white noise is given.
     pub fn value_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.value(t), noise.map(|sd| sd * self.value_gain(t)))
     }
 
-    /// Slope at time `t`, per second, with its standard deviation as above.
+    /// Slope at time `t`, per second, with its standard deviation if that of the white noise is given.
     pub fn slope_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.slope(t), noise.map(|sd| sd * self.slope_gain(t)))
     }
 
-    /// The time `t` of a stationary point, with its standard deviation as above.
+    /// Time `t` of a stationary point, with its standard deviation if that of the white noise is given.
     pub fn time_of_peak(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.slope_gain(t) / self.curvature(t).abs()))
     }
 
-    /// The time `t` of a crossing, with its standard deviation as above.
+    /// Time `t` of a crossing, with its standard deviation if that of the white noise is given.
     pub fn time_of_crossing(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
-    /// The time near the centre at which the polynomial has the value `level`; `None` if Newton's iteration leaves
+    /// Time near the centre at which the polynomial has the value `level`; `None` if Newton's iteration leaves
     /// the window.
     pub fn crossing(&self, level: f64) -> Option<f64> {
         let mut t = self.centre;
@@ -134,8 +134,8 @@ impl<const N: usize> Local<N> {
         Some(t)
     }
 
-    /// The stationary point of a parabola or cubic at which the curvature has the sign of that at the centre; `None`
-    /// where it is outside the window or does not exist.
+    /// Stationary point of a parabola or cubic at which the curvature has the sign of that at the centre; `None`
+    /// if it is outside the window or does not exist.
     pub fn stationary_point(&self) -> Option<f64> {
         let [c1, c2, c3] = [1, 2, 3].map(|k| self.coefficients.get(k).copied().unwrap_or(0.0));
         // c₁ + 2 c₂ x + 3 c₃ x² = 0, in the form that is regular at c₃ = 0.
@@ -195,7 +195,7 @@ mod tests {
         assert_relative_eq!(fit.curvature(8.0), (6.0 * 8.0 - 86.0) / 100.0, max_relative = 1e-9);
     }
 
-    /// On a dense symmetric window the slope of a line fit has the variance 3σ²/(n h²), its value σ²/n.
+    /// On a dense symmetric window the slope of a line fit has the variance 3σ²/(n h²), and its value σ²/n.
     #[test]
     fn gains_are_those_of_the_textbook() {
         let time: Vec<f64> = (-500..=500).map(|k| 0.01 * f64::from(k)).collect();

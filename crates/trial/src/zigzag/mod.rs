@@ -3,7 +3,7 @@
 //! in [`crate::imo`], the points for characteristic-point identification in [`points`].
 //!
 //! Executes come from the rudder (`holds`, `executes`): the rudder is laid to alternate sides, and an execute is the
-//! instant at which the line through its ramp leaves the level before. Headings come from local cubic fits (`heading`),
+//! instant at which the line through its ramp meets the level before. Headings come from local cubic fits (`heading`),
 //! so that an overshoot is the extremum of a smooth curve and not the maximum of many noisy samples.
 
 mod characteristics;

@@ -8,17 +8,17 @@
 use super::local::{Cubic, Parabola};
 use estimation::statistics::median;
 
-/// Minimum size of an extremum as a share of the largest |heading|; smaller extrema are ripples or the initial
+/// Minimum size of an extremum as a share of the maximum |heading|; smaller extrema are ripples or the initial
 /// transient.
 const MIN_EXTREMUM_SHARE: f64 = 0.35;
 
 /// Extrema of a heading (rad, measured from the base course) at increasing times (s): time (s) and heading (rad) of the
-/// vertex of each, where the yaw rate is zero.
+/// vertex of each, at zero yaw rate.
 ///
 /// The record is split at its zero-crossings; in each part a parabola is fitted to the samples within ±`half_width` (s)
-/// of the largest |heading| of a lightly smoothed (three-point mean) record: about 3 samples on a quiet record at 1 s,
-/// 4 to 6 on a noisy one. A part gives no extremum when the parabola bends the wrong way, its vertex lies outside the
-/// fit or the part, the record ends within the half width of it, or it is below 0.35 of the largest |heading|. Empty
+/// of the maximum |heading| of a lightly smoothed (three-point mean) record: about 3 samples on a quiet record at 1 s,
+/// 4 to 6 on a noisy one. A part gives no extremum if the parabola bends the wrong way, its vertex lies outside the
+/// fit or the part, the record ends within the half width of it, or it is below 0.35 of the maximum |heading|. Empty
 /// for a record without a swing.
 pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> {
     let Some((&start, &end)) = time.first().zip(time.last()) else { return Vec::new() };
@@ -32,7 +32,7 @@ pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> 
         let rows = time.partition_point(|&t| t < bound[0])..time.partition_point(|&t| t <= bound[1]);
         let Some(row) = rows.max_by(|&a, &b| smooth[a].abs().total_cmp(&smooth[b].abs())) else { continue };
         let centre = time[row];
-        // One-sided fits at the ends of a record put their vertex anywhere.
+        // One-sided fits at the ends of a record give an arbitrary vertex.
         let cut_off =
             (part == 0 && centre - half_width < start) || (part + 2 == bounds.len() && centre + half_width > end);
         if cut_off {
@@ -54,7 +54,7 @@ pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> 
 /// (rad/s) of each.
 ///
 /// A cubic is fitted to the samples within ±`half_width` (s) of each crossing; its root gives the time, its slope there
-/// the yaw rate. A crossing whose cubic has no root in the fit, or the wrong slope, is left out.
+/// the yaw rate. A crossing whose cubic has no root in the fit, or the wrong slope, is omitted.
 pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> {
     let crossing = |(about, direction): (f64, f64)| {
         let fit = Cubic::fit(time, heading, about, half_width)?;
@@ -65,7 +65,7 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f6
     passages(time, heading).into_iter().filter_map(crossing).collect()
 }
 
-/// Changes of sign of the heading, close ones merged: time (s), and +1 where it goes to starboard.
+/// Changes of sign of the heading, close ones merged: time (s), and +1 for a passage to starboard.
 fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
     // Crossings within a twelfth of the period are merged: 10 s for a ship with a period of 120 s.
     let mut halves: Vec<f64> = departures(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -89,8 +89,8 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Times, s, at which a heading (rad, measured from the base course) departs to the other side by 0.35 of its largest
-/// size: one for every swing, because noise about zero is smaller.
+/// Times, s, at which a heading (rad, measured from the base course) departs to the opposite side by 0.35 of its
+/// maximum absolute value: one for every swing, because noise about zero is smaller.
 pub fn departures(time: &[f64], heading: &[f64]) -> Vec<f64> {
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let mut side = 0.0;

@@ -10,7 +10,7 @@ use crate::collect::in_memory;
 use crate::scenario::STRAIGHT_ON;
 use crate::testing::scenario;
 
-/// A first-order ship, recorded without an error, judged on the other side and on a circle.
+/// A first-order ship, recorded without error, validated on the opposite side and on a circle.
 const SCENARIO: &str = r#"
 question = "?"
 seed = 3
@@ -35,7 +35,7 @@ set."validation.manoeuvre".turning-circle = { rudder-deg = 35.0, heading-change-
 
 const DAMPING: &str = "[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 0.4\n[sensor]\nheading-noise-deg = 0.05\n";
 
-/// Knows K (1/s) and T (s) beforehand; without them it fails.
+/// Estimator with known K (1/s) and T (s); fails without them.
 struct KnownIndices(Option<[f64; 2]>);
 
 impl Identifier for KnownIndices {
@@ -63,7 +63,7 @@ impl Identifier for KnownIndices {
     }
 }
 
-/// Asked once for the tests of this file.
+/// Computed once for the tests of this file.
 static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
     let studies = [SCENARIO.to_owned(), format!("{SCENARIO}{DAMPING}")].map(|text| {
         let mut study = scenario(text);
@@ -121,7 +121,7 @@ fn what_is_stored_is_read_back() {
     assert_eq!(json.lines().filter(|line| line.contains("\"answers\"")).count(), results.cases.len());
 }
 
-/// Which task a prediction is follows from the zig-zags alone.
+/// The task of a prediction is determined by the zig-zags alone.
 #[test]
 fn a_prediction_is_of_another_side_another_amplitude_or_a_turn() {
     let zig_zag = |angles: [f64; 2], side| SteeredRecord::new(None, Some((Some(angles), side)), String::new(), None);

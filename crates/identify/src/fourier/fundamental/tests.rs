@@ -1,4 +1,4 @@
-//! Local optima, periods and refusals known from an independent computation.
+//! Local optima, periods and refusals, from an independent computation.
 
 use super::*;
 use crate::testing::{Case, Truth};

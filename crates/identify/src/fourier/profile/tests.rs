@@ -1,4 +1,4 @@
-//! The profile against the orthogonal decomposition.
+//! Comparison of the profile with the orthogonal decomposition.
 
 use std::f64::consts::TAU;
 
@@ -27,8 +27,7 @@ fn agree(time: Vec<f64>) {
     }
 }
 
-/// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap can hardly tell them
-/// apart.
+/// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap hardly separates them.
 #[test]
 fn goes_on_where_columns_are_nearly_dependent() {
     let even: Vec<f64> = (0..41).map(f64::from).collect();

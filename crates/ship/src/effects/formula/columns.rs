@@ -8,7 +8,7 @@ use super::program::FormulaProgram;
 pub struct ColumnFormula(FormulaProgram);
 
 impl ColumnFormula {
-    /// Parses a formula. Fails for a syntax error, nesting that is too deep, or more than four names.
+    /// Formula parsed from text. Fails for a syntax error, nesting that is too deep, or more than four names.
     pub fn read(text: &str) -> Result<Self, FormulaError> {
         parse_columns(text).map(Self)
     }
@@ -18,7 +18,7 @@ impl ColumnFormula {
         &self.0.constants
     }
 
-    /// Value of the formula; `values` are those of the names, in the same order.
+    /// Value of the formula; `values` belong to [`names`](Self::names), in their order.
     pub fn value(&self, values: &[f64]) -> f64 {
         self.0.value(values, |_| f64::NAN)
     }

@@ -1,4 +1,4 @@
-//! Expected values and ranges of the constants, written behind a formula.
+//! Expected values and ranges of the constants, written after a formula.
 
 /// Expectation of a constant: an expected value, and a range.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -7,7 +7,8 @@ pub(super) struct Expectation {
     pub(super) ends: Option<[f64; 2]>,
 }
 
-/// Expectations of all constants, parsed from `k about 5; c from 0 to 1`. Fails with a message.
+/// Expectations of all constants, parsed from `k about 5; c from 0 to 1`. Fails with a message if the text has another
+/// form.
 pub(super) fn expectations(text: &str, constants: &[String]) -> Result<Vec<Expectation>, String> {
     let mut expected = vec![Expectation::default(); constants.len()];
     for part in text.split(';').map(str::trim).filter(|part| !part.is_empty()) {

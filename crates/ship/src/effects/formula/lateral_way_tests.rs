@@ -16,7 +16,8 @@ fn banked(line: &str, constants: Vec<f64>) -> Response {
     ResponseModel::new(vec![formula]).with([BASE.to_vec(), constants].concat())
 }
 
-/// States of a replay of a zig-zag-like rudder at every quarter of a second, from a heading, with a falling speed.
+/// States of a replay of a zig-zag-like rudder every quarter of a second, from an initial heading, with a falling
+/// speed.
 fn states(ship: &Response, side: f64, heading: f64, has_speed: bool) -> Vec<[f64; 4]> {
     let rudder = [0.0, 0.2, 0.2, -0.2, -0.2, 0.2, 0.2].map(|angle| side * angle).to_vec();
     let rudder = Polyline::new(vec![0.0, 4.0, 20.0, 28.0, 60.0, 68.0, 100.0], rudder).expect("increasing");
@@ -59,7 +60,7 @@ fn the_way_is_the_sum_of_the_speed_aside() {
     }
 }
 
-/// A way turns with the record, and is to the other side in the mirror.
+/// Lateral way under rotation and mirror image: it rotates with the record, and changes sides in the mirror image.
 #[test]
 fn only_the_course_at_the_start_matters() {
     let ship = banked("bank = c * y", vec![-3e-4]);
@@ -79,7 +80,7 @@ fn only_the_course_at_the_start_matters() {
     assert!((rate[1] - (0.06 * 0.02 + 0.006 * (0.11 + moment))).abs() < 1e-15 && rate[2] == (0.4_f64).sin());
 }
 
-/// Derivatives by base, constant, first heading and first yaw rate are those of small changes.
+/// Derivatives by base, constant, first heading and first yaw rate, against finite differences.
 #[test]
 fn a_way_carries_its_derivatives() {
     let rudder = Polyline::new(vec![0.0, 4.0, 40.0, 50.0, 100.0], vec![0.0, 0.2, 0.2, -0.2, -0.2]).expect("increasing");
@@ -107,7 +108,7 @@ fn a_way_carries_its_derivatives() {
     }
 }
 
-/// Where some of the records have no speed, that of the others does not count.
+/// Unit of the lateral way: if some records have no speed, the speed of the other records is not used.
 #[test]
 fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {

@@ -70,7 +70,7 @@ pub(super) struct ListedFormula {
     pub(super) of_weather: bool,
 }
 
-/// Prior of the constants in given records: mean, standard deviation and largest value.
+/// Prior of the constants in given records: mean, standard deviation and maximum.
 pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 
 /// Effect defined by a formula.
@@ -86,8 +86,8 @@ pub struct Formula {
     listed: Option<ListedFormula>,
     /// Expectations of the constants of a user's formula.
     expected: Vec<Expectation>,
-    /// For every constant, `true` for a size: the moment is proportional to it and absent where all sizes are zero. The
-    /// others are shapes.
+    /// For every constant, `true` for a size: the moment is proportional to it, and absent if all sizes are zero.
+    /// Constants that are not sizes are shapes.
     is_size: Vec<bool>,
 }
 
@@ -99,9 +99,10 @@ impl PartialEq for Formula {
 }
 
 impl Formula {
-    /// Parses `name = formula`, optionally followed by expectations of constants, `; k about 5` or `; k from 1 to 20`.
+    /// Effect parsed from `name = formula`, optionally followed by expectations of constants, `; k about 5` or `; k
+    /// from 1 to 20`.
     ///
-    /// Fails with the position and what was expected there.
+    /// Fails with the position and the expected symbols.
     pub fn read(line: &str) -> Result<Arc<Self>, FormulaError> {
         let error = |at: usize, problem: &str| FormulaError { text: line.to_owned(), at, problem: problem.to_owned() };
         let Some((name, formula)) = line.split_once('=') else {
@@ -114,11 +115,11 @@ impl Formula {
         })
     }
 
-    /// Effect of a name with a formula and the expectations of its constants.
+    /// Effect with a name, a formula and the expectations of the constants.
     ///
-    /// Fails as [`read`](Self::read) does.
+    /// Fails if [`read`](Self::read) fails.
     pub fn named(name: &str, text: &str) -> Result<Arc<Self>, FormulaError> {
-        // Descriptions last as long as the program, so each text is described once.
+        // Descriptions have the lifetime of the program, so each text is described once.
         static CACHE: LazyLock<Mutex<FormulaCache>> = LazyLock::new(Mutex::default);
         let key = (name.to_owned(), text.to_owned());
         let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -133,7 +134,7 @@ impl Formula {
     /// Effect of a row of the list.
     ///
     /// # Panics
-    /// If the row cannot be parsed: a mistake of the list.
+    /// If the row cannot be parsed: an error in the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
         let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
         Self { acts: row.acts, listed: Some(*row), ..Self::from_program(program, row.description) }
@@ -189,7 +190,7 @@ impl Formula {
         Ok(effect)
     }
 
-    /// Indices of the record constants ([`OF_RECORD`]) that it uses.
+    /// Indices of the record constants ([`OF_RECORD`]) that the formula uses.
     fn taken(&self) -> impl Iterator<Item = usize> {
         (0..OF_RECORD.len()).filter(|place| self.program.signals.contains(&OF_RECORD[*place].0))
     }
@@ -202,7 +203,7 @@ impl Formula {
         formula
     }
 
-    /// `true` if it is zero or constant in a signal for ships without a measured channel.
+    /// `true` if the formula is zero or constant in a signal for ships without a measured channel.
     pub fn is_inactive_without(&self, channel: Regressor) -> bool {
         self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
     }
@@ -283,7 +284,7 @@ impl Effect for Formula {
         self.listed.is_some_and(|row| row.of_weather)
     }
 
-    /// A lateral way is relative to the initial course, so it does not depend on the absolute heading.
+    /// `false`: the lateral way is relative to the initial course, so it does not depend on the absolute heading.
     fn is_heading_dependent(&self) -> bool {
         self.has(FormulaSignal::Heading)
     }

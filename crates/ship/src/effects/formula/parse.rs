@@ -19,7 +19,7 @@ pub struct FormulaError {
     pub text: String,
     /// Position: number of characters before it.
     pub at: usize,
-    /// What was found there, and what was expected.
+    /// Problem at the position: symbol found and symbols expected.
     pub problem: String,
 }
 
@@ -30,14 +30,14 @@ fn marked(text: &str, at: usize) -> String {
     format!("  {near}\n  {}^", " ".repeat(at - left_out))
 }
 
-/// Parses a formula. For a moment (equivalent rudder angle) the program is the yaw acceleration, K/T times the moment.
+/// Program of a formula. For a moment (equivalent rudder angle) it is the yaw acceleration, K/T times the moment.
 ///
 /// Fails for a syntax error, nesting that is too deep, or too many constants.
 pub fn parse(text: &str, is_moment: bool) -> Result<FormulaProgram, FormulaError> {
     FormulaParser::new(text, false).program(is_moment)
 }
 
-/// Parses a formula whose names are columns, which become its constants. Fails as [`parse`] does.
+/// Program of a formula whose names are columns, which become constants. Fails if [`parse`] fails.
 pub(super) fn parse_columns(text: &str) -> Result<FormulaProgram, FormulaError> {
     FormulaParser::new(text, true).program(false)
 }
@@ -83,7 +83,7 @@ impl FormulaParser {
         FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
     }
 
-    /// Next character that is not white space.
+    /// Next character that is not white space; `None` at the end.
     fn peek(&mut self) -> Option<char> {
         while self.letters.get(self.at).is_some_and(|letter| letter.is_whitespace()) {
             self.at += 1;
@@ -91,7 +91,7 @@ impl FormulaParser {
         self.letters.get(self.at).copied()
     }
 
-    /// Consumes the next character if it is one of these.
+    /// Next character, which is consumed, if it is one of `any`; else `None`.
     fn take(&mut self, any: &[char]) -> Option<char> {
         let taken = self.peek().filter(|letter| any.contains(letter));
         self.at += usize::from(taken.is_some());
@@ -121,7 +121,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// Parses a part one nesting level deeper.
+    /// Part one nesting level deeper. Fails if the nesting is too deep.
     fn deeper(&mut self, part: fn(&mut Self) -> Result<(), FormulaError>) -> Result<(), FormulaError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -132,7 +132,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// Parts joined by operators of equal precedence, from left to right.
+    /// Chain of parts joined by operators of equal precedence, evaluated from left to right.
     fn chain(
         &mut self,
         operators: &[(char, FormulaOperator)],
@@ -321,7 +321,7 @@ impl FormulaParser {
     }
 }
 
-/// Signal of which a name is a misspelling.
+/// Signal meant by another or a misspelt name; `None` if no signal is similar.
 fn misspelt(name: &str) -> Option<&'static str> {
     const SPELLINGS: [(&str, &[&str]); 9] = [
         ("delta", &["δ", "rudder", "rudder_angle"]),

@@ -3,7 +3,7 @@
 use super::program::FormulaSignal;
 use crate::effects::effect::RecordScales;
 
-/// Scales of the signals in given records.
+/// Scales of the signals of a formula in given records.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalSizes {
     yaw_rate: f64,
@@ -49,7 +49,7 @@ impl SignalSizes {
     }
 }
 
-/// Speed that drives a lateral way in given records, m/s; 1 where a record has no speed.
+/// Speed that drives a lateral way in given records, m/s; 1 if a record has no speed.
 pub(super) fn way_speed(records: &RecordScales) -> f64 {
     records.speed.unwrap_or(1.0)
 }
@@ -71,7 +71,7 @@ impl SignalPoint {
     /// Number of sample points.
     pub(super) const COUNT: usize = 64;
 
-    /// Sample points over the range of the signals, always the same.
+    /// Sample points over the range of the signals, identical in every call.
     pub(super) fn all(scales: &SignalSizes) -> impl Iterator<Item = Self> + use<> {
         let scales = *scales;
         (1..=Self::COUNT).map(move |number| Self::weyl(number, &scales))
@@ -101,7 +101,7 @@ impl SignalPoint {
         match signal {
             FormulaSignal::YawRate => r * scales.yaw_rate / second,
             FormulaSignal::Rudder => delta * scales.rudder,
-            // A zig-zag turns about as far as its rudder goes.
+            // In a zig-zag the heading reaches about the rudder angle.
             FormulaSignal::Heading => psi * scales.rudder,
             FormulaSignal::LateralWay => y * scales.lateral_way * metre,
             FormulaSignal::Sway => 0.15 * v * scales.speed * per_second,

@@ -7,11 +7,11 @@ use crate::dynamics::{Measured, Regressor};
 use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
-/// Maximum number of values on the stack, and the number that suffices for most formulas (also of signals).
+/// Capacity of the stack, in values, and the capacity that suffices for most formulas (also in signals).
 pub(super) const STACK: usize = 16;
 const SMALL_STACK: usize = 3;
 
-/// Signal that a formula can name. Units and signs are those of NOTATION.md.
+/// Signal that a formula can name. Units and signs as in NOTATION.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FormulaSignal {
     /// `r`, yaw rate, rad/s.
@@ -20,7 +20,7 @@ pub enum FormulaSignal {
     Rudder,
     /// `psi`, heading, rad.
     Heading,
-    /// `y`, lateral way to starboard of the initial course, m: y' = U sin(ψ − ψ₀). U is the measured speed; 1 m/s where
+    /// `y`, lateral way to starboard of the initial course, m: y' = U sin(ψ − ψ₀). U is the measured speed, or 1 m/s if
     /// records have none, so that y is in metres per m/s.
     LateralWay,
     /// `v`, sway velocity to starboard, m/s.
@@ -41,11 +41,11 @@ pub enum FormulaSignal {
     PrimeYawRate,
     /// `vp`, prime sway velocity v/U.
     PrimeSway,
-    /// `q`, speed ratio U/U₀ to the approach; 1 where the record has no speed.
+    /// `q`, speed ratio U/U₀ to the approach; 1 if the record has no speed.
     SpeedRatio,
     /// `start`, time of the first row, s.
     Start,
-    /// `K_over_T`, K/T of the ship, 1/s²: times an equivalent rudder angle it is a yaw acceleration.
+    /// `K_over_T`, K/T of the ship, 1/s²: the factor from an equivalent rudder angle to a yaw acceleration.
     Gain,
 }
 
@@ -58,8 +58,8 @@ pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::LateralWay, 0.0, [0, 0]),
 ];
 
-/// Values of the record constants: approach speed, m/s; first time, s; ship length, m; the speed that drives a lateral
-/// way where none is measured, m/s; and 1 if that speed applies always, else 0.
+/// Values of the record constants: approach speed, m/s; first time, s; ship length, m; the speed of the lateral way if
+/// no speed is measured, m/s; and 1 if this speed always applies, else 0.
 pub(super) type OfRecord = [f64; OF_RECORD.len()];
 
 impl FormulaSignal {
@@ -83,7 +83,7 @@ impl FormulaSignal {
         ("K_over_T", Self::Gain),
     ];
 
-    /// Measured channels that it requires.
+    /// Measured channels that the signal requires.
     pub(super) fn channels(self) -> &'static [Regressor] {
         match self {
             Self::Sway => &[Regressor::Sway],
@@ -205,7 +205,7 @@ pub enum FormulaOperator {
     Min,
     /// Maximum.
     Max,
-    /// `step(x, width)`, a step of this width: (1 + tanh(x/width))/2.
+    /// `step(x, width)`, smooth step of this width: (1 + tanh(x/width))/2.
     SmoothStep,
 }
 
@@ -252,10 +252,10 @@ pub(super) enum Operand {
     Signal(usize),
 }
 
-/// Instruction of a program; the last value is kept beside the stack.
+/// Instruction of a program; the last value is kept outside the stack.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Instruction {
-    /// Pushes the last value on the stack and takes an operand as the last value.
+    /// Pushes the last value on the stack and loads an operand as the last value.
     Take(Operand),
     /// Negates the last value.
     Negate,
@@ -265,7 +265,7 @@ pub(super) enum Instruction {
     Call(FormulaFunction),
     /// Applies an operator to the top of the stack and the last value.
     Operate(FormulaOperator),
-    /// Applies an operator to the last value and an operand: a `Take` and an `Operate` in one.
+    /// Applies an operator to the last value and an operand: combines `Take` and `Operate`.
     With(FormulaOperator, Operand),
 }
 

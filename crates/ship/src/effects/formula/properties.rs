@@ -7,10 +7,10 @@ use super::{Formula, MirrorSymmetry};
 use crate::effects::effect::{Parameter, Prior, RecordScales};
 use crate::particulars::{self, Dimension};
 
-/// Range of a constant without one.
+/// Bound of a constant without a given range.
 const UNBOUNDED: f64 = 1e9;
 
-/// Standard deviation of the moment over the largest rudder angle, where the formula has no expected value.
+/// Standard deviation of the moment over the maximum rudder angle, for a formula without expected values.
 const MOMENT_SHARE: f64 = 0.2;
 
 impl Formula {
@@ -24,7 +24,7 @@ impl Formula {
         self.value_at(constants, point) / point.of(FormulaSignal::Gain)
     }
 
-    /// For every constant, `true` if the moment is proportional to it: it is a size.
+    /// For every constant, `true` if it is a size: the moment is proportional to it.
     pub(super) fn sizes(&self) -> Vec<bool> {
         let count = self.program.constants.len();
         let is_size = |index: usize| {
@@ -42,14 +42,14 @@ impl Formula {
         (0..count).map(is_size).collect()
     }
 
-    /// `true` if the moment vanishes where all sizes are zero.
+    /// `true` if the moment vanishes if all sizes are zero.
     pub(super) fn can_be_absent(&self) -> bool {
         let ones = SignalSizes::ones();
         let absent = self.with_size(None, &self.shapes(&ones));
         self.is_size.contains(&true) && SignalPoint::all(&ones).all(|point| self.moment(&absent, &point) == 0.0)
     }
 
-    /// Constants with these shapes, and with one size or none equal to 1, the other sizes zero.
+    /// Constants with these shapes: one size (or none) equal to 1, all other sizes zero.
     fn with_size(&self, place: Option<usize>, shapes: &[f64]) -> Vec<f64> {
         let constant = |(index, shape): (usize, &f64)| match (self.is_size[index], place == Some(index)) {
             (false, _) => *shape,
@@ -58,7 +58,7 @@ impl Formula {
         shapes.iter().enumerate().map(constant).collect()
     }
 
-    /// Constants as parameters.
+    /// Parameters for the constants of a formula.
     pub(super) fn derived_parameters(&self) -> Vec<Parameter> {
         let leaked = |text: String| -> &'static str { text.leak() };
         let shapes = self.shapes(&SignalSizes::ones());
@@ -103,8 +103,8 @@ impl Formula {
             .unwrap_or(MirrorSymmetry::Neither)
     }
 
-    /// Dimensions of the constants, where they follow from the signals, because the result is an angle. Unknown for
-    /// several shapes.
+    /// Dimensions of the constants that follow from the signals, given that the result is an angle. Unknown for several
+    /// shapes.
     fn units(&self, shapes: &[f64]) -> Vec<Option<Dimension>> {
         const POWERS: std::ops::RangeInclusive<i32> = -3..=3;
         let mut candidates: Vec<Dimension> =
@@ -142,8 +142,8 @@ impl Formula {
         Some([power(2.0, 1.0)?, power(1.0, 2.0)?])
     }
 
-    /// Start values of the constants: of a shape the expected value, else the value at which the moment becomes
-    /// nonlinear in it.
+    /// Start values of the constants: for a shape the expected value, else the value at which the moment becomes
+    /// nonlinear.
     fn shapes(&self, scales: &SignalSizes) -> Vec<f64> {
         let mut values: Vec<f64> = self.expected.iter().map(|constant| constant.about.unwrap_or(1.0)).collect();
         for place in 0..values.len() {
@@ -156,7 +156,8 @@ impl Formula {
                 let moments = SignalPoint::all(scales).map(|point| self.moment(&constants, &point));
                 moments.map(|moment| moment * moment).sum::<f64>().sqrt()
             };
-            // Exponent by which the moment grows with the constant: constant at first, another where the moment bends.
+            // Exponent of the moment as a power of the constant: constant at first, different if the moment becomes
+            // nonlinear.
             let slope = |value: f64| (spread(1.1 * value) / spread(value)).ln() / 1.1_f64.ln();
             let first = slope(1e-6);
             let mut ladder = (-24..=24).map(|step| 10f64.powf(f64::from(step) / 4.0));
@@ -169,9 +170,9 @@ impl Formula {
         values
     }
 
-    /// Priors of the constants. A size is normal about zero, with the expected value as its standard deviation, else
-    /// with that of a moment of a fifth of the largest rudder angle. A shape is normal about its expected value, with
-    /// half of it as standard deviation. `None` if a prior is not finite.
+    /// Priors of the constants. A size is normal about zero; its standard deviation is the expected value, else the
+    /// size of a moment of a fifth of the maximum rudder angle. A shape is normal about its expected value, with half
+    /// of that value as standard deviation. `None` if a prior is not finite.
     pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
         let scales = SignalSizes::of(records);
         let shapes = self.shapes(&scales);

@@ -18,7 +18,7 @@ pub(super) fn manoeuvres() -> RecordScales {
     }
 }
 
-/// Formulas of the list at typical constants: their values in other units and in the mirror image.
+/// Formulas of the list at typical constants: scaling to other units, and the mirror image.
 #[test]
 fn what_the_list_says_of_constants_is_what_their_formula_does() {
     let rows = LIST.iter().filter_map(|effect| if let ListedEffect::Row(row) = effect { Some(row) } else { None });
@@ -98,10 +98,10 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
 fn priors_follow_from_the_records_or_from_what_is_said() {
     let proposal = |line: &str| Formula::read(line).expect("a formula").proposal(&manoeuvres());
     let priors = proposal("cross = c * r * abs(v)").expect("speed and sway are there").priors;
-    // A moment of 0.07 rad where r is 0.015 rad/s and v 1 m/s.
+    // A moment of 0.07 rad at r = 0.015 rad/s and v 1 m/s.
     assert!((5.0..50.0).contains(&priors[0].sd) && priors[0].mean == 0.0 && !priors[0].is_shape, "{priors:?}");
     let bank = proposal("bank = c * tanh(k * psi)").expect("no channel is needed").priors;
-    // The heading goes to 0.35 rad, where tanh bends.
+    // The heading reaches 0.35 rad, in the nonlinear range of tanh.
     assert!((1.0..20.0).contains(&bank[1].mean) && bank[1].is_shape, "{bank:?}");
     // About a length to either side, of 140 m.
     let way = proposal("bank = c * y").expect("no channel is needed").priors;
@@ -139,7 +139,7 @@ fn what_is_no_effect_is_refused_where_it_stands() {
     }
 }
 
-/// A formula takes the numbers of a record that its signals need, and no others.
+/// Record constants of a formula: only the constants required by its signals.
 #[test]
 fn a_formula_is_had_again_from_what_is_written_of_it() {
     for (line, constants) in [

@@ -4,7 +4,7 @@ use crate::effects::effect::{EffectReal, OperatingPoint};
 use crate::number::Tangent;
 use estimation::number::Real;
 
-/// Equations of the rows, written by hand: the acting rudder, or the yaw acceleration.
+/// Equations of the rows, re-derived by hand: the acting rudder, or the yaw acceleration.
 fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &OperatingPoint<R>) -> R {
     let OperatingPoint { rudder, gain, yaw_rate: r, measured, .. } = *now;
     match (id, form) {
@@ -36,7 +36,7 @@ fn rows() -> impl Iterator<Item = &'static ListedFormula> {
     LIST.iter().filter_map(|effect| if let Row(row) = effect { Some(row) } else { None })
 }
 
-/// A number from −1 to 1, one for every place and round; zero in some rounds.
+/// Number from −1 to 1 for every place and round; zero in some rounds.
 fn number(round: u32, place: u32) -> f64 {
     match (round + place) % 11 {
         0 => 0.0,
@@ -44,7 +44,7 @@ fn number(round: u32, place: u32) -> f64 {
     }
 }
 
-/// The published numbers were computed with these very operations.
+/// Comparison to the last bit, because the published numbers were computed with exactly these operations.
 #[test]
 fn rows_are_their_equations_to_the_last_bit() {
     for row in rows() {
@@ -75,7 +75,7 @@ fn rows_are_their_equations_to_the_last_bit() {
                 measured: &measured,
             };
             let p = [variable(4, 2.0 * parameters[0].typical), variable(5, 0.03)];
-            // The edges of a dead band.
+            // Edges of a dead band.
             now.rudder.value = match round % 7 {
                 0 => p[0].value,
                 1 => 0.0 - p[0].value,

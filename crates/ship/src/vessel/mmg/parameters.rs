@@ -131,7 +131,7 @@ pub struct Parameters<R = f64> {
     pub volume: R,
     /// Centre of gravity x_G forward of midship, m.
     pub xG: R,
-    /// Radius of gyration about the vertical through the centre of gravity, over L (0.25 where nothing is published).
+    /// Radius of gyration about the vertical through the centre of gravity, over L (0.25 if no value is published).
     pub kzz: R,
     /// Hull.
     pub hull: HullDerivatives<R>,
@@ -203,7 +203,7 @@ impl Parameters {
 }
 
 impl<R> Parameters<R> {
-    /// Coefficient with this name in files; `None` if there is none, as for another law of the wake.
+    /// Coefficient with this name in files; `None` if there is none, e.g. for another law of the wake.
     pub fn named(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {

@@ -90,7 +90,7 @@ pub enum CalmHull<R = f64> {
 }
 
 impl<R: Real> PrimeHull<R> {
-    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate over that of the approach,
+    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate relative to the approach,
     /// yaw disturbance as equivalent rudder angle at approach speed (rad), and wind per unit of Y_w
     /// ([`wind_accelerations`](super::wind_accelerations)).
     #[inline]

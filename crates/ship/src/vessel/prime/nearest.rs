@@ -7,10 +7,10 @@
 //! Cov θ = f² Σ d dᵀ, d = J⁺ (a₊ − a₋)/2.
 //!
 //! Coefficients that act together in these states, such as N_v and N_vv or N_δ and Y_δ, are therefore correlated. The
-//! formulas of the MMG model were checked on two hulls, so other ships depart from them by more: f is the square root
-//! of the median of D²/p over the hulls of this project that entered no formula, with the Mahalanobis distance D of
-//! their nearest polynomials and the number of coefficients p. It changes by less than a tenth when one of them is left
-//! out.
+//! formulas of the MMG model were checked on two hulls, so departures of other ships are larger: f is the square root
+//! of the median of D²/p over the hulls of this project that entered no formula, with D the Mahalanobis distance of
+//! their nearest polynomials and p the number of coefficients. It changes by less than a tenth if one of these hulls is
+//! left out.
 
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
@@ -35,7 +35,7 @@ const PIVOT: f64 = 0.35;
 /// Number of Gauss–Newton steps; only e, b, k and δ_r are nonlinear.
 const STEPS: usize = 8;
 
-/// Start value of a coefficient; far from it, k leaves its bounds.
+/// Start value of a coefficient; from a distant start value, k leaves its bounds.
 fn begin(term: &PolynomialTerm) -> f64 {
     match term.key {
         "Nd" => 1.0,
@@ -60,7 +60,8 @@ pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     laws(&of_mmg(&prior.parameters)?, &differences)
 }
 
-/// Priors of both polynomials, from the accelerations of the mean hull and their half differences.
+/// Priors of both polynomials, from the accelerations of the mean hull and their half differences; `None` if a fit
+/// fails.
 fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
         law(CalmHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
@@ -132,8 +133,8 @@ mod tests {
         Some(DVector::from_vec(accelerations))
     }
 
-    /// Factor f from the hulls that entered no formula, from all of them and with each left out; KVLCC2, which entered
-    /// some, is nearer.
+    /// Factor f: from the hulls that entered no formula, from all of them and with each left out. KVLCC2, which entered
+    /// some formulas, is nearer.
     #[test]
     fn published_hulls_depart_from_the_formulas_by_so_much() {
         let forms = HullForm::candidates(None);
@@ -141,7 +142,7 @@ mod tests {
             let truth = published(ship)?;
             let nearest = laws(&truth, &DMatrix::zeros(truth.len(), 0)).expect("independent terms");
             let square = |form: &HullForm, (values, _): PolynomialLaw| {
-                // Without Y_w, the last.
+                // Without Y_w, the last coefficient.
                 let count = values.len();
                 let left = values - DVector::from_fn(count, |place, _| form.coefficients()[place].mean);
                 let covariance = form.covariance().view((0, 0), (count, count)).into_owned();

@@ -10,8 +10,8 @@
 //!
 //! Y_w = (ρ_air/ρ) C_Y A_L/(L d)/(m' + m_y')
 //!
-//! with C_Y = 0.8 and a lateral area A_L = (0.8 ± 0.4) L d: 0.5 for a loaded tanker, 1.3 for one in ballast, up to 2
-//! for a container ship.
+//! with C_Y = 0.8 and a lateral area A_L = (0.8 ± 0.4) L d: 0.5 for a loaded tanker, 1.3 for a tanker in ballast, up to
+//! 2 for a container ship.
 //!
 //! Source: Blendermann (1994), Journal of Wind Engineering and Industrial Aerodynamics 51:339-351.
 
@@ -57,9 +57,9 @@ mod tests {
     use super::*;
     use crate::ships::kvlcc2;
 
-    /// A wind from the starboard bow pushes a ship astern and to port and turns the bow to port; a wind from the
-    /// starboard quarter pushes it ahead and to port and turns the bow to starboard. The mirror image has the opposite
-    /// signs.
+    /// Effect of the wind: from the starboard bow it pushes a ship astern and to port and turns the bow to port; from
+    /// the starboard quarter it pushes the ship ahead and to port and turns the bow to starboard. The mirror image has
+    /// opposite signs.
     #[test]
     fn wind_pushes_and_turns() {
         for (from, ahead, turning) in [(0.8, -1.0, -1.0), (2.4, 1.0, 1.0)] {
@@ -72,7 +72,7 @@ mod tests {
         assert!(wind_accelerations(1.0, FRAC_PI_2)[2].abs() < 1e-12);
     }
 
-    /// KVLCC2 with the lateral area of a loaded tanker, a half of L d, lies within what is expected.
+    /// KVLCC2 with the lateral area of a loaded tanker, half of L d, lies within the expected range.
     #[test]
     fn a_loaded_tanker_is_expected() {
         let [mean, sd] = windage(&kvlcc2::FULL_SCALE);

@@ -1,15 +1,15 @@
 //! Formulas for mean and standard deviation of every coefficient of an MMG hull, in the prime system ½ρLdU².
 //!
 //! The formulas were checked against the published derivatives of KVLCC2 and of the 3 m model of Esso Osaka; the
-//! standard deviation of a coefficient is about the error there. Three formulas circulate with errors:
-//! Yvvv' = −(0.185 L/B + 0.48), not −0.185 L/B + 0.48; N_r' is not −k (0.54 + k); the Y_r' of Lee (1998)
-//! already contains −(m' + m_x') and is not used.
+//! standard deviation of a coefficient is about the error for these hulls. Three formulas circulate with errors: Yvvv'
+//! = −(0.185 L/B + 0.48), not −0.185 L/B + 0.48; N_r' is not −k (0.54 + k); the Y_r' of Lee (1998) already contains
+//! −(m' + m_x') and is not used.
 
 use std::f64::consts::PI;
 
 use super::particulars::HullDimensions;
 
-/// Standard deviation of a coefficient when all particulars are given.
+/// Standard deviation of a coefficient if all particulars are given.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Spread {
     /// Relative to the mean.
@@ -116,9 +116,9 @@ impl HullDimensions {
 const RESISTANCE: f64 = 0.018;
 /// Typical K_T on the straight approach, between 0.20 of KVLCC2 and 0.16 of the SEIUN-like ship.
 const SERVICE_THRUST: f64 = 0.18;
-/// Typical slope of K_T over J there, between −0.36 and −0.4.
+/// Typical slope of K_T over J at this point, between −0.36 and −0.4.
 const THRUST_SLOPE: f64 = -0.38;
-/// Typical thrust deduction, that of both ships and of Esso Osaka.
+/// Typical thrust deduction, equal for both ships and Esso Osaka.
 const DEDUCTION: f64 = 0.22;
 
 const LEE: &str = "Lee (1998)";

@@ -1,4 +1,4 @@
-//! Comparison of the particulars of two ships: same ship at another scale or loading, and transfer of missing
+//! Comparison of the particulars of two ships: test for another scale or loading of one ship, and transfer of missing
 //! particulars.
 
 use super::particulars::{HullParticulars, PARTICULARS};
@@ -6,10 +6,10 @@ use super::particulars::{HullParticulars, PARTICULARS};
 /// Relative tolerance for rounding in the sources.
 const ROUNDING_TOLERANCE: f64 = 0.02;
 
-/// Difference of x_G, in L, that counts as another loading.
+/// Difference of x_G, in L, that indicates another loading.
 const LOADING_SHIFT: f64 = 0.005;
 
-/// Exponent of the length by which a particular scales at the same Froude number.
+/// Exponent of the length by which a particular scales at equal Froude number.
 fn power_of_length(key: &str) -> f64 {
     match key {
         "block-coefficient" => 0.0,
@@ -37,8 +37,8 @@ impl HullParticulars {
         self.speed / (super::particulars::GRAVITY * self.length).sqrt()
     }
 
-    /// Keys of the particulars that are given for both ships and differ at equal length: by more than 2 %, x_G by more
-    /// than 0.005 L.
+    /// Keys of particulars that are given for both ships and differ at equal length: by more than 2 %, x_G by more than
+    /// 0.005 L.
     pub fn differing(&self, other: &Self) -> Vec<&'static str> {
         let ratio = self.length / other.length;
         let differs = |particular: &&super::Particular| {
@@ -54,8 +54,8 @@ impl HullParticulars {
         PARTICULARS.iter().filter(|p| is_of_hull(p.key)).filter(differs).map(|p| p.key).collect()
     }
 
-    /// Particulars with missing values taken from another ship, scaled to the length of this one; given values stay.
-    /// Mass and revolutions depend on the water and the trial and are not transferred.
+    /// Particulars with missing values taken from another ship, scaled to the length of this ship; given values are
+    /// kept. Mass and revolutions depend on the water and the trial and are not transferred.
     #[must_use]
     pub fn with_missing_from(&self, other: &Self) -> Self {
         let ratio = self.length / other.length;
@@ -74,7 +74,7 @@ mod tests {
     use super::super::tests::KVLCC2;
     use super::*;
 
-    /// KVLCC2 and her model of 7 m: 1.27 m, 0.455 m, 0.0539 m² (SIMMAN 2008).
+    /// KVLCC2 and its 7 m model: 1.27 m, 0.455 m, 0.0539 m² (SIMMAN 2008).
     #[test]
     fn a_model_has_the_particulars_of_her_ship() {
         let bare = HullParticulars { length: 7.0, speed: 1.18, ..HullParticulars::default() };

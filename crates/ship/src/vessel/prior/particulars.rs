@@ -1,4 +1,4 @@
-//! Particulars of a ship: keys and units, valid ranges, and typical ratios that replace missing ones.
+//! Particulars of a ship: keys and units, valid ranges, and typical ratios that replace missing particulars.
 #![expect(non_snake_case, reason = "L, B, AR and the like are the symbols of naval architecture")]
 
 use thiserror::Error;
@@ -42,15 +42,15 @@ pub struct Particular {
     pub key: &'static str,
     /// Symbol.
     pub symbol: &'static str,
-    /// Unit, "1" for a nondimensional one.
+    /// Unit; "1" for a nondimensional particular.
     pub unit: &'static str,
     /// Meaning.
     pub meaning: &'static str,
-    /// Minimum and largest valid value, in its unit.
+    /// Minimum and maximum valid value, in its unit.
     pub range: [f64; 2],
     get: fn(&HullParticulars) -> Option<f64>,
     set: fn(&mut HullParticulars, f64),
-    /// Value of a complete hull; `None` for a particular that is not a dimension of it.
+    /// Value of a complete hull; `None` for a particular that is not a dimension of the hull.
     pub(super) of_form: Option<fn(&HullDimensions) -> f64>,
 }
 
@@ -74,7 +74,7 @@ impl Particular {
 /// Getter and setter of a particular.
 type ParticularAccess = (fn(&HullParticulars) -> Option<f64>, fn(&mut HullParticulars, f64));
 
-/// Getter and setter of an optional field, or of a required field that is zero where it is missing.
+/// Getter and setter of an optional field, or of a required field that is zero if it is missing.
 macro_rules! access {
     (optional $field:ident) => {
         (|p| p.$field, |p, value| p.$field = Some(value))
@@ -172,9 +172,9 @@ impl Ratio {
     }
 }
 
-/// Typical ratios: mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, those of rudder and
-/// propeller without ONRT, which has two of either. Sources: particulars of SIMMAN 2014, of the 3 m model of Esso Osaka
-/// (Osaka University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
+/// Typical ratios: mean and standard deviation over KVLCC2, KCS, ONRT, Esso Osaka and SEIUN MARU, ratios of rudder and
+/// propeller without ONRT, which has two rudders and two propellers. Sources: particulars of SIMMAN 2014, of the 3 m
+/// model of Esso Osaka (Osaka University, mmg-1p1r-simulator) and of SEIUN MARU (mmgdynamics).
 pub(super) const RATIOS: [Ratio; 7] = [
     Ratio::new(["L/B", "beam-m"], [6.6, 1.1], [2.0, 12.0], |form| form.L / form.B),
     Ratio::new(["B/d", "draught-m"], [2.9, 0.35], [1.2, 8.0], |form| form.B / form.d),
@@ -196,7 +196,7 @@ const DISPLACEMENT_TOLERANCE: f64 = 0.05;
 pub(super) const GRAVITY: f64 = 9.81;
 const SEA_WATER: f64 = 1025.0;
 const FRESH_WATER: f64 = 1000.0;
-/// Minimum length of a ship in sea water, m; a shorter one is a model in fresh water.
+/// Minimum length of a ship in sea water, m; a shorter ship is a model in fresh water.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
 
 /// Complete dimensions of a hull; the propeller revolutions are optional.
@@ -219,9 +219,9 @@ pub(super) struct HullDimensions {
 #[error("{what} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
     ShortNumber::rounded(.range[0], 4), ShortNumber::rounded(.range[1], 4), in_unit(.unit))]
 pub struct ParticularsError {
-    /// Key of the particular, or the last of those that contradict each other.
+    /// Key of the particular, or the last key of a contradiction.
     pub key: &'static str,
-    /// Quantity, with the keys from which it follows.
+    /// Quantity, with the keys that give it.
     pub what: String,
     /// Value.
     pub value: f64,
@@ -229,7 +229,7 @@ pub struct ParticularsError {
     pub range: [f64; 2],
     /// Unit of value and range.
     pub unit: &'static str,
-    /// Advice.
+    /// Advice for the user.
     pub cure: &'static str,
 }
 
@@ -238,7 +238,7 @@ fn in_unit(unit: &str) -> String {
 }
 
 impl HullParticulars {
-    /// Volume of the displaced water, m³.
+    /// Volume of the displaced water, m³; `None` if the displacement is not given.
     fn volume(&self) -> Option<f64> {
         let density = if self.length < MIN_SHIP_LENGTH_M { FRESH_WATER } else { SEA_WATER };
         self.displacement.map(|mass| mass / density)
@@ -268,12 +268,13 @@ impl HullParticulars {
         }
     }
 
-    /// `true` if any particular beside length and speed is given.
+    /// `true` if any particular other than length and speed is given.
     pub fn has_form(&self) -> bool {
         *self != Self { length: self.length, speed: self.speed, ..Self::default() }
     }
 
-    /// Checks every particular and then their ratios against the ranges of ships.
+    /// Check of every particular, and then of their ratios, against the ranges of ships. Fails with the first value
+    /// outside.
     pub fn check(&self) -> Result<(), ParticularsError> {
         for Particular { key, unit, range, get, .. } in PARTICULARS {
             let needed = matches!(key, "length-m" | "speed-m-s").then_some(0.0);

@@ -17,8 +17,8 @@ pub(super) const KVLCC2: HullParticulars = HullParticulars {
     x_g: Some(11.2),
 };
 
-/// The 3 m model of Esso Osaka: particulars and parameters of Osaka University in mmg-1p1r-simulator; C_b from the
-/// mass m' = 0.27078.
+/// 3 m model of Esso Osaka: particulars and parameters of Osaka University in mmg-1p1r-simulator; C_b from the mass m'
+/// = 0.27078.
 const ESSO_OSAKA: HullParticulars = HullParticulars {
     length: 3.0,
     speed: 0.4,
@@ -55,7 +55,7 @@ fn coefficient<'a>(prior: &'a HullPrior, key: &str) -> &'a CoefficientPrior {
     prior.coefficients.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
 }
 
-/// Error of the mean, per cent of the published value.
+/// Error of the mean, % of the published value.
 fn error(prior: &HullPrior, key: &str, published: f64) -> f64 {
     100.0 * (coefficient(prior, key).mean / published - 1.0)
 }
@@ -68,12 +68,12 @@ fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
     }
 }
 
-/// The value of a coefficient in some parameters; NaN where they have none.
+/// Value of a coefficient in some parameters; NaN if they do not contain it.
 fn value_in(coefficient: &CoefficientPrior, mut parameters: Parameters) -> f64 {
     parameters.named(coefficient.formula.key).map_or(f64::NAN, |value| *value)
 }
 
-/// Yasukawa and Yoshimura (2015). Yr needs m_x', which is a formula as well and 5 % high.
+/// Yasukawa and Yoshimura (2015). Yr depends on m_x', which follows from a formula, too, and is 5 % too high.
 #[test]
 fn formulas_miss_the_published_derivatives_of_kvlcc2_by_so_much() {
     let prior = priors(&KVLCC2).expect("a ship");
@@ -100,13 +100,13 @@ fn formulas_miss_the_published_derivatives_of_kvlcc2_by_so_much() {
 fn formulas_miss_the_published_derivatives_of_esso_osaka_by_so_much() {
     let prior = priors(&ESSO_OSAKA).expect("a ship");
     errors_are(&prior, &[("my", 0.2579, -11.8), ("Yv", -0.3728, 7.3), ("Nv", -0.1458, -8.0), ("Nr", -0.04849, -8.3)]);
-    // With the published m_x' the formula of Yr misses by 2 %.
+    // With the published m_x' the formula of Yr has an error of 2 %.
     let derivative = coefficient(&prior, "Yr").mean - coefficient(&prior, "mx").mean + 0.0467;
     assert!((100.0 * (derivative / 0.116 - 1.0) + 1.4).abs() < 0.1, "{derivative}");
 }
 
-/// Seven derivatives of the set and two added masses are these regressions to the printed digits, four of them ones
-/// that are used here.
+/// Seven derivatives of the set and two added masses are these regressions to the printed digits, of which four are
+/// used here.
 #[test]
 fn the_seiun_like_ship_is_made_of_regressions() {
     let prior = priors(&SEIUN_LIKE).expect("a ship");
@@ -116,12 +116,12 @@ fn the_seiun_like_ship_is_made_of_regressions() {
         let (formula, printed) = (derivative.mean, value_in(derivative, set));
         assert!((formula - printed).abs() < 6e-4, "{key}: {formula} against {printed}");
     }
-    // The one regression that is not used because of its sign.
+    // Regression that is not used because of its sign.
     let nvrr = -0.075 * (1.0 - 0.508) * 105.0 / 17.91 - 0.098;
     assert!((nvrr - set.hull.Nvrr).abs() < 1e-4, "{nvrr} against {}", set.hull.Nvrr);
 }
 
-/// Of a published hull nine coefficients of ten lie within two standard deviations.
+/// Nine of ten coefficients of a published hull lie within two standard deviations.
 #[test]
 fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
@@ -169,7 +169,7 @@ fn what_is_missing_widens_the_prior() {
     assert!((draught.value - 16.72).abs() < 0.01 && (draught.sd / draught.value - 0.208).abs() < 0.01, "{draught:?}");
 }
 
-/// One of draught, beam and block coefficient follows from the displacement.
+/// Draught, beam or block coefficient, whichever is missing, follows from the displacement.
 #[test]
 fn the_displacement_tells_what_is_missing() {
     let volume = |prior: &HullPrior| prior.parameters.volume;
@@ -213,7 +213,8 @@ fn what_is_no_ship_is_refused() {
         let refusal = refused(change);
         assert!(refusal.starts_with(message) && refusal.contains("; "), "{refusal}\nexpected {message}");
     }
-    // A model with the length of her ship: lengths of both scales contradict each other before anything sails.
+    // Model with the length of its full-scale ship: lengths of both scales contradict each other before a simulation
+    // starts.
     let mixed = HullParticulars { length: 320.0, speed: 7.97, beam: Some(1.27), ..HullParticulars::default() };
     assert!(priors(&mixed).expect_err("two scales").to_string().contains("one scale"));
 }
@@ -228,8 +229,8 @@ fn every_particular_is_found_by_its_key() {
     }
 }
 
-/// A tanker and a training ship by their particulars alone turn to the side of the rudder, at a rate that ships have:
-/// r' of KVLCC2 at 20° is 0.33.
+/// Mean hulls of a tanker and a training ship turn to the side of the rudder, at a rate typical of ships: r' of KVLCC2
+/// at 20° is 0.33.
 #[test]
 fn the_mean_hull_turns_as_ships_do() {
     for given in [KVLCC2, SEIUN_LIKE, bare(320.0, 7.97)] {

@@ -1,4 +1,4 @@
-//! The track and the figures of a turning circle against closed forms.
+//! Track and characteristics of a turning circle against closed forms.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,8 @@ const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;
 const RATE: f64 = 0.02;
 
-/// A ship that turns with constant velocities from the first row on, to starboard or port, on any course.
+/// Characteristics of a ship that turns with constant velocities from the first row on, to starboard or port, on any
+/// course.
 fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
     let rows = 4000;
     let time: Vec<f64> = (0..=rows).map(|row| f64::from(row) * turned / RATE / f64::from(rows)).collect();

@@ -1,4 +1,4 @@
-//! A yaw response with speed and drift beside it.
+//! Yaw response combined with speed and drift.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ fn planar() -> Planar {
     Planar::new(PlanarCoefficients::from_array(TRUTH), LENGTH, SPEED).expect("a ship")
 }
 
-/// Rudder angles that follow one another from 3 s on, each for some time; 15°/s between them.
+/// Rudder signal: successive angles from 3 s on, each held for `hold` s, with 15°/s between them.
 fn rudder(first: f64, angle: f64, hold: f64, holds: usize, end: f64) -> Polyline {
     let (mut time, mut value) = (vec![0.0, 3.0], vec![0.0, 0.0]);
     let mut now = 3.0;
@@ -37,7 +37,7 @@ fn rudder(first: f64, angle: f64, hold: f64, holds: usize, end: f64) -> Polyline
     Polyline::new(time, value).expect("a rudder")
 }
 
-/// A turn of many circles ends in one state, below the approach speed, whatever the rudder.
+/// Turn of many circles: it ends in one steady state, below the approach speed, for any rudder angle.
 #[test]
 fn no_rudder_makes_the_ship_faster() {
     for rate in [0.005, 0.02, 0.05] {
@@ -72,7 +72,7 @@ fn a_response_sees_the_speed_of_its_ship() {
         assert_eq!((motion.speed, motion.sway), (Some(u.hypot(v)), Some(v)));
         (motion.yaw_rate, u.hypot(v) / SPEED)
     };
-    // Steady: r = K δ q^(m_b − m_a).
+    // Steady turn: r = K δ q^(m_b − m_a).
     let (plain, _) = steered([1.0, 1.0]);
     let (slowed, ratio) = steered([1.0, 2.0]);
     assert_relative_eq!(plain, 0.15 * from_deg(35.0), max_relative = 5e-3);
@@ -83,7 +83,8 @@ fn a_response_sees_the_speed_of_its_ship() {
 #[test]
 fn states_steps_and_memory_of_the_response_are_passed_on() {
     use ship::effects::{Backlash, SteeringLag};
-    // Dead time, play of the rudder, and nothing that asks for speed: the response alone turns in the same way.
+    // With dead time and play of the rudder but no effect that requires the speed, the response alone turns
+    // identically.
     let model = ResponseModel::new(vec![Arc::new(SteeringLag::DeadTime), Arc::new(Backlash)]);
     let response = model.with(vec![0.1, 0.015, 0.01, 1.3, 0.05]);
     let ship = PlanarShip { response: response.clone(), planar: planar() };

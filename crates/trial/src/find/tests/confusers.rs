@@ -1,4 +1,4 @@
-//! Logs that hold no manoeuvre, and logs that are none: nothing is found, and nothing panics.
+//! Logs without manoeuvres, and invalid logs: no manoeuvre is detected, and there is no panic.
 
 use ship::angle::{from_deg, to_deg};
 
@@ -13,7 +13,7 @@ fn an_autopilot_keeps_a_straight_piece() {
     let spread = sea.rudder.iter().map(|x| to_deg(x.abs())).fold(0.0, f64::max);
     assert!(spread > 1.0, "{spread}");
     assert_eq!(sea.names(), ["straight"]);
-    // Its order in steps of three degrees, as of an autopilot with a dead band.
+    // Orders in steps of three degrees, as of an autopilot with a dead band.
     let mut sea = Sea::new(0.5);
     let base = sea.course;
     let mut order = from_deg(3.0);
@@ -39,8 +39,8 @@ fn changes_of_course_are_nothing() {
     assert_eq!(sea.detected(), []);
 }
 
-/// Random orders for random times, any angle or multiples of five degrees, about the times a zig-zag would have. In so
-/// many a few look like a trial of three executes.
+/// Random orders for random times, any angle or multiples of five degrees, of about the durations in a zig-zag. In so
+/// many orders a few look like a trial of three executes.
 #[test]
 fn harbour_manoeuvring_is_nothing() {
     let mut detected = Vec::new();
@@ -84,7 +84,7 @@ fn a_gap_of_the_log_ends_a_zig_zag() {
     assert!(detected.iter().all(|manoeuvre| manoeuvre.until - manoeuvre.from < 1000.0), "{detected:?}");
 }
 
-/// The rudder goes from a long circle quickly round a short one, and only then amidships.
+/// The rudder goes from a long circle directly to a short one, and only then amidships.
 #[test]
 fn between_two_turns_there_is_no_pull_out() {
     let (mut time, mut rudder, mut heading) = (Vec::new(), Vec::new(), Vec::new());
@@ -104,7 +104,7 @@ fn between_two_turns_there_is_no_pull_out() {
     assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from), "{list:?}");
 }
 
-/// No log of constants, of few rows or with unsound channels has anything.
+/// Logs of constants, of few rows or with unsound channels contain no manoeuvre.
 #[test]
 fn logs_that_are_none() {
     for rows in 0..9 {

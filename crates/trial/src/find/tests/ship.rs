@@ -1,4 +1,4 @@
-//! A helmsman and a first-order ship for the tests: T r' + r = K (δ − δ₀), stepped with the log. It shares nothing with
+//! A helmsman and a first-order ship for the tests: T r' + r = K (δ − δ₀), stepped with the log. It shares no code with
 //! the search.
 
 use ship::angle::from_deg;
@@ -6,7 +6,7 @@ use ship::angle::from_deg;
 use crate::find::{DetectedManoeuvre, Signals, manoeuvres};
 use crate::testing::Gaussian;
 
-/// A log under way.
+/// A simulated log of a ship under way.
 pub struct Sea {
     /// Time between rows, s.
     pub step: f64,
@@ -49,7 +49,7 @@ impl Sea {
         }
     }
 
-    /// A ship whose times are `factor` times those of the usual one.
+    /// A ship with `factor` times the usual time scale.
     pub fn scaled(step: f64, factor: f64) -> Self {
         let sea = Self::new(step);
         Self { lag: sea.lag * factor, gain: sea.gain / factor, ..sea }
@@ -59,7 +59,7 @@ impl Sea {
         self.time.len() as f64 * self.step
     }
 
-    /// One row with the rudder on its way to `order`.
+    /// Adds one row with the rudder on its way to `order`.
     pub fn row(&mut self, order: f64) {
         self.time.push(self.now());
         self.angle += (order - self.angle).clamp(-self.gear * self.step, self.gear * self.step);
@@ -99,9 +99,9 @@ impl Sea {
         }
     }
 
-    /// A zig-zag about the present course, angles in degrees; `executes` executes, the last hold until the heading is
-    /// back on the base course. Returns the times of the first row with the rudder on its way and of the last row with
-    /// it held.
+    /// A zig-zag about the present course, angles in degrees; `executes` executes, with the last hold until the heading
+    /// is back on the base course. Returns the times of the first row with the rudder on its way and of the last row
+    /// with it held.
     pub fn zig_zag(&mut self, delta_deg: f64, psi_deg: f64, executes: usize) -> (f64, f64) {
         let (delta, psi, base) = (from_deg(delta_deg), from_deg(psi_deg), self.course);
         let start = self.now();
@@ -126,12 +126,12 @@ impl Sea {
         }
     }
 
-    /// The manoeuvres but for the straight pieces.
+    /// The manoeuvres except the straight pieces.
     pub fn detected(&self) -> Vec<DetectedManoeuvre> {
         manoeuvres(&self.log()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
     }
 
-    /// Names of all of them.
+    /// Names of all detected manoeuvres.
     pub fn names(&self) -> Vec<String> {
         manoeuvres(&self.log()).iter().map(|manoeuvre| manoeuvre.name()).collect()
     }

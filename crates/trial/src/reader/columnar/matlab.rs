@@ -1,6 +1,6 @@
 //! MATLAB files of level 5 (`save -v6`, `-v7`) and level 4 (`save -v4`) as text: numeric variables of equal length are
 //! the columns of a table. Texts, cells, structures, sparse and complex variables and those of more than two dimensions
-//! are left out; a cell array with the name of a quantity that no other variable holds is refused.
+//! are omitted; a cell array with the name of a quantity in no other variable is refused.
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 1 (level 5 MAT-files).
 
@@ -23,16 +23,16 @@ pub use level4::is_level4;
 /// Length of the head of a file, bytes.
 const HEAD_BYTES: usize = 128;
 
-/// Length of an unpacked variable up to the end of its flags, bytes.
+/// Length of an unpacked variable up to the end of the flags, bytes.
 const FLAGS_END_BYTES: usize = 24;
 
-/// Length of an unpacked variable up to the end of its name, bytes, for every class.
+/// Length of an unpacked variable up to the end of the name, bytes, for every class.
 const NAME_END_BYTES: usize = 192;
 
 /// Maximum size of all unpacked variables, bytes.
 const MAX_UNPACKED_BYTES: u64 = 8 * MAX_CELLS as u64;
 
-/// Kind of a data element that holds a variable.
+/// Kind of a data element with a variable.
 const MATRIX: u32 = 14;
 
 /// Class of the numbers of a variable, and `true` for complex numbers.
@@ -44,7 +44,7 @@ fn is_numeric(class: u32) -> bool {
     (6..=15).contains(&class)
 }
 
-/// A variable, or the description of a variable without numbers; `None` for bytes that are not a variable.
+/// Variable, or the description of a variable without numbers; `None` for bytes that are not a variable.
 fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVariable>> {
     let mut scan = Scan { tail: bytes, big_endian };
     let (_, flag_bytes) = scan.element()?;
@@ -61,7 +61,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVari
     }
     let name = String::from_utf8_lossy(scan.element()?.1).into_owned();
     let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
-    // MATLAB keeps objects in a variable of bytes without a name.
+    // MATLAB stores objects in a variable of bytes without a name.
     if name.is_empty() || complex || dimensions.len() != 2 {
         return Some(Err(OtherVariable { name, kind: sizes }));
     }
@@ -71,7 +71,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVari
     Some(Ok(Variable::new(name, [rows, columns], kind, data, big_endian)))
 }
 
-/// Unpacks a variable with its tag; a variable without numbers only up to its name.
+/// Unpacks a variable with its tag; if it has no numbers, only up to its name.
 fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, Problem> {
     let mut decoder = ZlibDecoder::new(packed);
     let mut bytes = Vec::new();
@@ -95,7 +95,7 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
-/// The variables of a file of level 5.
+/// Variables of a file of level 5.
 fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     let big_endian = match bytes.get(HEAD_BYTES - 2..HEAD_BYTES) {
         Some(b"IM") => false,
@@ -125,7 +125,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     Ok((numeric, left_out))
 }
 
-/// Table of a file as text: the variables of the length with the most known names, or else the most numbers.
+/// Table of a file as text: the variables of equal length with the most known names, or else the most numbers.
 pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::meaning(name)? {

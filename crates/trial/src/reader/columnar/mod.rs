@@ -1,8 +1,8 @@
 //! Binary tables: MATLAB variables, Parquet with the feature `parquet`, and spreadsheets with the feature
 //! `spreadsheets`.
 //!
-//! Each becomes the text of a table, a line at a time, and is then read like every other table. Names, units, stamps
-//! and sidecars are handled there; only content that no table can hold is left out here (nested columns, variables of
+//! Each is converted to the text of a table, line by line, and read like any other table. Names, units, stamps
+//! and sidecars are handled there; only content that fits no table is omitted here (nested columns, variables of
 //! other lengths).
 
 mod matlab;
@@ -29,7 +29,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Kind of a file by its first bytes; `None` for every other file.
+    /// Kind of a file by its first bytes; `None` for any other file.
     pub fn of(start: &[u8]) -> Option<Self> {
         match start {
             [b'P', b'A', b'R', b'1', ..] => Some(Self::Parquet),
@@ -41,7 +41,7 @@ impl Kind {
 
     /// Table of a file of this kind as text: names in the first line, a tab between two cells.
     ///
-    /// Fails if the file is damaged, uses an unsupported compression, or holds no table.
+    /// Fails if the file is damaged, uses an unsupported compression, or contains no table.
     pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         match self {
             #[cfg(feature = "parquet")]

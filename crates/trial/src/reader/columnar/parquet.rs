@@ -1,5 +1,5 @@
 //! Parquet files as text: every flat column of any type is a column, with every compression but zstd, brotli and LZO.
-//! Rows are decoded a few thousand at a time, row group by row group. Nested columns are left out.
+//! Rows are decoded a few thousand at a time, row group by row group. Nested columns are omitted.
 //!
 //! Source of the layout: Apache Parquet format, `parquet.thrift` (types, logical types and compression).
 
@@ -27,7 +27,7 @@ const MAX_PAGE_BYTES: u64 = 8 * crate::reader::MAX_ROWS as u64;
 /// Unpacked size of a page up to which any compression is accepted, bytes.
 const SMALL_PAGE_BYTES: u64 = 1 << 24;
 
-/// Maximum compression of a larger page; deflate reaches 1032.
+/// Maximum compression ratio of a larger page; deflate reaches 1032.
 const MAX_COMPRESSION: u64 = 1100;
 
 /// Maximum number of values of a dictionary; the decoder reserves some forty bytes for each.
@@ -43,7 +43,7 @@ fn fits(PageHead { is_dictionary, unpacked, packed, values }: PageHead) -> bool 
 /// Meaning of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Meaning {
-    /// As their type says.
+    /// Number or text as in its type.
     Plain,
     Unsigned,
     /// Integers in units of this decimal place.
@@ -78,7 +78,7 @@ impl Meaning {
             Some(LogicalType::Integer(integer)) if !integer.is_signed => Self::Unsigned,
             Some(LogicalType::Float16) => Self::Half,
             _ => match column.converted_type() {
-                // Converted types do not tell UTC from local time: many programs wrote local time.
+                // Converted types do not distinguish UTC from local time: many programs wrote local time.
                 ConvertedType::TIMESTAMP_MILLIS => Self::Stamp { per_second: 1_000, utc: false },
                 ConvertedType::TIMESTAMP_MICROS => Self::Stamp { per_second: 1_000_000, utc: false },
                 ConvertedType::TIME_MILLIS => Self::TimeOfDay(1_000),
@@ -97,7 +97,7 @@ impl Meaning {
     }
 }
 
-/// A column and its decoded rows.
+/// Column and its decoded rows.
 struct Column {
     /// Index in the file.
     index: usize,
@@ -122,7 +122,7 @@ impl Cells {
     }
 }
 
-/// The rows of a file.
+/// Rows of a file.
 struct Rows {
     file: SerializedFileReader<CheckedPages<Bytes>>,
     columns: Vec<Column>,
@@ -189,7 +189,7 @@ impl Rows {
         Ok(Self { file, columns, headed: false, groups: 0, left: 0 })
     }
 
-    /// The names, then the next rows; `None` after the last row.
+    /// Line of names, then the next rows; `None` after the last row.
     fn chunk(&mut self) -> Result<Option<String>, Problem> {
         let mut text = String::new();
         if !std::mem::replace(&mut self.headed, true) {
@@ -292,7 +292,7 @@ fn bytes(text: &mut String, bytes: &[u8], meaning: Meaning) {
     }
 }
 
-/// Writes the next `length` rows of a column into cells; `false` if it has fewer.
+/// Writes the next `length` rows of a column into cells; `false` if fewer are left.
 fn read<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     length: usize,
@@ -313,7 +313,7 @@ fn read<T: DataType>(
     let mut values = values.iter();
     let rows = if present.is_empty() { values.len() } else { present.len() };
     for row in 0..rows {
-        // Levels are absent where every row has a value.
+        // Levels are absent if every row has a value.
         if present.get(row).is_none_or(|&level| level > 0) {
             let Some(value) = values.next() else { return Ok(false) };
             write(&mut cells.text, value);

@@ -1,7 +1,7 @@
-//! Excel spreadsheets (.xlsx) as text: a single sheet, its rows on the lines they have in Excel. Formulas have the
-//! values that were stored with them. Other kinds of spreadsheets are not read.
+//! Excel spreadsheets (.xlsx) as text: a single sheet, with its rows on the line numbers of Excel. Formulas have the
+//! values stored with them. Other kinds of spreadsheets are not read.
 //!
-//! The decoder borrows the file while it goes through a sheet; it therefore runs in its own thread, which waits until
+//! The decoder borrows the file while it reads a sheet; it therefore runs in its own thread, which waits until
 //! its lines are read.
 //!
 //! Source of the layout: ECMA-376, Office Open XML File Formats, part 1.
@@ -19,7 +19,7 @@ use crate::reader::error::Problem;
 /// Maximum number of rows and columns of a sheet (Excel 2007 and later).
 const MAX_SIZE: (u32, u32) = (1 << 20, 1 << 14);
 
-/// Rows at the beginning of a sheet that are searched for names.
+/// Number of rows at the beginning of a sheet that are searched for names.
 const HEAD_ROWS: u32 = 60;
 
 /// Size of a chunk of text, bytes.
@@ -42,7 +42,7 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let decode = move || {
         let done = guarded(|| decode(bytes, &send));
         if let Err(problem) = done.unwrap_or_else(|| Err(damaged("its content contradicts itself"))) {
-            // The receiver is gone where reading was given up.
+            // The receiver is dropped if reading was given up.
             let _ = send.send(Err(problem));
         }
     };
@@ -93,7 +93,7 @@ fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
 /// Head of a sheet, from its first rows.
 #[derive(Default)]
 struct Head {
-    /// Number of cells of the row with the names; `None` without such a row.
+    /// Number of cells in the row of names; `None` without such a row.
     width: Option<u32>,
     /// Columns with times of day in their stamps.
     timed: Vec<u32>,
@@ -181,8 +181,8 @@ fn write_row(text: &mut String, cells: &[(u32, DataRef)], head: &Head, is_1904: 
     }
 }
 
-/// Writes days since the beginning of the calendar: a time of day below 1, and a date without its time where the column
-/// has no times.
+/// Writes days since the beginning of the calendar: a time of day below 1, and a date without time if the column
+/// contains no times.
 fn stamp(text: &mut String, days: f64, is_1904: bool, timed: bool, is_duration: bool) {
     // Days of present dates resolve half a microsecond.
     const TICKS: i64 = 100_000;

@@ -49,14 +49,14 @@ fn put(text: &mut String, written: std::fmt::Arguments) {
     text.write_fmt(written).expect("a string takes all text");
 }
 
-/// Writes a number with the fewest digits that are read back as the same number; nothing for NaN.
+/// Writes a number with the minimum number of digits that are read back as the same number; no text for NaN.
 pub fn number(text: &mut String, value: f64) {
     if !value.is_nan() {
         put(text, format_args!("{value:?}"));
     }
 }
 
-/// Writes a number of single precision with the fewest digits that are read back as the same number.
+/// Writes a number of single precision with the minimum number of digits that are read back as the same number.
 pub fn single(text: &mut String, value: f32) {
     if !value.is_nan() {
         put(text, format_args!("{value:?}"));
@@ -106,7 +106,7 @@ pub fn stamp(text: &mut String, seconds: i64, part: i64, utc: bool) {
     }
 }
 
-/// Writes a text as a cell: control characters become blanks, and a text with a quote or the sign of a comment is put
+/// Writes a text as a cell: control characters become blanks, and a text with a quote or a comment sign is put
 /// in quotes.
 pub fn cell(text: &mut String, content: &str) {
     let quoted = content.contains(['"', '#']);

@@ -1,23 +1,23 @@
-//! Frames of a CAN bus, in hexadecimal as candump and loggers of the bus write them or in base64 as python-can does:
-//! recognised but not read, because a frame does not hold its meaning.
+//! Frames of a CAN bus, in the hexadecimal notation of candump and bus loggers, or in base64 as from python-can:
+//! recognised but not read, because a frame does not state its meaning.
 
 /// Bits of an extended identifier.
 const MAX_IDENTIFIER: u32 = 0x1fff_ffff;
 
-/// Columns that `CSVWriter` of python-can gives a frame.
+/// Columns of a frame in the `CSVWriter` of python-can.
 const PYTHON_CAN: [&str; 7] = ["timestamp", "arbitration_id", "extended", "remote", "error", "dlc", "data"];
 
 /// Hexadecimal digits of a standard and of an extended identifier.
 const DIGITS: [usize; 2] = [3, 8];
 
-/// `true` where most lines are frames.
+/// `true` if most lines are frames.
 pub fn is_log<'a>(lines: impl Iterator<Item = &'a str>) -> bool {
     let written = lines.filter(|line| !line.trim().is_empty());
     let (frames, all) = written.fold((0, 0), |(frames, all), line| (frames + usize::from(is_frame(line)), all + 1));
     2 * frames > all
 }
 
-/// `true` where the first line that is not empty is the header of python-can's `CSVWriter`.
+/// `true` if the first nonempty line is the header of python-can's `CSVWriter`.
 pub fn is_python_can<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
     let header = lines.find(|line| !line.trim().is_empty()).unwrap_or_default();
     header.trim_start_matches('\u{feff}').split(',').map(|name| name.trim().trim_matches('"')).eq(PYTHON_CAN)
@@ -60,7 +60,7 @@ fn is_identifier(cell: &str) -> bool {
     is_whole && u32::from_str_radix(digits, 16).is_ok_and(|number| number <= MAX_IDENTIFIER)
 }
 
-/// `true` for an identifier with its bytes, as candump writes them into files.
+/// `true` for an identifier with its bytes, as in files of candump.
 fn is_joined(cell: &str) -> bool {
     let Some((id, bytes)) = cell.split_once('#') else { return false };
     let is_even = bytes.len().is_multiple_of(2) && is_hexadecimal(bytes, bytes.len());

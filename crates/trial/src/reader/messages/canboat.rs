@@ -1,5 +1,5 @@
-//! Messages of NMEA 2000 as canboat writes them: JSON lines of its `analyzer`, and the plain lines that it reads, with
-//! bytes in hexadecimal.
+//! Messages of NMEA 2000 in the notation of canboat: JSON lines of its `analyzer`, and the plain lines of its input,
+//! with bytes in hexadecimal.
 //!
 //! Source of the fields: canboat, list of parameter groups (`pgn.h`).
 
@@ -29,7 +29,7 @@ pub(super) struct Canboat {
 }
 
 impl Canboat {
-    /// Message of a line; `None` for a line without a quantity that is used.
+    /// Message of a line; `None` for a line without a used quantity.
     pub fn message<'a>(&mut self, line: &'a str) -> Option<Message<'a>> {
         if let Some((stamp, pgn, source, bytes)) = plain(line.trim()) {
             self.is_si = Some(true);
@@ -59,7 +59,7 @@ fn source_name(pgn: u64, source: u64, instance: u64) -> String {
     format!("the device at address {source}{rudder}")
 }
 
-/// A number of a message; the option -nv of canboat puts it into an object with its name.
+/// Number of a message; the option -nv of canboat puts it into an object with its name.
 fn number(fields: &Value, name: &str) -> Option<f64> {
     fields[name].as_f64().or_else(|| fields[name]["value"].as_f64())
 }
@@ -120,13 +120,13 @@ fn readings_of_bytes(pgn: u64, bytes: &[u8]) -> Vec<RankedReading> {
 mod tests {
     use super::*;
 
-    /// Bytes and fields of the same messages.
+    /// Bytes and fields of the same messages give the same readings.
     #[test]
     fn bytes_and_fields_say_the_same() {
         let mut canboat = Canboat::default();
         let mut read = |line: &str| canboat.message(line).map(|message| message.readings).unwrap_or_default();
         let head = "2026-05-04T09:00:00.000Z,2,";
-        // 20° of rudder are 3491 parts of 0.1 mrad; 0x7fff stands for no order.
+        // 20° of rudder are 3491 parts of 0.1 mrad; 0x7fff means no order.
         assert_eq!(read(&format!("{head}127245,9,255,8,00,ff,ff,7f,a3,0d,ff,ff")), [(Channel::Rudder, 0, 0.3491)]);
         assert_eq!(read(&format!("{head}127250,3,255,8,ff,10,27,ff,7f,ff,7f,fd")), [(Channel::Heading, 1, 1.0)]);
         let rate = read(&format!("{head}127251,3,255,8,ff,00,ca,9a,3b,ff,ff,ff"))[0];

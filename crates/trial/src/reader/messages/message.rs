@@ -2,10 +2,10 @@
 
 use crate::channel::Channel;
 
-/// A reading: channel, class (the lowest is the best quantity for the channel) and value.
+/// Reading: channel, class (lowest for the best quantity of the channel) and value.
 pub(super) type RankedReading = (Channel, u8, f64);
 
-/// A line of a log.
+/// Line of a log.
 pub(super) struct Message<'a> {
     /// Time stamp, as in the log.
     pub stamp: &'a str,

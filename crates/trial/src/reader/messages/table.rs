@@ -1,5 +1,5 @@
-//! Long tables: a row holds a single quantity by its path, such as `steering.rudderAngle` of Signal K, or by a column
-//! name.
+//! Long tables: a row contains a single quantity by its path, such as `steering.rudderAngle` of Signal K, or by a
+//! column name.
 
 use super::message::{Message, RankedReading};
 use crate::cells::{Separator, cell, recognise};
@@ -35,7 +35,7 @@ pub(super) struct LongTable {
 }
 
 impl LongTable {
-    /// The table with this header; `None` for a table of another kind.
+    /// Table with this header; `None` for a table of another kind.
     pub fn of(header: &str) -> Option<Self> {
         let is_name = |cell: &str, column: usize| COLUMNS[column].contains(&cell.to_lowercase().as_str());
         let count_names = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|k| is_name(cell, k))).count();
@@ -46,7 +46,7 @@ impl LongTable {
         Some(Self { separator, time: index(0)?, path: index(1)?, value: index(2)?, source: index(3) })
     }
 
-    /// Message of a row; `None` for a row without a quantity that is used.
+    /// Message of a row; `None` for a row without a used quantity.
     pub fn message<'a>(&self, row: &'a str) -> Option<Message<'a>> {
         let mut ranges = Vec::new();
         self.separator.split(row, &mut ranges);

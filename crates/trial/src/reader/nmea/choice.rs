@@ -1,4 +1,4 @@
-//! Choice of an instrument for every channel. A channel never mixes instruments: the better kind goes first (true
+//! Choice of an instrument for every channel. A channel never mixes instruments: the better kind is preferred (true
 //! heading before magnetic, speed through the water before speed over ground), then the instrument with the most
 //! readings, then the first in the log. A choice among several is a warning.
 
@@ -41,7 +41,7 @@ impl<'a> Offer<'a> {
         Self { column, readings: self.instrument.readings(column), ..self }
     }
 
-    /// `true` for a candidate with less than 1 % of the readings of the best; it goes last, whatever its class.
+    /// `true` for a candidate with less than 1 % of the readings of the best; it is the last choice in any class.
     fn is_sparse(&self, most: usize) -> bool {
         const SPARSE: usize = 100;
         self.readings.saturating_mul(SPARSE) < most
@@ -91,7 +91,7 @@ impl<'a> Choice<'a> {
         offers
     }
 
-    /// The best candidate, with a warning where there are several, or `always`.
+    /// Best candidate, with a warning if there are several, or `always`.
     fn pick(&mut self, what: &str, offers: Vec<Offer<'a>>, always: bool) -> Option<Offer<'a>> {
         let most = offers.iter().map(|offer| offer.readings).max()?;
         let order = |offer: &&Offer| {
@@ -283,7 +283,7 @@ impl<'a> Choice<'a> {
         }
         let Some(chosen) = self.pick("propeller rate", leaders, false) else { return };
         offers.retain(|shaft| group(shaft) == group(&chosen) && !shaft.is_sparse(chosen.readings));
-        // The sign is the sense of rotation seen from astern; outward turning shafts have opposite signs.
+        // The sign is the sense of rotation seen from astern: outward turning shafts have opposite signs.
         let is_counter = |shaft: &&Offer| shaft.values().iter().filter(|value| value.is_finite()).sum::<f64>() < 0.0;
         let mut values = vec![0.0; chosen.instrument.at.len()];
         for shaft in &offers {
@@ -332,7 +332,7 @@ impl<'a> Choice<'a> {
     }
 }
 
-/// Search for the reading nearest in time, for times that do not go back.
+/// Search for the reading nearest in time, for times that do not decrease.
 struct Nearest<'a> {
     time: &'a [f64],
     values: &'a [f64],

@@ -1,5 +1,5 @@
 //! Instants of sentences. Epochs begin at sentences with UTC, or at the stamps before sentences; several sentences of
-//! an instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the others is
+//! an instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the usual one is
 //! filled at the usual pace, and its end stays empty.
 
 use document::{Warning, WarningCode};
@@ -19,7 +19,7 @@ const GAP_EPOCHS: f64 = 1.5;
 struct Group {
     begin: usize,
     end: usize,
-    /// Time of its beginning, s.
+    /// Time of the beginning, s.
     time: f64,
     /// Time to the next epoch, s.
     length: f64,
@@ -63,7 +63,7 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     (log.stamps.clock(), warnings)
 }
 
-/// Spreads sentences with the same stamp; `true` where there were any.
+/// Spreads sentences with the same stamp; `true` if there are any.
 fn spread_stamps(at: &mut [f64]) -> bool {
     if at.windows(2).all(|pair| pair[0] < pair[1]) {
         return false;
@@ -88,7 +88,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 
 /// Instants of a log with the time in some of its sentences.
 ///
-/// Fails without at least two different times, and where they go back for more than one sentence.
+/// Fails without at least two different times, and if they decrease for more than one sentence.
 pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     let times = |clock: &NmeaInstrument| clock.column(Slot::Second).map_or(0, |column| clock.readings(column));
     let rank = |clock: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|code| clock.sends(code));
@@ -136,18 +136,18 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     Ok((Some(clock), warnings))
 }
 
-/// A time of the clock with its line.
+/// Time of the clock with its line.
 #[derive(Debug, Clone, Copy)]
 struct Epoch {
     line: f64,
     time: f64,
 }
 
-/// Strictly increasing times of an instrument, the clock at time 0, and the number of times left out.
+/// Strictly increasing times of an instrument, the clock at time 0, and the number of omitted times.
 fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
     let second = &instrument.columns[instrument.column(Slot::Second).expect("only instruments with times are asked")];
     let days = instrument.column(Slot::Day).map(|column| &instrument.columns[column]);
-    // Dates are used only where every time has one.
+    // Dates are used only if every time has one.
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
     let mut stamps = Stamps::default();
     let read = |row: usize| {
@@ -176,7 +176,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
                 let line = epoch.line as usize;
                 return Err(Problem::ClockBack { line, before: clock.at(last.time), after: clock.at(epoch.time) });
             }
-            // The time before was too late.
+            // The previous time was too late.
             kept.pop();
             if kept.last().is_none_or(|last| last.time < epoch.time) {
                 kept.push(epoch);
@@ -196,7 +196,7 @@ fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Opti
     Some(days[row] as i64 - passed.round() as i64)
 }
 
-/// Spreads the rows of every group over its epoch; `true` where a group has several rows.
+/// Spreads the rows of every group over its epoch; `true` if a group has several rows.
 ///
 /// The k-th of n rows is k/n of the epoch after its beginning; in a gap the rows follow at the usual pace.
 fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {

@@ -1,4 +1,4 @@
-//! Frame of a line of a log: a sentence with a verified checksum, or another kind of line. The frame of NMEA 0183
+//! Frame of a line of a log: a sentence with a verified checksum, or a line of another kind. The frame of NMEA 0183
 //! (start, address, fields, checksum) and plain numbers are read here, without allocation; sentences are decoded in
 //! [`super::sentence`].
 //!
@@ -7,21 +7,21 @@
 /// Kind of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Line<'a> {
-    /// A sentence of the standard.
+    /// Sentence of the standard.
     Sentence(Frame<'a>),
-    /// A sentence that is not read: AIS (`!`), proprietary (`$P`), or with an address outside the standard.
+    /// Sentence that is not read: AIS (`!`), proprietary (`$P`), or with an address outside the standard.
     Foreign,
     /// Empty, or a comment.
     Blank,
     /// Text without a sentence.
     Text,
-    /// A sentence with a wrong checksum.
+    /// Sentence with a wrong checksum.
     WrongSum,
     /// Not text, or cut short.
     Damaged,
 }
 
-/// A sentence of the standard.
+/// Sentence of the standard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame<'a> {
     /// Text before the sentence.
@@ -48,7 +48,7 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
     if before.trim_start().starts_with('#') {
         return Line::Blank;
     }
-    // The star stands third from the end of most lines.
+    // The star is the third character from the end of most lines.
     let star = match sentence.len().checked_sub(3) {
         Some(place) if sentence[place] == b'*' => Some(place),
         _ => sentence.iter().position(|&byte| byte == b'*'),
@@ -124,7 +124,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// The first fields of `body`.
+    /// First fields of `body`.
     pub fn new(body: &'a [u8]) -> Self {
         let mut fields = [&body[..0]; MAX_FIELDS];
         let (mut begin, mut place) = (0, 0);
@@ -141,7 +141,7 @@ impl<'a> Fields<'a> {
         Self { fields }
     }
 
-    /// The field with a number, from 1 as the standard counts them after the address.
+    /// Field by its number, from 1, counted after the address as in the standard.
     pub fn at(&self, field: usize) -> &'a [u8] {
         self.fields[field - 1]
     }
@@ -151,7 +151,7 @@ impl<'a> Fields<'a> {
         self.at(field) == [letter]
     }
 
-    /// The number in a field.
+    /// Number in a field.
     pub fn number(&self, field: usize) -> Number {
         number(self.at(field))
     }
@@ -160,9 +160,9 @@ impl<'a> Fields<'a> {
 /// Content of a field of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
-    /// An empty field: the instrument has no reading.
+    /// Empty field: the instrument has no reading.
     Empty,
-    /// A number.
+    /// Number.
     Value(f64),
     /// Another text.
     Invalid,

@@ -1,4 +1,4 @@
-//! Content of a log so far: a table for each instrument, with a row per sentence, and counts of the lines left out. The
+//! Content of a log so far: a table for each instrument, with a row per sentence, and counts of the omitted lines. The
 //! instruments are chosen at the end of the log.
 
 use super::frame::{Fields, Frame, Line, frame};
@@ -18,11 +18,11 @@ pub(super) struct NmeaInstrument {
     pub address: [u8; 5],
     /// Quantities of the sentence.
     slots: &'static [Slot],
-    /// As in [`Row::part`].
+    /// Mark as in [`Row::part`].
     pub part: [u8; 2],
-    /// Number of its source as in [`Leading`].
+    /// Number of the source as in [`Leading`].
     pub source: u8,
-    /// Instant of each sentence: its line number until the clock is settled, then s; NaN for a sentence left out.
+    /// Instant of each sentence: its line number until the clock is determined, then s; NaN for an omitted sentence.
     pub at: Vec<f64>,
     /// Values of each quantity, one per sentence.
     pub columns: Vec<Vec<f64>>,
@@ -67,7 +67,7 @@ pub(super) struct Counts {
     pub broken: usize,
     /// Sentences accepted without a checksum.
     pub unsummed: usize,
-    /// Sentences without a stamp where others have one.
+    /// Sentences without a stamp in a log with stamps.
     pub unstamped: usize,
     /// Stamps far from their neighbours.
     pub strayed: usize,
@@ -77,22 +77,23 @@ pub(super) struct Counts {
 #[derive(Debug, Default)]
 pub(super) struct NmeaLog {
     pub instruments: Vec<NmeaInstrument>,
-    /// Keys of the instruments, in the same order; kept apart from the tables because every sentence searches them.
+    /// Keys of the instruments, in the same order; separate from the tables because they are searched for every
+    /// sentence.
     keys: Vec<u64>,
     pub counts: Counts,
     pub leading: Leading,
     pub stamps: Stamps,
     /// `true` for a log with stamps before its sentences.
     pub stamped: bool,
-    /// The latest stamp and the stamp before it, s, and the number of lines with the latest stamp.
+    /// Latest stamp and the stamp before it, s, and the number of lines with the latest stamp.
     latest: (f64, f64, usize),
-    /// Line and time of the last stamp, where it is before the latest stamp.
+    /// Line and time of the last stamp, if it is before the latest stamp.
     late: Option<(usize, f64)>,
     numbers: usize,
 }
 
 impl NmeaLog {
-    /// An empty log; `stamped` for stamps before the sentences.
+    /// Empty log; `stamped` for stamps before the sentences.
     pub fn new(stamped: bool) -> Self {
         Self { stamped, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
     }
@@ -158,7 +159,7 @@ impl NmeaLog {
 
     /// Adds the readings of a sentence to the table of its instrument.
     ///
-    /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, perhaps with
+    /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, possibly with
     /// a digit.
     fn add(&mut self, slots: &'static [Slot], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
@@ -198,8 +199,8 @@ impl NmeaLog {
         true
     }
 
-    /// `true` for a stamp that follows those before. A single stamp that does not is left out; fails if time starts
-    /// again, as in two joined logs.
+    /// `true` for a stamp not before its predecessors. A single earlier stamp is omitted; fails if time restarts,
+    /// as in two joined logs.
     fn follows(&mut self, at: f64, number: usize) -> Result<bool, Problem> {
         let (latest, before, lines) = self.latest;
         if at >= latest - MAX_DISORDER_S {
@@ -208,7 +209,7 @@ impl NmeaLog {
             return Ok(true);
         }
         if lines == 1 && at >= before - MAX_DISORDER_S && before.is_finite() {
-            // The stamp before was too late.
+            // The previous stamp was too late.
             for instrument in &mut self.instruments {
                 if let Some(last) = instrument.at.last_mut().filter(|last| **last == latest) {
                     *last = f64::NAN;

@@ -1,7 +1,7 @@
 //! Reader of NMEA 0183 logs: every channel becomes a [`Series`] at the instants of its instrument. Headings, rudder
 //! angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and proprietary sentences are
 //! skipped. Time comes from stamps before the sentences, or from the sentences of a GPS or clock. Damaged lines are
-//! left out and counted; a course over ground is never used as a heading. Heading and rudder may be in two files, so
+//! omitted and counted; a course over ground is never used as a heading. Heading and rudder may be in two files, so
 //! their presence is checked later.
 //!
 //! Source: NMEA 0183 version 4.11, IEC 61162-1.
@@ -30,7 +30,7 @@ use super::source::{Log, Series};
 use crate::clock::{Clock, DAY};
 use crate::wording::counted;
 
-/// Number of sentences that show whether a log has stamps.
+/// Number of sentences that decide whether a log has stamps.
 const PROBED_SENTENCES: usize = 64;
 /// Maximum number of lines searched for these sentences.
 const MAX_PROBED_LINES: usize = 1024;
@@ -52,8 +52,8 @@ pub(super) fn is_sentence(line: &str) -> bool {
 
 /// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails if more than half of the lines are damaged, where time is absent or goes back, where a date has two
-/// readings, and where no sentence holds a quantity that is used.
+/// Fails if more than half of the lines are damaged, if time is absent or decreases, if a date has two
+/// readings, and if no sentence contains a used quantity.
 pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), Problem> {
     let (mut begin, mut sentences) = (Vec::new(), 0);
     while sentences < PROBED_SENTENCES
@@ -78,7 +78,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), P
     finish(log, number, lines.sha256())
 }
 
-/// `true` where at least half of the sentences have a stamp before them.
+/// `true` if at least half of the sentences have a stamp before them.
 fn is_stamped(lines: &[Vec<u8>]) -> bool {
     let mut leading = Leading::default();
     let (mut sentences, mut stamps) = (0, 0);
@@ -130,7 +130,7 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, zone: clock.zone })
 }
 
-/// Warnings of the lines left out and of sentences without checksum.
+/// Warnings of the omitted lines and of sentences without checksum.
 fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
     let hold = if counts.text == 1 { "holds" } else { "hold" };
     let faults = [

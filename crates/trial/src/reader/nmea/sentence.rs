@@ -11,57 +11,57 @@ use ship::angle::{DEGREE, KNOT};
 use super::frame::{Fields, Number};
 use crate::clock::{days, full_year, second_of_day};
 
-/// A quantity in a sentence.
+/// Quantity of a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Slot {
-    /// rad, [0, 2π).
+    /// True heading, rad, [0, 2π).
     HeadingTrue,
-    /// rad, [0, 2π).
+    /// Magnetic heading, rad, [0, 2π).
     HeadingMagnetic,
-    /// rad, positive to the east.
+    /// Magnetic variation, rad, positive to the east.
     Variation,
-    /// rad/s, positive to starboard.
+    /// Yaw rate, rad/s, positive to starboard.
     YawRate,
     /// Starboard or single rudder, rad, positive turns to starboard.
     RudderStarboard,
-    /// rad, positive turns to starboard.
+    /// Port rudder, rad, positive turns to starboard.
     RudderPort,
-    /// rad, positive turns to starboard.
+    /// Rudder order, rad, positive turns to starboard.
     RudderOrder,
-    /// Of an angle transducer, rad.
+    /// Angle of a transducer, rad.
     Transducer,
-    /// m/s.
+    /// Speed through the water, m/s.
     SpeedWater,
-    /// m/s.
+    /// Speed over ground, m/s.
     SpeedGround,
-    /// m/s.
+    /// Surge velocity through the water, m/s.
     SurgeWater,
-    /// m/s, to starboard.
+    /// Sway velocity through the water, m/s, to starboard.
     SwayWater,
-    /// m/s.
+    /// Surge velocity over ground, m/s.
     SurgeGround,
-    /// m/s, to starboard.
+    /// Sway velocity over ground, m/s, to starboard.
     SwayGround,
-    /// rad, north positive.
+    /// Latitude, rad, north positive.
     Latitude,
-    /// rad, east positive.
+    /// Longitude, rad, east positive.
     Longitude,
     /// Second of the day, UTC.
     Second,
     /// Days since 1970-01-01.
     Day,
-    /// 1/s.
+    /// Revolutions of a shaft or an engine, 1/s.
     Revolutions,
-    /// m/s.
+    /// Wind speed, m/s.
     WindSpeed,
-    /// rad, from the bow or from north.
+    /// Direction from which the wind comes, rad, from the bow or from north.
     WindFrom,
 }
 
 /// Maximum number of quantities of a sentence.
 pub(super) const MAX_SLOTS: usize = 5;
 
-/// A supported sentence: its formatter, its quantities in the order of [`Row::values`], and its decoder.
+/// Supported sentence: its formatter, its quantities in the order of [`Row::values`], and its decoder.
 type Sentence = (&'static [u8; 3], &'static [Slot], fn(&mut Row, &Fields));
 
 const SENTENCES: [Sentence; 19] = {
@@ -147,12 +147,12 @@ const SENTENCES: [Sentence; 19] = {
 /// Formatter of transducers.
 pub(super) const XDR: &[u8; 3] = b"XDR";
 
-/// The sentence with a formatter.
+/// Sentence with a formatter.
 pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
     SENTENCES.iter().find(|(known, ..)| *known == formatter)
 }
 
-/// A number with its bounds, and its factor to SI units and radians.
+/// Number with its bounds, and its factor to SI units and radians.
 type Bounded = (Number, RangeInclusive<f64>, f64);
 
 /// Readings of a sentence.
@@ -162,7 +162,7 @@ pub(super) struct Row {
     pub values: [f64; MAX_SLOTS],
     /// `true` for a quantity with an invalid entry.
     pub invalid: [bool; MAX_SLOTS],
-    /// Mark of the instrument behind a sentence with several: the shaft of RPM with S or E, the reference of MWV, R for
+    /// Mark of the instrument in a sentence of several: the shaft of RPM with S or E, the reference of MWV, R for
     /// the rudder and O for roll of XDR; 0 otherwise.
     pub part: [u8; 2],
 }
@@ -181,13 +181,13 @@ impl Row {
         }
     }
 
-    /// Stores the first of two numbers, each with its bounds and factor, or the second where the first is empty.
+    /// Stores the first of two numbers, each with its bounds and factor, or the second if the first is empty.
     fn take_either(&mut self, slot: usize, first: Bounded, second: Bounded) {
         let (number, bounds, factor) = if first.0 == Number::Empty { second } else { first };
         self.take(slot, number, bounds, factor);
     }
 
-    /// Stores numbers, each with its slot, where the status field is valid.
+    /// Stores numbers, each with its slot, if the status field is valid.
     fn take_valid(
         &mut self,
         fields: &Fields,
@@ -214,7 +214,7 @@ impl Row {
         self.values[slot] = turned(self.values[slot]);
     }
 
-    /// Stores latitude and longitude from four fields; both or none.
+    /// Stores latitude and longitude from four fields; both or neither.
     fn take_position(&mut self, slot: usize, fields: &Fields, first: usize) {
         let mut read = |offset: usize, at: usize, limit: f64, [positive, negative]: [u8; 2]| {
             let Number::Value(value) = fields.number(at) else {
@@ -247,7 +247,7 @@ impl Row {
     }
 }
 
-/// An angle within [0, 2π).
+/// Angle reduced to [0, 2π).
 pub(super) fn turned(angle: f64) -> f64 {
     let within = angle.rem_euclid(TAU);
     // A small negative angle rounds up to the full turn.
@@ -268,7 +268,7 @@ fn read_order(row: &mut Row, fields: &Fields) {
     match fields.at(3) {
         b"R" => row.take(0, fields.number(2), 0.0..=90.0, DEGREE),
         b"L" => row.take(0, fields.number(2), 0.0..=90.0, -DEGREE),
-        // Midships has no side.
+        // Amidships has no side.
         _ if fields.number(2) == Number::Value(0.0) => row.values[0] = 0.0,
         _ => row.invalid[0] = fields.number(2) != Number::Empty,
     }

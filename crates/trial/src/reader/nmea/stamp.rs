@@ -18,7 +18,7 @@ const MAX_SOURCES: usize = 64;
 pub(super) struct Leading {
     /// Names of sources; the number of a source is its index plus 1, 0 means no source.
     pub sources: Vec<String>,
-    /// Range of words of the last stamp: most lines of a log look alike.
+    /// Range of words of the last stamp, which is the same in most lines of a log.
     window: Option<(usize, usize)>,
     /// Text before the last sentence, with its stamp and source.
     last: String,
@@ -26,7 +26,7 @@ pub(super) struct Leading {
 }
 
 impl Leading {
-    /// Stamp before a sentence and number of its source.
+    /// Stamp before a sentence and number of the source.
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
         if before != self.last {
             self.last_reading = self.parse(before);
@@ -108,7 +108,7 @@ fn since_1970(text: &str) -> Option<Stamp> {
     if !whole.bytes().chain(decimals.bytes()).all(|byte| byte.is_ascii_digit()) || decimals.len() > 12 {
         return None;
     }
-    // Whole and fraction apart: together they have more digits than a number of 64 bits holds.
+    // Whole and fraction are separate: together they exceed the digits of a 64-bit number.
     let per_second: u64 = match whole.len() {
         9 | 10 => 1,
         12 | 13 => 1_000,

@@ -100,7 +100,7 @@ fn each_sentence_gives_its_quantities() {
     }
 }
 
-/// Sentences as manuals of instruments print them, with the checksums printed there.
+/// Sentences as printed in manuals of instruments, with their checksums.
 #[test]
 fn published_sentences_have_their_checksums() {
     for line in [
@@ -161,7 +161,7 @@ fn a_course_is_no_heading() {
 fn checksums_are_counted_and_wrong_ones_left_out() {
     let mut lines = stamped(&["HEHDT,1.0,T", "HEHDT,2.0,T", "HEHDT,3.0,T", "HEHDT,4.0,T"]);
     lines[1] = lines[1].replace(",2.0,", ",7.0,");
-    // The end of this one is lost.
+    // The end of this sentence is lost.
     lines[2] = lines[2][..lines[2].len() - 7].to_owned();
     lines.push(String::from("# a remark with $HEHDT,9.0,T"));
     lines.push(String::from("!AIVDM,1,1,,A,13aG?P0P00PD;88MD5MTDww@2<0L,0*23"));

@@ -22,8 +22,8 @@ const TRIALS: [[f64; 3]; 9] = [
     [5.0, 5.0, 2.5],
 ];
 
-/// What the samples show against the response itself, whose executes and peaks are those of an independent program (the
-/// validation of the workspace). A rudder that jumps is timed to the middle of its interval.
+/// Characteristics of the samples compared with the response itself, whose executes and peaks are those of an
+/// independent program (the validation of the workspace). A rudder that jumps is timed to the middle of its interval.
 fn check([delta_deg, psi_deg, rate_deg_s]: [f64; 3], step: f64) {
     let plant = Plant::new(delta_deg, psi_deg, rate_deg_s);
     let zigzag = of_plant(plant, 900.0, step);

@@ -124,8 +124,8 @@ fn a_record_that_begins_within_the_trial() {
     }
 }
 
-/// Cut 1 s before to 1 s after the reversal at 38.30 s: a fit to one side would read the first overshoot as much as a
-/// degree wrong.
+/// Cut 1 s before to 1 s after the reversal at 38.30 s: a one-sided fit would give an error of the first overshoot of
+/// up to a degree.
 #[test]
 fn a_record_that_begins_at_a_reversal_does_not_tell_its_overshoot() {
     let plant = Plant::new(20.0, 20.0, 2.5);
@@ -145,7 +145,7 @@ fn a_record_that_begins_at_a_reversal_does_not_tell_its_overshoot() {
     }
 }
 
-/// The rudder is at 2.5 to 7.5 of 10 degrees in the first row: nothing shows when it began to move.
+/// The rudder is at 2.5 to 7.5 of 10 degrees in the first row: the start of the movement is unknown.
 #[test]
 fn a_record_that_begins_within_the_first_movement_has_no_times_from_it() {
     let whole = of_plant(Plant::default(), 300.0, 1.0);
@@ -160,7 +160,7 @@ fn a_record_that_begins_within_the_first_movement_has_no_times_from_it() {
     }
 }
 
-/// Whole-degree rudder and tenth-degree heading, as a bridge prints them.
+/// Whole-degree rudder and tenth-degree heading, as printed on a bridge.
 #[test]
 fn a_record_read_off_indicators() {
     let (time, heading, rudder) = Plant { approach: 30.0, ..Plant::default() }.record(400.0, 1.0);
@@ -187,7 +187,8 @@ fn a_peak_after_the_end_is_not_an_overshoot() {
     assert!(zigzag.reach.is_some());
 }
 
-/// Mean and standard deviation of what `pick` gives over 200 noisy copies, with the mean of the reported deviations.
+/// Mean and standard deviation of a characteristic (`pick`) over 200 noisy copies, with the mean of the reported
+/// deviations.
 fn scatter(noise_deg: f64, pick: impl Fn(&ZigZag) -> Quantity) -> (f64, f64, f64) {
     let plant = Plant { approach: 60.0, ..Plant::default() };
     let (time, heading, rudder) = plant.record(360.0, 1.0);
@@ -272,7 +273,7 @@ fn other_records_are_refused() {
     assert!(matches!(of(holed, rudder), ZigZagError::NoHeading { .. }));
 }
 
-/// Rudder noise of 0.3 deg: executes are off by what their standard deviations say (rms of error/sd within 0.6 and 1.6,
+/// Rudder noise of 0.3 deg: errors of the executes match their standard deviations (rms of error/sd within 0.6 and 1.6,
 /// an approximation because the rows of a ramp are chosen by their noisy angle).
 #[test]
 fn executes_of_a_noisy_rudder() {
@@ -299,8 +300,8 @@ fn executes_of_a_noisy_rudder() {
     }
 }
 
-/// Every 5 s the ramps of 8 s (reversals) and 4 s (first execute) hold two rows, one or none: executes are off by less
-/// than the half-width of the interval they are known to lie in, √3 of its standard deviation, or by half a second.
+/// Every 5 s the ramps of 8 s (reversals) and 4 s (first execute) contain two rows, one or none: errors of the executes
+/// are less than the half-width of the interval that contains them, √3 of its standard deviation, or by half a second.
 #[test]
 fn sparse_sampling() {
     for (delta_deg, psi_deg) in [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)] {

@@ -1,4 +1,4 @@
-//! MATLAB files of level 4, which have no name of their format: a sequence of variables, each with a head of five
+//! MATLAB files of level 4, which do not state their format: a sequence of variables, each with a head of five
 //! numbers.
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 2 (level 4 MAT-files).
@@ -12,9 +12,9 @@ const MAX_NAME_BYTES: u32 = 64;
 /// Kinds of numbers of level 5 by their digit in level 4.
 const KINDS: [u32; 6] = [9, 7, 5, 3, 4, 2];
 
-/// The head of a variable.
+/// Head of a variable.
 struct VariableHead {
-    /// Kind of its numbers.
+    /// Kind of the numbers.
     kind: u32,
     /// 0 for numbers, 1 for text, 2 for a sparse matrix.
     class: u32,
@@ -25,7 +25,7 @@ struct VariableHead {
 }
 
 impl VariableHead {
-    /// Head at the front of some bytes; `None` if they are not a head.
+    /// Head of a variable at the beginning of a byte sequence; `None` if there is none.
     fn read(scan: &mut Scan) -> Option<Self> {
         let digits = scan.word()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
         let [rows, columns, complex, length] = [scan.word()?, scan.word()?, scan.word()?, scan.word()?];
@@ -38,7 +38,7 @@ impl VariableHead {
         is_head.then_some(Self { kind, class, rows, columns, complex: complex == 1, name })
     }
 
-    /// Length of the numbers behind the head, bytes.
+    /// Length of the numbers after the head, bytes.
     fn length(&self) -> Option<usize> {
         let parts = if self.complex { 2 } else { 1 };
         self.rows.checked_mul(self.columns)?.checked_mul(parts * size(self.kind)?)

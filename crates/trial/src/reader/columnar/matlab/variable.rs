@@ -3,7 +3,7 @@
 use crate::reader::columnar::text;
 use crate::reader::error::Problem;
 
-/// Kind of a data element that holds a packed one.
+/// Kind of a data element with a packed one.
 pub const COMPRESSED: u32 = 15;
 
 /// Bytes of a number by the kind of its data element; `None` for a kind without numbers.
@@ -17,25 +17,25 @@ pub fn size(kind: u32) -> Option<usize> {
     })
 }
 
-/// A numeric variable.
+/// Numeric variable.
 pub struct Variable {
     pub name: String,
     pub rows: usize,
     pub columns: usize,
-    /// Kind of its numbers.
+    /// Kind of the numbers.
     kind: u32,
-    /// The numbers, column by column.
+    /// Numbers, column by column.
     bytes: Vec<u8>,
     big_endian: bool,
 }
 
-/// A variable that is not a column, with its kind for messages.
+/// Variable that is not a column, with its kind for messages.
 pub struct OtherVariable {
     pub name: String,
     pub kind: String,
 }
 
-/// Variables of a file that are columns, and all others.
+/// Variables of a file that are columns, and all other variables.
 pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
 
 /// Name of a cell array in messages.
@@ -70,11 +70,11 @@ impl<'a> Scan<'a> {
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
-    /// The next data element: its kind and its bytes. Padding to eight bytes is skipped.
+    /// Next data element: its kind and its bytes. Padding to eight bytes is skipped.
     pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
         let tag = self.word()?;
         if tag >> 16 != 0 {
-            // Short elements stand in their own tag.
+            // Short elements are in their own tag.
             let data = self.take(4)?;
             return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
         }
@@ -99,7 +99,7 @@ pub fn contradiction() -> Problem {
 }
 
 impl Variable {
-    /// A variable of a size (rows, columns); a single row becomes a column.
+    /// Variable of a size (rows, columns); a single row becomes a column.
     pub fn new(name: String, size: [usize; 2], kind: u32, numbers: &[u8], big_endian: bool) -> Self {
         let [rows, columns] = if size[0] == 1 { [size[1], 1] } else { size };
         Self { name, rows, columns, kind, bytes: numbers.to_vec(), big_endian }

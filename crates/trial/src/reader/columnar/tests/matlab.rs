@@ -1,4 +1,4 @@
-//! MATLAB files, written here byte by byte.
+//! MATLAB files, written byte by byte.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn head(big: bool) -> Vec<u8> {
     head
 }
 
-/// A variable as `save -v7` packs it.
+/// A variable packed as by `save -v7`.
 fn compressed(variable: &[u8]) -> Vec<u8> {
     let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(variable).expect("memory takes all");
@@ -79,7 +79,7 @@ fn other_variables_are_left_out() {
     assert_refused(parse(&nothing), &parts);
 }
 
-/// What is in a cell array is no column: the name of a channel is refused, one beside the same channel is left out.
+/// A cell array is no column: the name of a channel is refused; next to the same channel it is omitted.
 #[test]
 fn cell_arrays_are_named() {
     let cell = |name: &str| variable(name, [240, 1], 1, 14, &element(14, &[0; 64], false), false);
@@ -142,7 +142,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
             let _ = (parse(&bytes), parse(&small[..index]));
         }
     }
-    // What is no head is no such file: a text, UTF-16, other numbers.
+    // Other bytes are not a file of level 4: a text, UTF-16, other numbers.
     for other in [&b"t_s,heading_deg,rudder_deg\n"[..], b"t\0_\0s\0", &[0; 64], &[0x35, 0, 0, 0, 1, 0, 0, 0]] {
         assert_eq!(crate::reader::columnar::Kind::of(other), None);
     }
@@ -150,7 +150,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
 
 #[test]
 fn matrices_and_numbers_of_every_kind_are_columns() {
-    // Short names and few numbers stand in the tag of their element.
+    // Short names and few numbers are in the tag of their element.
     let short = |kind: u32, data: &[u8]| {
         let mut bytes = (((data.len() as u32) << 16) | kind).to_le_bytes().to_vec();
         bytes.extend(data);

@@ -1,4 +1,4 @@
-//! Files that are no text give the record that their table gives as CSV, and damaged ones a message.
+//! Binary files give the record of the same table in CSV, and damaged ones a message.
 
 mod matlab;
 #[cfg(feature = "parquet")]
@@ -22,7 +22,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Sees that two readings hold the same record.
+/// Checks that two readings contain the same record.
 fn assert_same(first: &ReadRecord, second: &ReadRecord) {
     let (first, second) = (&first.trial, &second.trial);
     assert_eq!(bits(first.time()), bits(second.time()));
@@ -30,7 +30,7 @@ fn assert_same(first: &ReadRecord, second: &ReadRecord) {
     assert_eq!(bits(first.rudder()), bits(second.rudder()));
 }
 
-/// Sees that a file holds the plainest record and has the hash of its bytes.
+/// Checks that a file contains the plainest record and has the hash of its bytes.
 fn assert_plain(bytes: &[u8]) -> ReadRecord {
     let reading = parse(bytes).unwrap_or_else(|error| panic!("{error}"));
     assert_same(&reading, &parse(simple().as_bytes()).expect("a plain table"));
@@ -49,7 +49,7 @@ fn packed(bytes: &[u8]) -> Vec<u8> {
     packed.finish().expect("memory takes all")
 }
 
-/// Sees that a message has these parts.
+/// Checks that a message has these parts.
 fn assert_refused(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
     let message = result.expect_err("the file is wrong").to_string();
     for part in parts {
@@ -57,7 +57,7 @@ fn assert_refused(result: Result<ReadRecord, ReadError>, parts: &[&str]) {
     }
 }
 
-/// Cuts a file short and changes its bytes one by one: what is read then is a record or a message about `format`.
+/// Truncates a file and changes its bytes one by one: the result is a record or a message about `format`.
 fn assert_sound(file: &[u8], format: &str) {
     for end in (16..file.len()).step_by(7) {
         assert_refused(parse(&file[..end]), &[format]);

@@ -1,4 +1,4 @@
-//! Parquet files, written here by the crate that reads them.
+//! Parquet files, written with the crate that reads them.
 
 use std::sync::Arc;
 
@@ -204,7 +204,7 @@ fn damaged_files_and_other_packings_are_told() {
     let [time, heading, rudder] = columns().map(|values| values[..40].to_vec());
     assert_sound(&plain(&time, &heading, &rudder), "Parquet");
     assert_sound(&table([&time, &heading, &rudder], Compression::GZIP(GzipLevel::default()), 20), "Parquet");
-    // What the writer cannot pack is made by hand: the codec stands once for each column, after its path.
+    // Codecs that the writer does not support are set by hand: once for each column, after its path.
     let bytes = plain(&time, &heading, &rudder);
     for (codec, word) in [(6_u8, "zstd"), (4, "brotli"), (3, "LZO")] {
         let mut changed = bytes.clone();
@@ -214,7 +214,7 @@ fn damaged_files_and_other_packings_are_told() {
     }
 }
 
-/// The place of the codec of the column of this name: behind the path, as the next field of a Thrift struct.
+/// Position of the codec of the column with this name: after the path, as the next field of a Thrift struct.
 fn codec_place(bytes: &[u8], name: &[u8]) -> usize {
     let ends = bytes.windows(name.len() + 1).enumerate();
     let matches = ends.filter(|(_, window)| window.starts_with(name) && window[name.len()] == 0x15);

@@ -1,8 +1,8 @@
-//! Spreadsheets, written here by hand: a ZIP archive without compression, and the XML in it.
+//! Spreadsheets, written by hand: a ZIP archive without compression, and its XML.
 
 use super::*;
 
-/// An archive of files as they are.
+/// An archive of uncompressed files.
 fn archive(files: &[(&str, String)]) -> Vec<u8> {
     let (mut bytes, mut list) = (Vec::new(), Vec::new());
     for (name, text) in files {
@@ -14,7 +14,7 @@ fn archive(files: &[(&str, String)]) -> Vec<u8> {
         about.extend([sum.sum(), text.len() as u32, text.len() as u32].map(u32::to_le_bytes).concat());
         about.extend([name.len() as u16, 0].map(u16::to_le_bytes).concat());
         bytes.extend([b"PK\x03\x04", &about[..], name.as_bytes(), text.as_bytes()].concat());
-        // Made by version; comment, disk, kind; rights and place.
+        // Made by version; comment, disk, kind; rights and position.
         list.extend([b"PK\x01\x02\x14\x00", &about[..], &[0; 10], &begin.to_le_bytes(), name.as_bytes()].concat());
     }
     let begin = bytes.len() as u32;
@@ -98,7 +98,7 @@ const HEADER: [&str; 3] = ["t_s", "heading_deg", "rudder_deg"];
 #[test]
 fn a_sheet_gives_the_record_of_its_csv() {
     assert_plain(&book(&[sheet(HEADER, 1, 240, |t| t.to_string())], false));
-    // The ship and the trial stand above, and before it is a sheet about something else.
+    // Ship and trial are above the table, and an unrelated sheet precedes it.
     let about = row(1, &["s:Ship".to_owned(), "s:Esso Osaka".to_owned()]);
     let table = format!("{about}{}", sheet(HEADER, 9, 240, |t| t.to_string()));
     let reading = assert_plain(&book(&[about.clone(), table], false));

@@ -1,4 +1,4 @@
-//! Another reader agrees on frames. Sentences and bytes of any kind are a matter of the fuzz targets.
+//! Comparison of frames with another reader. Arbitrary sentences and bytes are covered by the fuzz targets.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -17,7 +17,7 @@ fn letters(chance: &mut ChaCha8Rng, length: std::ops::RangeInclusive<usize>, let
 
 const DIGITS: &str = "0123456789";
 
-/// Another reader of frames finds the same sentences, checksums and fields.
+/// Another reader of frames gives the same sentences, checksums and fields.
 #[test]
 fn frames_are_those_of_nmea_kit() {
     let capitals = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";

@@ -19,7 +19,7 @@ fn whole_seconds_are_spread_and_a_gap_stays() {
     assert!(has_warning(&source, "spread evenly"));
 }
 
-/// Heading in tenths of a degree shows the true time: ten sentences a second, and one clock sentence.
+/// Heading in tenths of a degree encodes the true time: ten sentences a second, and one clock sentence.
 fn ten_to_one(seconds: &[u32], heading: impl Fn(u32, u32) -> bool) -> Vec<String> {
     let mut lines = vec![summed("HEHDT,200.0,T")];
     for &second in seconds {
@@ -53,9 +53,9 @@ fn ten_headings_a_second_under_a_clock_of_one() {
 #[test]
 fn missing_seconds_stay_a_gap() {
     for (seconds, heard) in [
-        // The recorder stopped.
+        // A stopped recorder.
         (vec![0, 1, 2, 3, 20, 21, 22], None),
-        // The GPS was silent and the gyro was not.
+        // A silent GPS with a running gyro.
         (vec![0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], Some(4..8)),
     ] {
         let mut lines = ten_to_one(&seconds, |_, _| true);
@@ -88,7 +88,7 @@ fn midnight_is_passed_with_and_without_dates() {
         assert_eq!(series(&source, Channel::Heading).time, expected, "{}", lines[0]);
         assert_eq!(source.1.clock.expect("it has one").at(0.0), "23:59:58");
     }
-    // The date of another sentence dates the clock.
+    // The clock has the date of another sentence.
     let mut lines: Vec<String> = (0..4).flat_map(|k| [clocks[1](k), summed("HEHDT,10.0,T")]).collect();
     lines.insert(6, summed("GPZDA,000000.00,21,11,2026,00,00"));
     assert_eq!(source(&lines).1.clock.expect("it has one").date_at(0.0), Some("2026-11-20".into()));
