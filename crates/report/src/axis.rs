@@ -18,8 +18,7 @@ const ZERO_AT: f64 = 0.08;
 const BREAK_AT: f64 = 0.155;
 /// Maximum magnitude on a linear axis.
 const MAX_MAGNITUDE: f64 = 1e100;
-/// Maximum distance beyond the ends of an axis at which values are drawn, in lengths of the axis. Lines keep their
-/// direction, and larger distances would overflow integers.
+/// Maximum distance beyond the ends of an axis at which values are drawn, in its lengths; integers would overflow.
 const FAR: f64 = 20.0;
 /// Maximum number of intervals between the ticks of an axis.
 pub(crate) const MAX_TICKS: usize = 10;
@@ -141,8 +140,7 @@ impl Axis {
         Self { lo, hi, ..self }
     }
 
-    /// Description from which a value can be computed from its place: kind, ends, and the fraction where the scale
-    /// begins, or the names.
+    /// Scale that gives a value from its place: kind, ends and the fraction where it begins, or the names.
     pub(crate) fn described(&self) -> String {
         let (lo, hi) = (self.lo.min(self.hi), self.lo.max(self.hi));
         match &self.scale {

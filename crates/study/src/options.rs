@@ -1,4 +1,4 @@
-//! Options and arguments of the commands. Long, because each option is declared once. No option is acted on here.
+//! Options and arguments of the commands. Longer than most: each option is declared once. Nothing here acts.
 
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -26,14 +26,14 @@ pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticula
     Some(table)
 }
 
-/// Cell of a column for one record; `None` if not declared.
-type Cell = fn(&TrialParticularsEntry) -> Option<String>;
+/// CellText of a column for one record; `None` if not declared.
+type CellText = fn(&TrialParticularsEntry) -> Option<String>;
 
 /// Columns that some record declares.
 fn columns<const N: usize>(
     records: &[(String, &TrialParticularsEntry)],
-    all: [(&'static str, Cell); N],
-) -> Vec<(&'static str, Cell)> {
+    all: [(&'static str, CellText); N],
+) -> Vec<(&'static str, CellText)> {
     all.into_iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
 }
 
