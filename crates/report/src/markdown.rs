@@ -31,7 +31,7 @@ pub fn text(text: &str) -> String {
 pub fn sentence(sentence: &str) -> String {
     let is_command = |part: &str| part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, ' ' | '-'));
     let parts: Vec<&str> = sentence.split('`').collect();
-    if parts.len() % 2 == 0 || !parts.iter().skip(1).step_by(2).all(|part| is_command(part)) {
+    if parts.len().is_multiple_of(2) || !parts.iter().skip(1).step_by(2).all(|part| is_command(part)) {
         return text(sentence);
     }
     parts.iter().enumerate().map(|(n, part)| if n % 2 == 1 { format!("`{part}`") } else { text(part) }).collect()

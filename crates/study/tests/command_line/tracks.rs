@@ -90,7 +90,12 @@ fn a_fit_measures_a_circle_and_the_criteria() {
     let tactical = predicted["tactical_diameter_lengths"]["median"].as_f64().expect("a number");
     assert!((tactical / lengths("tactical_diameter_lengths") - 1.0).abs() < 0.15, "{predicted} {turn}");
     assert!((predicted["rudder_deg"].as_f64().expect("a number") - 20.0).abs() < 0.1, "{predicted}");
-    assert!(page.contains("Predicted by output-error, a turning circle to starboard with 20.0° of rudder"), "{page}");
+    assert!(
+        page.contains(
+            "Predicted with the hulls fitted to the records, a turning circle to starboard with 20.0° of rudder"
+        ),
+        "{page}"
+    );
     let track = &desk.json("f/curves.json")["predicted_circle"];
     let point = |axis: &str, number: usize| track[axis][number].as_f64().expect("a point every 3°");
     let median = |key: &str| predicted[key]["median"].as_f64().expect("a number");
