@@ -144,6 +144,7 @@ impl Replays {
             LayeredPanel {
                 head: Some(format!("{}, rms {rms}{largest}", replay.origin.label())),
                 layers: vec![Layer::line("", replay.residual.clone(), solid)],
+                ..LayeredPanel::default()
             }
         };
         let residual = Ruler::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);

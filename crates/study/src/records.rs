@@ -160,12 +160,11 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
     conditions.trial = options.of_trial.or(&conditions.trial);
     let options = &options.ship.form;
     options.apply(&mut conditions.hull);
-    if let Some([fore, aft]) = conditions.trial.draughts() {
-        let draught = *conditions.hull.draught.get_or_insert(0.5 * (fore + aft));
-        if !(fore.min(aft)..=fore.max(aft)).contains(&draught) {
-            let text = format!("draught-m = {draught} is not between the draughts fore, {fore} m, and aft, {aft} m");
-            return Err(Failure::about(path, format!("{text}; give --draught-m as well, or leave these out")));
-        }
+    conditions.hull.draught = conditions.hull.draught.or(conditions.trial.mean_draught());
+    if let Some(draught) = conditions.hull.draught.filter(|draught| !conditions.trial.admits(*draught)) {
+        let [fore, aft] = conditions.trial.draughts().unwrap_or_default();
+        let text = format!("draught-m = {draught} is not between the draughts fore, {fore} m, and aft, {aft} m");
+        return Err(Failure::about(path, format!("{text}; give --draught-m as well, or leave these out")));
     }
     let trial = trial.with_conditions(conditions);
     if let Some(key) = options.first() {

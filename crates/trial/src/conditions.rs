@@ -193,8 +193,7 @@ impl Conditions {
             ("draught-m", self.draught, self.beam, "a draught below beam-m"),
             ("full-load-draught-m", self.full_load_draught, self.beam, "a draught below beam-m"),
         ];
-        let ends = self.trial.draughts().map(|[fore, aft]| [fore.min(aft), fore.max(aft)]);
-        if ends.zip(self.draught).is_some_and(|([low, high], mean)| !(low..=high).contains(&mean)) {
+        if self.draught.is_some_and(|draught| !self.trial.admits(draught)) {
             return Some(("draught-m", "a mean draught between those fore and aft of [trial], or nothing"));
         }
         let broken = rules.into_iter().find(|(_, x, limit, _)| x.zip(*limit).is_some_and(|(x, limit)| x >= limit));

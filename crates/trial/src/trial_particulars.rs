@@ -46,6 +46,11 @@ impl TrialParticulars {
         self.draughts().map(|[fore, aft]| 0.5 * (fore + aft))
     }
 
+    /// `true` if a mean draught is between the draughts fore and aft, or if one of these is unknown.
+    pub fn admits(&self, draught: f64) -> bool {
+        self.draughts().is_none_or(|[fore, aft]| (fore.min(aft)..=fore.max(aft)).contains(&draught))
+    }
+
     /// Trim, m, positive by the stern; rounded to a tenth of a millimetre, as a difference of two written numbers.
     pub(crate) fn trim(&self) -> Option<f64> {
         self.draughts().map(|[fore, aft]| (1e4 * (aft - fore)).round() / 1e4)

@@ -234,7 +234,9 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
         let is_sample = |layer: &&Layer| stack.across.is_some() && is_nameless(layer);
         let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.sample(theme, 1.0));
-        panel.head.as_ref().map(|head| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head))
+        let head =
+            [&panel.head, &panel.detail].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
+        (!head.is_empty()).then(|| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head))
     };
     let heads = stack.panels.iter().map(head).collect();
     let grid = match (stack.across, rows.first(), columns.first()) {

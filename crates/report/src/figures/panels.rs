@@ -284,6 +284,8 @@ impl PanelRow {
 pub struct LayeredPanel {
     /// Line of text above the panel.
     pub head: Option<String>,
+    /// Result behind the head.
+    pub detail: Option<String>,
     /// The layers, the first at the bottom.
     pub layers: Vec<Layer>,
 }
@@ -324,7 +326,7 @@ impl Stack {
     /// Panels above each other over one horizontal axis.
     pub fn over(x: Ruler, rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
         let (rows, layers): (Vec<PanelRow>, Vec<Vec<Layer>>) = rows.into_iter().unzip();
-        let panels = layers.into_iter().map(|layers| LayeredPanel { head: None, layers }).collect();
+        let panels = layers.into_iter().map(|layers| LayeredPanel { layers, ..LayeredPanel::default() }).collect();
         Self { x: vec![x], rows, panels, ..Self::default() }
     }
 

@@ -86,7 +86,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             Layer::new("", wave(count, wild, 0.4), LayerKind::Cloud(origin.look().colour)),
             Layer::line("", ellipse, Pen::new(origin.look().colour)),
         ];
-        LayeredPanel { head: Some(origin.label().into()), layers }
+        LayeredPanel { head: Some(origin.label().into()), layers, ..LayeredPanel::default() }
     };
     let ruler = |title: &str| Ruler::decimal(title).about_zero(2.2);
     let clouds = methods().enumerate().map(cloud).collect();

@@ -361,6 +361,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
         LayeredPanel {
             head: (panel == 0 && groups.len() > 1).then(|| group.head.clone()),
             layers: compared.methods.iter().filter_map(of_method).chain(bound).collect(),
+            ..LayeredPanel::default()
         }
     };
     let marks = design.prose.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);

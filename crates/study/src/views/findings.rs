@@ -3,8 +3,6 @@
 use report::figures::{CellMap, LayerKind, NamedRows, Outline, Panels, Plot, RowKind, ZigzagTrial};
 use report::number::{fixed, significant};
 
-use super::pooled_charts::HEAD_END;
-
 /// A value and its name.
 type Named = (String, f64);
 
@@ -80,8 +78,7 @@ fn of_clouds(data: &Panels) -> String {
         let values: Vec<f64> = cloud.curve.pairs().map(|(_, t)| t).filter(|t| t.is_finite()).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let square = values.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / values.len() as f64;
-        let head = panel.head.as_ref().and_then(|head| head.split(HEAD_END).next());
-        Some((head.unwrap_or_default().to_owned(), square.sqrt()))
+        Some((panel.head.clone().unwrap_or_default(), square.sqrt()))
     };
     range("scatter of T [%]", stack.panels.iter().filter_map(spread))
 }

@@ -13,11 +13,10 @@ pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticula
     }
     let is_common = records.iter().all(|(_, entry)| entry == first);
     let head = if is_common { TableHead::default() } else { TableHead::default().texts(["record"]) };
-    let texts = columns(&records, [("ship", ship_name), ("date of the trial", date)]);
-    let draughts = columns(&records, [("draught fore", fore), ("draught aft", aft), ("mean draught", mean)]);
+    let texts = declared(&records, &TEXTS);
+    let draughts = declared(&records, &DRAUGHTS);
     let head = head.texts(texts.iter().map(|(heading, _)| *heading));
-    let head = head.numbers(draughts.iter().map(|(heading, _)| format!("{heading} [m]")));
-    let mut table = Table::new(head);
+    let mut table = Table::new(head.numbers(draughts.iter().map(|(heading, _)| *heading)).unit("m"));
     for (name, entry) in if is_common { &records[..1] } else { &records } {
         let name = (!is_common).then(|| name.clone());
         let cells = texts.iter().chain(&draughts).map(|(_, cell)| cell(entry).unwrap_or_else(|| MISSING.to_owned()));
@@ -26,35 +25,23 @@ pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticula
     Some(table)
 }
 
-/// CellText of a column for one record; `None` if not declared.
-type CellText = fn(&TrialParticularsEntry) -> Option<String>;
+/// Column: its heading, and its cell for one record, `None` if undeclared.
+type Column = (&'static str, fn(&TrialParticularsEntry) -> Option<String>);
+
+/// Columns of texts.
+const TEXTS: [Column; 2] =
+    [("ship", |entry| entry.ship_name.clone()), ("date of the trial", |entry| entry.date.clone())];
+
+/// Columns of draughts.
+const DRAUGHTS: [Column; 3] = [
+    ("draught fore", |entry| entry.draught_fore_m.map(metres)),
+    ("draught aft", |entry| entry.draught_aft_m.map(metres)),
+    ("mean draught", |entry| entry.draught_m.map(metres)),
+];
 
 /// Columns that some record declares.
-fn columns<const N: usize>(
-    records: &[(String, &TrialParticularsEntry)],
-    all: [(&'static str, CellText); N],
-) -> Vec<(&'static str, CellText)> {
-    all.into_iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
-}
-
-fn ship_name(entry: &TrialParticularsEntry) -> Option<String> {
-    entry.ship_name.clone()
-}
-
-fn date(entry: &TrialParticularsEntry) -> Option<String> {
-    entry.date.clone()
-}
-
-fn fore(entry: &TrialParticularsEntry) -> Option<String> {
-    entry.draught_fore_m.map(metres)
-}
-
-fn aft(entry: &TrialParticularsEntry) -> Option<String> {
-    entry.draught_aft_m.map(metres)
-}
-
-fn mean(entry: &TrialParticularsEntry) -> Option<String> {
-    entry.draught_m.map(metres)
+fn declared<'a>(records: &[(String, &TrialParticularsEntry)], columns: &'a [Column]) -> Vec<&'a Column> {
+    columns.iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
 }
 
 /// A draught in three significant digits: models have decimetres.

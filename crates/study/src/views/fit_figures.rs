@@ -185,7 +185,7 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
             (amplitude(record), value.value, value.ci95)
         };
         let marks = Layer::marks(name.as_str(), look, all.records.iter().map(point).collect());
-        LayeredPanel { head: None, layers: vec![marks.apart()] }
+        LayeredPanel { head: None, layers: vec![marks.apart()], ..LayeredPanel::default() }
     };
     let row = |title: String, joint: Option<Quantity>, factor: f64| {
         let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());

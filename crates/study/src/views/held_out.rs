@@ -40,7 +40,7 @@ pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageF
         };
         let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
         let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
-        LayeredPanel { head: Some(head), layers: models(record).map(line).into() }
+        LayeredPanel { head: Some(head), layers: models(record).map(line).into(), ..LayeredPanel::default() }
     };
     let row = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.13);
     let plot = Panels::of(Stack::multiples(ACROSS.min(all.len()), Ruler::time(), row, all.iter().map(panel).collect()));

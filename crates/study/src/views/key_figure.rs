@@ -13,7 +13,7 @@ use report::{CurveOrigin, PlotCurve};
 use campaign::statistics::{distinct, grouped};
 
 use super::charts::CUT_NOTE;
-use super::pooled_charts::{ALL, HEAD_END};
+use super::pooled_charts::ALL;
 
 /// Look of a method that the figure does not highlight.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
@@ -70,8 +70,7 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
     for stack in &mut data.stacks {
         if stack.across.is_some() {
             // Small multiples show one method each.
-            let name = |head: &String| head.split(HEAD_END).next().unwrap_or_default().to_owned();
-            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref().map(name).as_ref(), about));
+            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
         }
         data.names_aside = stack.panels.iter().all(has_distinct_names);
@@ -250,6 +249,7 @@ mod tests {
             layers: ["output-error", "srivc"]
                 .map(|id| Layer::marks(method(id).0, method(id).1, vec![(row as f64, 1.0, None)]))
                 .into(),
+            ..LayeredPanel::default()
         };
         let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
         let stack = Stack {
@@ -320,8 +320,8 @@ mod tests {
         let layers = vec![layer("output-error", 0.125), layer("maximum-likelihood", 0.1251), layer("srivc", 9.0)];
         let stack =
             Stack::over(Ruler::decimal("executes"), vec![(PanelRow::new(Ruler::decimal("T [%]"), 0.2), layers)]);
-        let about = ["output-error", "maximum-likelihood"].map(String::from).to_vec();
-        let highlight = Highlight { series: about, rows: vec![String::from("2")] };
+        let highlight =
+            Highlight { series: vec!["output-error".into(), "maximum-likelihood".into()], rows: vec!["2".into()] };
         let data = Panels { note: Some(format!("Marks. {CUT_NOTE}")), ..Panels::of(stack) };
         let Plot::Panels(data) = of_chart(data.into(), &highlight) else { panic!() };
         let layers = &data.stacks[0].panels[0].layers;

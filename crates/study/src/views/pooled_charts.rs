@@ -101,9 +101,6 @@ const REACH: f64 = 2.2;
 /// Maximum size of an ellipse with a panel, in medians: a larger one would leave its panel empty.
 const FAR: f64 = 3.0;
 
-/// Separator after the name of a method in the head of its panel.
-pub const HEAD_END: &str = ": ";
-
 /// Clouds of errors in the cells whose detail was requested, and whether there is a bound.
 pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
@@ -121,11 +118,11 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             let pen = Pen { dash: DOTTED, ..Pen::of(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
-            let scatter = covariance_bound.zip(cloud).map_or_else(String::new, |(bound, cloud)| {
+            let detail = covariance_bound.zip(cloud).map(|(bound, cloud)| {
                 let sd_over_bound = (cloud.covariance[1][1] / bound[1][1]).sqrt();
-                format!("{HEAD_END}T scatters {} times the bound", significant(sd_over_bound, 3))
+                format!("T scatters {} times the bound", significant(sd_over_bound, 3))
             });
-            LayeredPanel { head: Some(format!("{}{scatter}", design.methods[method].label)), layers }
+            LayeredPanel { head: Some(design.methods[method].label.clone()), detail, layers }
         };
         let spread = |detail: &MethodDetail| {
             detail.cloud.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())

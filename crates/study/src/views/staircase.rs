@@ -32,6 +32,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
             PlotCurve::new(time.as_slice(), values),
             Pen::new(origin.look().colour).width(0.9),
         )],
+        ..LayeredPanel::default()
     };
     let mut panels = Vec::new();
     for (number, (pair, step)) in residuals.windows(2).zip(&steps[1..]).enumerate() {

@@ -64,7 +64,13 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
     let rows = [PanelRow::new, PanelRow::zeroed].into_iter().zip(rulers).zip(heights);
     let rows = rows.map(|((row, ruler), height)| row(ruler, height));
     let panels = [upper, lower].into_iter().zip(heads);
-    let panels = panels.map(|(layers, head): (Vec<Layer>, String)| LayeredPanel { head: Some(head), layers }).collect();
+    let panels = panels
+        .map(|(layers, head): (Vec<Layer>, String)| LayeredPanel {
+            head: Some(head),
+            layers,
+            ..LayeredPanel::default()
+        })
+        .collect();
     Stack { is_half: true, x: vec![Ruler::time()], rows: rows.collect(), panels, ..Stack::default() }
 }
 

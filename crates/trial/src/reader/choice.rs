@@ -52,7 +52,7 @@ impl Log {
             Some(number) => number
                 .checked_sub(1)
                 .and_then(|place| manoeuvres.get(place))
-                .ok_or_else(|| self.fault(Problem::ManoeuvreParseError { file, number, count: manoeuvres.len() }))?,
+                .ok_or_else(|| self.fault(Problem::NoManoeuvre { file, number, count: manoeuvres.len() }))?,
             None => match zig_zags(&manoeuvres)[..] {
                 [] => {
                     self.warnings.extend(unrecognised(&manoeuvres, &file));

@@ -47,7 +47,7 @@ impl Problem {
             Self::TimeBackwards { .. } | Self::ClockBack { .. } => ErrorCode::TimeBackwards,
             Self::TimeRepeats { .. } => ErrorCode::TimeRepeats,
             Self::EmptyPart { .. } => ErrorCode::EmptyPart,
-            Self::ManoeuvreParseError { .. } => ErrorCode::Input,
+            Self::NoManoeuvre { .. } => ErrorCode::Input,
             Self::SeveralZigZags { .. } => ErrorCode::SeveralManoeuvres,
             Self::Implausible(implausible) => plausibility_code(implausible),
             Self::Record(error) => columns_code(error),

@@ -232,7 +232,7 @@ pub enum Problem {
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Requested number without a manoeuvre.
     #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
-    ManoeuvreParseError { file: String, number: usize, count: usize },
+    NoManoeuvre { file: String, number: usize, count: usize },
     /// Several zig-zags without a selected one; a line for each.
     #[error("there are {count} zig-zags in this log; choose one:{lines}")]
     SeveralZigZags { count: usize, lines: String },
