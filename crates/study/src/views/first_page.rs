@@ -58,8 +58,8 @@ mod tests {
         let known = TrialParticularsEntry { ship_name: Some("Kempf".into()), ..TrialParticularsEntry::default() };
         let unknown = TrialParticularsEntry::default();
         let rows = |entries: [&TrialParticularsEntry; 2]| {
-            let named = entries.into_iter().map(|entry| (String::from("run"), entry));
-            particulars(named).map(|table| table.to_text().lines().count())
+            let table = particulars(entries.map(|entry| (String::from("run"), entry)).into_iter());
+            table.map(|table| table.to_text().lines().count())
         };
         assert_eq!([rows([&known; 2]), rows([&unknown; 2])], [Some(3), None]);
         assert_eq!(rows([&known, &unknown]), Some(4));

@@ -329,8 +329,10 @@ mod tests {
             LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
             _ => None,
         });
-        let words: Vec<_> = words.collect();
-        assert_eq!(words, [(vec![2.0], vec![String::from("0.12")]), (vec![2.0], vec![String::from("0.13")])]);
+        assert_eq!(
+            words.collect::<Vec<_>>(),
+            [(vec![2.0], vec![String::from("0.12")]), (vec![2.0], vec![String::from("0.13")])]
+        );
         assert!(matches!(layers[0].kind, LayerKind::Line(Pen { colour: QUIET, .. })));
         assert_eq!(data.note.as_deref(), Some("Marks. Pale: 1 other method."));
     }
