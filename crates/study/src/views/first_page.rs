@@ -26,21 +26,24 @@ pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticula
 }
 
 /// Column: its heading, and its cell for one record, `None` if undeclared.
-type Column = (&'static str, fn(&TrialParticularsEntry) -> Option<String>);
+type ParticularsColumn = (&'static str, fn(&TrialParticularsEntry) -> Option<String>);
 
 /// Columns of texts.
-const TEXTS: [Column; 2] =
+const TEXTS: [ParticularsColumn; 2] =
     [("ship", |entry| entry.ship_name.clone()), ("date of the trial", |entry| entry.date.clone())];
 
 /// Columns of draughts.
-const DRAUGHTS: [Column; 3] = [
+const DRAUGHTS: [ParticularsColumn; 3] = [
     ("draught fore", |entry| entry.draught_fore_m.map(metres)),
     ("draught aft", |entry| entry.draught_aft_m.map(metres)),
     ("mean draught", |entry| entry.draught_m.map(metres)),
 ];
 
 /// Columns that some record declares.
-fn declared<'a>(records: &[(String, &TrialParticularsEntry)], columns: &'a [Column]) -> Vec<&'a Column> {
+fn declared<'a>(
+    records: &[(String, &TrialParticularsEntry)],
+    columns: &'a [ParticularsColumn],
+) -> Vec<&'a ParticularsColumn> {
     columns.iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
 }
 

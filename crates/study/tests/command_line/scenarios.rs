@@ -106,35 +106,21 @@ fn a_value_of_the_wrong_kind_is_shown_with_what_was_expected() {
 
 #[test]
 fn a_missing_key_is_named_where_it_belongs() {
-    for (line_of_text, line, key) in [
-        ("question = \"Does it run?\"\n", 1, "a scenario lacks the key `question`"),
-        ("sampling-s = 1.0\n", 14, "`sampling-s`"),
-        ("heading-deg = 20.0\n", 7, "`heading-deg`"),
+    let zig_zag = "[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0";
+    for (from, to, line, texts) in [
+        ("question = \"Does it run?\"\n", "", 1, ["a scenario lacks the key `question`", "here"]),
+        ("sampling-s = 1.0\n", "", 14, ["`sampling-s`", "here"]),
+        ("heading-deg = 20.0\n", "", 7, ["`heading-deg`", "here"]),
+        ("duration-s = 270.0\n", "", 14, ["`recording.duration-s` is missing", "nothing else ends the run"]),
+        ("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1", 5, ["`ship.first-order` lacks the key", "`T-s`"]),
+        (zig_zag, "[manoeuvre]", 7, ["`manoeuvre` names nothing", "`zig-zag`"]),
     ] {
-        refused(&changed(line_of_text, ""), line, &[key, "here"]);
+        refused(&changed(from, to), line, &texts);
     }
-    refused(
-        &changed("duration-s = 270.0\n", ""),
-        14,
-        &["`recording.duration-s` is missing", "nothing else ends the run"],
-    );
     let methods = GOOD.find("[[identifier]]").expect("there are methods");
     refused(&GOOD[..methods], 1, &["`identifier`", "method.output-error"]);
-    refused(
-        changed("seed = 1", "seed = 1\nidentifier = []").split("[[identifier]]").collect::<Vec<_>>()[0],
-        3,
-        &["names no method"],
-    );
-    refused(
-        &changed("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1"),
-        5,
-        &["`ship.first-order` lacks the key `T-s`"],
-    );
-    refused(
-        &changed("[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0", "[manoeuvre]"),
-        7,
-        &["`manoeuvre` names nothing", "`zig-zag`"],
-    );
+    let none = changed("seed = 1", "seed = 1\nidentifier = []");
+    refused(none.split("[[identifier]]").next().expect("it begins"), 3, &["names no method"]);
 }
 
 #[test]
