@@ -230,21 +230,17 @@ impl Intervals {
                 ..RowsColumn::default()
             }
         };
-        let mut points = self.estimates.iter().flat_map(|estimate| [estimate.k_per_s, estimate.t_s]).flatten();
-        let has_bars = points.any(|point| point.interval.is_some());
-        let has_bars = has_bars.then(|| String::from("Bars: 95 % intervals, where they are wider than the mark."));
         let lacks =
             |row: &&MethodEstimate| [row.k_per_s, row.t_s].iter().flatten().any(|point| point.interval.is_none());
         let lacks: Vec<&str> = self.estimates.iter().filter(lacks).map(|estimate| estimate.origin.label()).collect();
-        let lacks = (!lacks.is_empty()).then(|| format!("No interval from {}.", lacks.join(", ")));
-        let note: Vec<String> = [has_bars, lacks].into_iter().flatten().collect();
+        let note = (!lacks.is_empty()).then(|| format!("No interval from {}.", lacks.join(", ")));
         NamedRows {
             names: self.estimates.iter().map(|estimate| estimate.origin.label().to_owned()).collect(),
             columns: vec![
                 column(format!("{} [1/s]", symbol("K")), |estimate| estimate.k_per_s, |estimate| estimate.k_per_s),
                 column(format!("{} [s]", symbol("T")), |estimate| estimate.t_s, |estimate| estimate.t_s),
             ],
-            note: (!note.is_empty()).then(|| note.join(" ")),
+            note,
             ..NamedRows::default()
         }
     }

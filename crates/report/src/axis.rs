@@ -130,9 +130,12 @@ impl Axis {
         Self { ticks, ..Self::new(lo, hi, AxisScale::Names) }
     }
 
-    /// The axis without ticks above the value `last`.
-    pub(crate) fn labelled_until(self, last: f64) -> Self {
-        Self { last, ..self }
+    /// The axis with this share of its length free of data and ticks at the upper end.
+    pub(crate) fn with_room(self, share: f64) -> Self {
+        let part = share / (1.0 - share);
+        let (lo, last) = (self.lo, self.hi);
+        let hi = if self.is_logarithmic() { last * (last / lo).powf(part) } else { last + part * (last - lo) };
+        if share > 0.0 { Self { hi, last: last.min(self.last), ..self } } else { self }
     }
 
     /// The axis from `lo` to `hi`, which are in order.
@@ -254,7 +257,8 @@ impl Axis {
     /// read the scale; equal steps if even these give fewer than two labels.
     fn log_ticks(&self, count: usize, zero: bool) -> Vec<(f64, String)> {
         const LEADING: [&[i32]; 4] = [&[1], &[1, 2, 5], &[1, 2, 3, 5], &[1, 2, 3, 4, 5, 6, 7, 8, 9]];
-        let (first, last) = ((self.lo.log10() - 1e-9).ceil() as i32, (self.hi.log10() + 1e-9).floor() as i32);
+        let hi = self.hi.min(self.last);
+        let (first, last) = ((self.lo.log10() - 1e-9).ceil() as i32, (hi.log10() + 1e-9).floor() as i32);
         let decades = (last - first + 1).max(0) as usize;
         let is_plain = self.lo >= 1e-3 && self.hi <= 1e4 && decades <= 4;
         let label = |exponent: i32, digit: i32| match (is_plain, digit) {
@@ -418,7 +422,7 @@ mod tests {
         assert_eq!(labels(&Axis::linear(0.0, 240.0, Division::Time), 8)[1], "30");
         assert_eq!(labels(&Axis::linear(0.0, 120.0, Division::Angle), 6)[1], "30");
         assert_eq!(labels(&Axis::linear(0.0, 540.0, Division::Angle), 8)[1], "90");
-        assert_eq!(labels(&Axis::linear(0.0, 9.0, Division::Decimal).labelled_until(5.0), 9).last().unwrap(), "5");
+        assert_eq!(labels(&Axis::linear(0.0, 5.0, Division::Decimal).with_room(0.4), 9).last().unwrap(), "5");
         assert_eq!(labels(&Axis::linear(-2.5, 2.6, Division::Decimal), 6), ["−2", "−1", "0", "1", "2"]);
         assert_eq!(labels(&Axis::linear(0.0, 3e-7, Division::Decimal), 3)[..2], ["0", "1.00×10⁻⁷"]);
     }

@@ -113,7 +113,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
 
 /// Checks that every highlighted name is that of a method, of a point of a sweep or of a cell.
 pub fn highlight(
-    Highlight { series, rows }: &Highlight,
+    Highlight { series, rows, .. }: &Highlight,
     methods: &[Method],
     axes: &[SweepAxis],
     cells: &[DesignCell],

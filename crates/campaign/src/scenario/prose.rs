@@ -64,6 +64,9 @@ pub struct Highlight {
     pub series: Vec<String>,
     /// Names of rows; all if omitted. Their values are written next to them.
     pub rows: Vec<String>,
+    /// `true` if the written values are in multiples of the Cramér–Rao bound.
+    #[serde(rename = "over-bound", skip_serializing_if = "std::ops::Not::not")]
+    pub over_bound: bool,
 }
 
 /// Named value of an axis, such as the limit of a rule.

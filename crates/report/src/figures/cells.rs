@@ -38,6 +38,8 @@ pub enum Outline {
     Right,
     /// Cell that is also acceptable: a dotted line.
     Alias,
+    /// Cell of the finding: a solid line.
+    Finding,
 }
 
 /// Mapping from values to colours.
@@ -124,7 +126,11 @@ impl CellMap {
 /// Drawing of the panels, in rows of as many as fit.
 pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
-    let outlines = [(Outline::Right, SOLID, "right"), (Outline::Alias, DOTTED, "mostly cannot be told from it")];
+    let outlines = [
+        (Outline::Right, SOLID, "right"),
+        (Outline::Alias, DOTTED, "mostly cannot be told from it"),
+        (Outline::Finding, SOLID, "in the title"),
+    ];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
     sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>())?;
     // The frame is at the edges of the cells.
@@ -254,7 +260,7 @@ impl PlacedCell<'_> {
         let corner = |side: f64| chart.place(self.x + side, self.y + side);
         let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };
         if let Some(outline) = self.cell.outline {
-            let stroke = outline_stroke(if outline == Outline::Right { SOLID } else { DOTTED }, theme);
+            let stroke = outline_stroke(if outline == Outline::Alias { DOTTED } else { SOLID }, theme);
             let inset = 0.5 * stroke.width;
             let [w, h] = [right - left, bottom - top].map(|side| side - stroke.width);
             chart.canvas.outline(Rect { x: left + inset, y: top + inset, w, h }, stroke)?;

@@ -7,9 +7,9 @@ use plotters::style::{Color as _, RGBColor};
 use super::aside;
 use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
 use super::reach::{Extents, INTERVALS, robust};
-use super::shared::{ACROSS_PAD, PAD, asides, record, zero_stroke};
+use super::shared::{ACROSS_PAD, BEYOND, Bars, PAD, asides, record, zero_stroke};
 use crate::axis::{Axis, Division};
-use crate::backend::{Plotted, SvgGroup, units};
+use crate::backend::{Plotted, SvgGroup, UNITS, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, at, hull, marker};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -28,6 +28,8 @@ struct Unshown {
     dots: usize,
     /// `true` if a mark is beyond a panel.
     marks: bool,
+    /// Bars of the marks.
+    bars: Bars,
     /// `true` if marks are moved side by side.
     apart: bool,
     /// Names without a place in the frame, with their numbers.
@@ -134,10 +136,10 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
         count => Some(format!("{count} points lie beyond a panel, where an arrow is at its edge.")),
     };
     let apart = outside.apart.then(|| String::from("Records of one amplitude stand side by side."));
-    let marks = outside.marks.then(|| String::from("Arrows: beyond the axis."));
+    let marks = outside.marks.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND.to_owned()));
     let cut = data.cut.clone().filter(|_| outside.is_cut);
     let names = (!outside.names.is_empty()).then(|| format!("Outside the axes: {}.", outside.names.join(", ")));
-    [data.note.clone(), cut, dots, names, apart, marks].into_iter().flatten().collect()
+    [data.note.clone(), outside.bars.remark(), cut, dots, names, apart, marks].into_iter().flatten().collect()
 }
 
 fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
@@ -351,13 +353,16 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
 
 /// Writes the words of a layer next to its points.
 fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
-    let LayerKind::Words(colour, is_above, words) = &layer.kind else { return Ok(()) };
+    let LayerKind::Words(colour, corner, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
-    let (right, down, anchor) = if *is_above { (right, -down, HPos::Left) } else { (-right, down, HPos::Right) };
+    let down = if corner.is_above { -down } else { down };
     for ((x, y), words) in layer.curve.pairs().zip(words) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, anchor) };
-        chart.canvas.text_on_ground((x + right, y + down), &text)?;
+        // Words that would leave the panel on the left are on the right.
+        let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, HPos::Left) };
+        let left = x - right - text.width();
+        let is_right = corner.is_right || left < chart.rect.x;
+        chart.canvas.text_on_ground((if is_right { x + right } else { left }, y + down), &text)?;
     }
     Ok(())
 }
@@ -406,7 +411,8 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     for (row, place) in places.iter().enumerate().filter(|(_, place)| is_inside(place) || *apart) {
         let ends = intervals.get(row).copied().flatten().filter(|ends| ends.iter().all(|end| !end.is_nan()));
         if let (Some((x, _)), Some(ends)) = (place, ends) {
-            interval(chart, *x, ends, stroke, theme)?;
+            let length = interval(chart, *x, ends, stroke, theme)?;
+            outside.bars.add(length, theme);
         }
     }
     chart.canvas.svg.end();
@@ -420,13 +426,14 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
         let edge = (x.clamp(rect.x, rect.right()), y.clamp(rect.y, rect.bottom()));
         let direction = if edge.1 == *y { ((x - edge.0).signum(), 0.0) } else { (0.0, (y - edge.1).signum()) };
         chart.canvas.head(edge, direction, 0.7 * theme.small_font, look.colour)?;
-        outside.marks |= joined.is_none();
+        outside.marks = true;
     }
     Ok(())
 }
 
-/// Vertical interval with caps at a horizontal place; an end beyond the frame is cut, without cap.
-fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Plotted {
+/// Vertical interval with caps at a horizontal place; an end beyond the frame is cut, without cap. Returns its length
+/// in points.
+fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Plotted<f64> {
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;
     let place = |value: f64, beyond: i32| {
@@ -435,5 +442,6 @@ fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme
     };
     let [low, high] = [place(ends[0].min(ends[1]), bottom + far), place(ends[0].max(ends[1]), top - far)];
     let cap = units(theme.marker).max(2) as u32;
-    chart.canvas.area.draw(&ErrorBar::new_vertical(units(x), low, low, high, stroke.style(), cap))
+    chart.canvas.area.draw(&ErrorBar::new_vertical(units(x), low, low, high, stroke.style(), cap))?;
+    Ok(f64::from(low - high) / UNITS)
 }

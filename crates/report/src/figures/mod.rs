@@ -6,12 +6,15 @@ mod cells;
 mod layers;
 mod panels;
 mod reach;
+mod row_layers;
 mod rows;
 mod shared;
 mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
-pub use panels::{AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack};
+pub use panels::{
+    AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack, WordsPlace,
+};
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
@@ -39,7 +42,7 @@ impl Plot {
     pub fn draw(&self, finding: &str, theme: &Theme) -> Drawing {
         let drawn = match self {
             Self::Panels(data) => layers::panels(data, finding, theme),
-            Self::Rows(data) => rows::rows(data, finding, theme),
+            Self::Rows(data) => row_layers::rows(data, finding, theme),
             Self::Cells(data) => cells::cells(data, finding, theme),
             Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, finding, theme),
         };

@@ -134,6 +134,15 @@ pub struct Marks {
     pub apart: bool,
 }
 
+/// WordsPlace of a point in which its words are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WordsPlace {
+    /// `true` above the point.
+    pub is_above: bool,
+    /// `true` to the right of the point.
+    pub is_right: bool,
+}
+
 /// Kind of a layer: how its points are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LayerKind {
@@ -151,8 +160,8 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Words next to the points: above right, or below left.
-    Words(RGBColor, bool, Vec<String>),
+    /// Words next to the points, all in one corner of their points.
+    Words(RGBColor, WordsPlace, Vec<String>),
 }
 
 /// One layer of a panel.
@@ -219,7 +228,8 @@ impl Layer {
         [&self.curve].into_iter().chain(other)
     }
 
-    pub(super) fn colour(&self) -> RGBColor {
+    /// Colour of the layer.
+    pub fn colour(&self) -> RGBColor {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
@@ -349,6 +359,8 @@ pub struct Panels {
     pub note: Option<String>,
     /// Remark if a layer is cut.
     pub cut: Option<String>,
+    /// Meaning of marks beyond the axes; `None` if it needs no words.
+    pub beyond: Option<String>,
 }
 
 impl Panels {

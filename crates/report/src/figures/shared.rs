@@ -24,6 +24,36 @@ const DENSE: usize = 400;
 /// Maximum number of dots of full size; more are smaller, so that they stay separate.
 const MANY: usize = 150;
 
+/// Remark on marks beyond an axis whose meaning needs no words.
+pub(super) const BEYOND: &str = "Arrows: beyond the axis.";
+
+/// Bars of the marks of a figure: always 95 % intervals.
+#[derive(Debug, Default)]
+pub(super) struct Bars {
+    /// `true` if some are longer than their marks.
+    are_seen: bool,
+    /// `true` if some are hidden by their marks.
+    are_hidden: bool,
+}
+
+impl Bars {
+    /// Adds a bar with its length in points.
+    pub(super) fn add(&mut self, length: f64, theme: &Theme) {
+        *(if length.abs() > 2.0 * theme.marker { &mut self.are_seen } else { &mut self.are_hidden }) = true;
+    }
+
+    /// Remark on the bars; `None` if there are none.
+    pub(super) fn remark(&self) -> Option<String> {
+        let remark = match (self.are_seen, self.are_hidden) {
+            (false, false) => return None,
+            (true, false) => "Bars: 95 % intervals.",
+            (true, true) => "Bars: 95 % intervals; hidden where smaller than the mark.",
+            (false, true) => "95 % intervals are smaller than the marks.",
+        };
+        Some(remark.to_owned())
+    }
+}
+
 /// Stroke of a recorded heading with too many points for dots; `None` for fewer points.
 fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
     let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };

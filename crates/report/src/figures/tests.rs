@@ -157,6 +157,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ],
         shaded: Some(("as fitted".into(), vec![0])),
         note: Some("Rates are those of the gear.".into()),
+        ..NamedRows::default()
     };
     let cell = |x: usize, y: usize, empty: bool| MapCell {
         value: (!empty).then(|| size(x + y)),

@@ -92,14 +92,12 @@ const MAX_ERROR: f64 = 100.0;
 /// Minimum error that is plotted, per cent: smaller errors count as exact.
 const MIN_ERROR: f64 = 1e-4;
 
-/// Note on the bars of intervals.
-pub const BARS_NOTE: &str = "Bars: 95 % intervals; hidden where smaller than the mark.";
 /// Note on the nominal coverage.
 const LINE_NOTE: &str = "Line: 95 %.";
 /// Note on errors beyond the axis.
-pub const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
+const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
 /// Note on exact errors.
-pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
+const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 
 /// Methods that can be compared in some cells, and whether their errors are relative to the first-order response
 /// nearest to the ship. `None` if K and T are not the same quantities in all cells and the study is about predictions,
@@ -230,20 +228,22 @@ impl<'a> ComparedMethods<'a> {
         }
     }
 
-    /// Note under a figure: meaning of line, bars, arrows and clipped values.
+    /// Note under a figure: meaning of the line and of clipped values.
     fn note(&self, groups: &[ChartGroup]) -> Option<String> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
         let places = cells().flat_map(|&cell| self.methods.iter().map(move |&method| (cell, method)));
         let panels = 0..self.measure.panels();
         let figures_at = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
-        let figures: Vec<(Statistic, bool)> = places.flat_map(figures_at).collect();
-        let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
-        let is_exact = self.measure == ErrorMeasure::Rms && figures.iter().any(|(figure, _)| figure.value == MIN_ERROR);
-        let has_bars = figures.iter().any(|(figure, is_worthless)| figure.ci95.is_some() && !is_worthless);
+        let is_exact = self.measure == ErrorMeasure::Rms
+            && places.flat_map(figures_at).any(|(figure, _)| figure.value == MIN_ERROR);
         let is_share = self.measure == ErrorMeasure::Coverage;
-        let remarks = [(is_share, LINE_NOTE), (has_bars, BARS_NOTE), (is_cut, CUT_NOTE), (is_exact, EXACT_NOTE)];
-        let sentences: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
-        (!sentences.is_empty()).then(|| sentences.join(" "))
+        let remark = if is_share { Some(LINE_NOTE) } else { is_exact.then_some(EXACT_NOTE) };
+        remark.map(str::to_owned)
+    }
+
+    /// Meaning of marks beyond the axes.
+    fn beyond(&self) -> Option<String> {
+        self.measure.is_of_errors().then(|| CUT_NOTE.to_owned())
     }
 }
 
@@ -372,7 +372,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
         marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
         ..Stack::default()
     };
-    Panels { note: compared.note(groups), ..Panels::of(stack) }
+    Panels { note: compared.note(groups), beyond: compared.beyond(), ..Panels::of(stack) }
 }
 
 fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows {
@@ -402,6 +402,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
         note: compared.note(part),
+        beyond: compared.beyond(),
         ..NamedRows::default()
     }
 }

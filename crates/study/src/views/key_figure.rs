@@ -1,45 +1,51 @@
 //! Key figure of a study: its finding above it, T alone if a figure shows errors of K and of T, the highlighted series
 //! in colour and all others pale.
 
+use campaign::design::Design;
 use campaign::scenario::Highlight;
 use report::figures::{
-    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, NamedRows, Panels, Pen, Plot, RowItem, RowKind, RowPlace,
-    RowsColumn, Stack,
+    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack, WordsPlace,
 };
 use report::number::{counted, significant};
-use report::palette::{Look, Marker, QUIET, SOLID};
+use report::palette::QUIET;
 use report::{CurveOrigin, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
-use super::charts::CUT_NOTE;
-use super::pooled_charts::ALL;
-
-/// Look of a method that the figure does not highlight.
-const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
+use super::key_rows::{is_of_k, is_quiet, of_rows, pale_note, unit};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Share of an axis that is free for the values of rows.
-const ROOM: f64 = 0.12;
-
-/// A chart as the key figure of a study.
-pub fn of_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
-    match &mut plot {
-        Plot::Panels(data) => of_panels(data, highlight),
-        Plot::Rows(data) => of_rows(data, highlight),
-        Plot::Cells(data) => of_cells(data, highlight),
-        Plot::ZigZag(_) => {}
-    }
-    plot
+/// Remark on the number of trials behind every value; `None` if it varies or the trials are measured records.
+pub fn trials(design: &Design) -> Option<String> {
+    let counts = distinct(design.cells.iter().map(|cell| cell.trials.end - cell.trials.start));
+    let [count] = counts[..] else { return None };
+    let each = if design.cells.len() > 1 { " each" } else { "" };
+    (!design.is_measured()).then(|| format!("{}{each}.", counted(count, "trial")))
 }
 
-fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
-    let is_method = |name: &String| name != CurveOrigin::Bound.label();
-    // A line of rules is identified by the common beginning of their labels.
-    let is_of = |label: &String, name: &String| label == name || label.starts_with(&format!("{name}, "));
-    !about.is_empty() && name.is_some_and(|name| is_method(name) && !about.iter().any(|label| is_of(label, name)))
+/// A chart as the key figure of a study, with a remark on its trials.
+pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -> Plot {
+    let note = match &mut plot {
+        Plot::Panels(data) => {
+            of_panels(data, highlight);
+            &mut data.note
+        }
+        Plot::Rows(data) => {
+            of_rows(data, highlight);
+            &mut data.note
+        }
+        Plot::Cells(data) => {
+            of_cells(data, highlight);
+            &mut data.note
+        }
+        Plot::ZigZag(_) => return plot,
+    };
+    let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound."));
+    let remarks: Vec<String> = trials.into_iter().chain(over_bound).chain(note.take()).collect();
+    *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
+    plot
 }
 
 /// A layer that is not highlighted, in pale colours.
@@ -58,12 +64,7 @@ fn paled(layer: Layer) -> Layer {
     Layer { name: None, kind, ..layer }.within(ASIDE)
 }
 
-/// `true` if an axis is of errors or intervals of K.
-fn is_of_k(title: &str) -> bool {
-    title.contains(" K ")
-}
-
-fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
+fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &Highlight) {
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let (mut pale_names, mut notes) = (Vec::new(), Vec::new());
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
@@ -75,12 +76,15 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
         }
         data.names_aside = stack.panels.iter().all(has_distinct_names);
         keep_t(stack);
+        let unit = stack.rows.first().map_or_else(String::new, |row| unit(&row.y.title));
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
             pale_names.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
-            panel.layers = quiet.into_iter().map(paled).collect();
-            let values = point_values(&shown, &points);
+            let is_word = |layer: &Layer| matches!(layer.kind, LayerKind::Words(..));
+            panel.layers = quiet.into_iter().filter(|layer| !is_word(layer)).map(paled).collect();
+            let values = point_values(&shown, &points, &unit);
+            panel.detail = shown_over_bound(&shown).filter(|_| *over_bound);
             panel.layers.extend(shown.into_iter().chain(values));
         }
         let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
@@ -92,44 +96,53 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows }: &Highlight) {
             notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
     }
-    let pale_names = distinct(pale_names).len();
-    if pale_names > 0 {
-        notes.push(format!("Pale: {}.", counted(pale_names as u64, "other method")));
-    }
-    let is_arrow = |layer: &Layer| marks(layer).is_some() && layer.curve.y.contains(&f64::INFINITY);
-    let has_arrows = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers).any(is_arrow);
-    let note = data.note.take().unwrap_or_default();
-    notes.insert(0, if has_arrows { note } else { note.replace(CUT_NOTE, "").trim().to_owned() });
-    data.note = Some(notes.join(" ").trim().to_owned()).filter(|note| !note.is_empty());
+    notes.extend(pale_note(&distinct(pale_names)));
+    let notes: Vec<String> = data.note.take().into_iter().chain(notes).collect();
+    data.note = Some(notes.join(" ")).filter(|note| !note.is_empty());
 }
 
-/// `true` if no two layers of a panel have the same name.
+/// Range of the values of marks in multiples of the Cramér–Rao bound of their panel; `None` without bound.
+fn shown_over_bound(layers: &[Layer]) -> Option<String> {
+    let bound = layers.iter().find(|layer| layer.name.as_deref() == Some(CurveOrigin::Bound.label()))?;
+    let marks = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Marks(_)));
+    let ratio = |(x, y): (f64, f64)| bound.curve.finite().find(|(at, _)| *at == x).map(|(_, bound)| y / bound);
+    let ratios = || marks.clone().flat_map(|layer| layer.curve.finite()).filter_map(ratio);
+    let [least, most] = [ratios().reduce(f64::min)?, ratios().reduce(f64::max)?].map(|ratio| significant(ratio, 2));
+    Some(if least == most { format!("{least}×") } else { format!("{least}–{most}×") })
+}
+
+/// `true` if every name of a panel has one layer, and its own colour.
 fn has_distinct_names(panel: &LayeredPanel) -> bool {
-    let names: Vec<&String> = panel.layers.iter().filter_map(|layer| layer.name.as_ref()).collect();
-    distinct(names.iter().copied()).len() == names.len()
+    let named: Vec<&Layer> = panel.layers.iter().filter(|layer| layer.name.is_some()).collect();
+    let colours = named.iter().map(|layer| layer.colour()).map(|colour| (colour.0, colour.1, colour.2));
+    distinct(named.iter().map(|layer| &layer.name)).len() == named.len() && distinct(colours).len() == named.len()
 }
 
-/// Values of marks at points of the axis, written next to them; of two equal texts only the first.
-fn point_values(layers: &[Layer], points: &[f64]) -> Vec<Layer> {
+/// Values of marks at points of the axis, written next to them off their curve; of two equal texts only the first.
+fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
     let mut written: Vec<(f64, String)> = Vec::new();
     let mut values = Vec::new();
+    let mut is_above = true;
     for layer in layers {
         let LayerKind::Marks(Marks { look, .. }) = &layer.kind else { continue };
-        let mut texts = Vec::new();
-        let mut curve = PlotCurve::default();
-        for (x, y) in layer.curve.finite().filter(|(x, _)| points.contains(x)) {
-            let text = (x, significant(y, 2));
-            if !written.contains(&text) {
-                texts.push(text.1.clone());
-                curve.x.push(x);
-                curve.y.push(y);
-                written.push(text);
+        let curve: Vec<(f64, f64)> = layer.curve.finite().collect();
+        let before = written.len();
+        for (place, &(x, y)) in curve.iter().enumerate().filter(|(_, (x, _))| points.contains(x)) {
+            let text = (x, format!("{}{unit}", significant(y, 2)));
+            if written.contains(&text) {
+                continue;
             }
+            // Above a rising curve there is room to the left, below it to the right.
+            let is_rising = curve[(place + 1).min(curve.len() - 1)].1 > curve[place.saturating_sub(1)].1;
+            let words = LayerKind::Words(
+                look.colour,
+                WordsPlace { is_above, is_right: is_above != is_rising },
+                vec![text.1.clone()],
+            );
+            values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, words));
+            written.push(text);
         }
-        if !texts.is_empty() {
-            let is_above = values.len() % 2 == 0;
-            values.push(Layer::new("", curve, LayerKind::Words(look.colour, is_above, texts)));
-        }
+        is_above ^= written.len() > before;
     }
     values
 }
@@ -146,10 +159,28 @@ fn keep_t(stack: &mut Stack) {
     stack.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
-/// Keeps the highlighted panels and rows. All other rows with the same name up to a colon become one row, their mean.
-fn of_cells(data: &mut CellMap, Highlight { series: about, rows }: &Highlight) {
+/// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
+/// colon become one row, their mean.
+fn of_cells(data: &mut CellMap, Highlight { series: about, rows, .. }: &Highlight) {
     data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
-    if rows.is_empty() {
+    let is_empty = |column: &usize| {
+        let mut cells = data.panels.iter().flat_map(|(_, panel)| panel).map(|row| &row[*column]);
+        cells.all(|cell| cell.value == Some(0.0) && cell.outline.is_none())
+    };
+    let kept: Vec<usize> = (0..data.columns.len()).filter(|column| !is_empty(column)).collect();
+    let keep = |row: &mut Vec<MapCell>| *row = kept.iter().map(|&column| row[column]).collect();
+    data.panels.iter_mut().flat_map(|(_, panel)| panel).for_each(keep);
+    data.columns = kept.iter().map(|&column| data.columns[column].clone()).collect();
+    let is_highlighted =
+        |row: usize, column: usize| rows.contains(&format!("{}, {}", data.rows[row], data.columns[column]));
+    let mut are_cells = false;
+    for (row, cells) in data.panels.iter_mut().flat_map(|(_, panel)| panel.iter_mut().enumerate()) {
+        for (_, cell) in cells.iter_mut().enumerate().filter(|(column, _)| is_highlighted(row, *column)) {
+            cell.outline = Some(Outline::Finding);
+            are_cells = true;
+        }
+    }
+    if rows.is_empty() || are_cells {
         return;
     }
     let kind = |name: &str| name.split_once(": ").map_or(name, |(kind, _)| kind).to_owned();
@@ -180,62 +211,16 @@ fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
     if others.is_empty() { panel[*first].clone() } else { (0..panel[*first].len()).map(mean).collect() }
 }
 
-fn of_rows(data: &mut NamedRows, Highlight { series: about, rows }: &Highlight) {
-    data.columns.retain(|column| !is_of_k(&column.x.title));
-    for column in &mut data.columns {
-        let rows = column.rows.iter_mut().zip(&data.names).filter(|(_, name)| about.contains(name));
-        for item in rows.flat_map(|(row, _)| row) {
-            let RowKind::Violin(_, density, quantiles) = &item.kind else { continue };
-            column.reached.extend(density.iter().map(|(value, _)| *value));
-            item.number = Some(format!("median {}", significant(quantiles[2], 2)));
-        }
-    }
-    for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
-        // The other rows share a line and have no ranges.
-        row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
-        row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
-        let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
-        let drawn_values: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
-        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !drawn_values.contains(&value(item)));
-        let mut place = RowPlace::Below;
-        for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
-            if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {
-                (*look, *interval) = (OTHER, None);
-                (item.name, item.place) = (Some(String::from("others")), place);
-                place = RowPlace::Beside;
-            }
-        }
-    }
-    if !rows.is_empty() {
-        data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows));
-    }
-}
-
-/// Pales the rows that are not highlighted, and writes the values of all others next to their marks.
-fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String]) {
-    column.room = ROOM;
-    for (row, name) in column.rows.iter_mut().zip(names) {
-        let is_quiet = name != ALL && !about.contains(name);
-        for item in row {
-            let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
-            if is_quiet {
-                // The key shows the looks of the highlighted rows.
-                (look.colour, item.name) = (QUIET, None);
-            } else if look.colour != QUIET {
-                item.number = Some(significant(*value, 2));
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use report::figures::{PanelRow, Ruler};
+    use report::figures::{NamedRows, PanelRow, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
+    use report::palette::Look;
 
+    use super::super::key_rows::tint;
     use super::*;
 
     fn about_output_error() -> Highlight {
-        Highlight { series: vec![String::from("output-error")], rows: Vec::new() }
+        Highlight { series: vec![String::from("output-error")], ..Highlight::default() }
     }
 
     fn method(id: &str) -> (String, Look) {
@@ -258,7 +243,7 @@ mod tests {
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..Stack::default()
         };
-        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &about_output_error()) else { panic!() };
+        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &about_output_error(), None) else { panic!() };
         let panels = &data.stacks[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
@@ -268,7 +253,7 @@ mod tests {
         assert_eq!(names, [None, Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
         assert_eq!((marks.look.colour, panels[0].layers[0].room), (QUIET, Some(ASIDE)));
-        assert_eq!(data.note.as_deref(), Some("Pale: 1 other method."));
+        assert_eq!(data.note.as_deref(), Some("Grey: srivc."));
     }
 
     #[test]
@@ -281,9 +266,12 @@ mod tests {
             rows: vec![items.map(|(id, value)| item(id, value)).into()],
             ..RowsColumn::default()
         };
-        let rows =
-            NamedRows { columns: vec![column("error of K [%]"), column("error of T [%]")], ..NamedRows::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &about_output_error()) else { panic!() };
+        let rows = NamedRows {
+            names: vec!["calm".into()],
+            columns: vec![column("error of K [%]"), column("error of T [%]")],
+            ..NamedRows::default()
+        };
+        let Plot::Rows(data) = of_chart(rows.into(), &about_output_error(), None) else { panic!() };
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
@@ -303,12 +291,15 @@ mod tests {
         let rows =
             NamedRows { names: vec!["5/5".into(), "20/20".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
+        let Plot::Rows(data) = of_chart(rows.into(), &highlight, None) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
-            RowItem { kind: RowKind::Mark(look, ..), number, .. } => (look.colour == QUIET, number.as_deref()),
+            RowItem { kind: RowKind::Mark(drawn, ..), number, .. } => {
+                (drawn.colour == tint(look.colour), number.as_deref())
+            }
             _ => panic!(),
         };
-        assert_eq!((shown(0), shown(1)), ((true, None), (false, Some("2.0"))));
+        // Highlighted rows are on top.
+        assert_eq!((shown(0), shown(1)), ((false, Some("2.0 %")), (true, None)));
     }
 
     #[test]
@@ -317,13 +308,21 @@ mod tests {
             let pen = Pen::new(method(id).1.colour);
             Layer::marks(id, method(id).1, vec![(2.0, y, None), (5.0, 3.0 * y, None)]).joined(pen)
         };
-        let layers = vec![layer("output-error", 0.125), layer("maximum-likelihood", 0.1251), layer("srivc", 9.0)];
+        let layers = vec![
+            layer("output-error", 0.125),
+            layer("maximum-likelihood", 0.1251),
+            layer("srivc", 9.0),
+            Layer::line(CurveOrigin::Bound.label(), PlotCurve::new(vec![2.0, 5.0], vec![0.1, 0.15]), Pen::new(QUIET)),
+        ];
         let stack =
             Stack::over(Ruler::decimal("executes"), vec![(PanelRow::new(Ruler::decimal("T [%]"), 0.2), layers)]);
-        let highlight =
-            Highlight { series: vec!["output-error".into(), "maximum-likelihood".into()], rows: vec!["2".into()] };
-        let data = Panels { note: Some(format!("Marks. {CUT_NOTE}")), ..Panels::of(stack) };
-        let Plot::Panels(data) = of_chart(data.into(), &highlight) else { panic!() };
+        let highlight = Highlight {
+            series: vec!["output-error".into(), "maximum-likelihood".into()],
+            rows: vec!["2".into()],
+            over_bound: true,
+        };
+        let data = Panels { note: Some(String::from("Marks.")), ..Panels::of(stack) };
+        let Plot::Panels(data) = of_chart(data.into(), &highlight, Some(String::from("9 trials."))) else { panic!() };
         let layers = &data.stacks[0].panels[0].layers;
         let words = layers.iter().filter_map(|layer| match &layer.kind {
             LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
@@ -331,10 +330,11 @@ mod tests {
         });
         assert_eq!(
             words.collect::<Vec<_>>(),
-            [(vec![2.0], vec![String::from("0.12")]), (vec![2.0], vec![String::from("0.13")])]
+            [(vec![2.0], vec![String::from("0.12 %")]), (vec![2.0], vec![String::from("0.13 %")])]
         );
         assert!(matches!(layers[0].kind, LayerKind::Line(Pen { colour: QUIET, .. })));
-        assert_eq!(data.note.as_deref(), Some("Marks. Pale: 1 other method."));
+        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound. Marks. Grey: srivc."));
+        assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
 
     #[test]
@@ -349,10 +349,16 @@ mod tests {
             note: None,
         };
         let highlight = Highlight { rows: vec![String::from("tug")], ..Highlight::default() };
-        let Plot::Cells(data) = of_chart(map.into(), &highlight) else { panic!() };
+        let Plot::Cells(data) = of_chart(map.clone().into(), &highlight, None) else { panic!() };
         assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
         let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
         assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
+        let highlight = Highlight { rows: vec![String::from("known: c, right")], ..Highlight::default() };
+        let Plot::Cells(data) = of_chart(map.into(), &highlight, None) else { panic!() };
+        assert_eq!(
+            data.panels[0].1.iter().map(|row| row[0].outline).collect::<Vec<_>>(),
+            [None, None, Some(Outline::Finding), None]
+        );
     }
 
     #[test]
@@ -364,8 +370,8 @@ mod tests {
         let column = RowsColumn { rows: vec![violin(-20.2), violin(1.0)], ..RowsColumn::default() };
         let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &highlight) else { panic!() };
+        let Plot::Rows(data) = of_chart(rows.into(), &highlight, None) else { panic!() };
         let text = |row: usize| data.columns[0].rows[row][0].number.as_deref();
-        assert_eq!((text(0), text(1)), (Some("median −20"), None));
+        assert_eq!((text(0), text(1)), (Some("−20 (−30 to 5.0)"), Some("1.0 (−30 to 5.0)")));
     }
 }

@@ -18,6 +18,7 @@ pub mod horizon;
 pub mod indices;
 pub mod innovation_figure;
 pub mod key_figure;
+pub mod key_rows;
 pub mod method_table;
 pub mod missing_moment;
 pub mod outcomes;

@@ -13,7 +13,7 @@ use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{BARS_NOTE, ErrorMeasure, comparable, origin, rms_title};
+use super::charts::{ErrorMeasure, comparable, origin, rms_title};
 
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
@@ -89,7 +89,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         let is_drawn = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note =
-            Some(String::from("Shape: density. Box: quartiles, with the median. Line, or numbers: 2.5 to 97.5 %."));
+            Some(String::from("Shape: density. Box: quartiles, with the median. Line and numbers: 2.5 to 97.5 %."));
         (trials >= 10 && is_drawn).then_some((detail.cell, NamedRows { names, columns, note, ..NamedRows::default() }))
     };
     summary.details.iter().filter_map(of_cell).collect()
@@ -120,7 +120,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
             let detail = covariance_bound.zip(cloud).map(|(bound, cloud)| {
                 let sd_over_bound = (cloud.covariance[1][1] / bound[1][1]).sqrt();
-                format!("T scatters {} times the bound", significant(sd_over_bound, 3))
+                format!("T {}× the bound", significant(sd_over_bound, 3))
             });
             LayeredPanel { head: Some(design.methods[method].label.clone()), detail, layers }
         };
@@ -187,7 +187,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
         of: design.axes[last].clone(),
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(format!("Marks: means. {BARS_NOTE}")),
+        note: Some(String::from("Marks: means.")),
         ..NamedRows::default()
     };
     Some((rows, design.methods[summary.reference].label.clone()))

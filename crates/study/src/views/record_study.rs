@@ -9,11 +9,11 @@ use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
 use campaign::scenario::Prose;
-use campaign::statistics::{MIN_SUMMARISED, Statistic};
+use campaign::statistics::{MIN_SUMMARISED, Statistic, distinct};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
-use report::figures::{Division, NamedRows, Plot, RowItem, RowKind, RowsColumn, Ruler};
+use report::figures::{Division, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
 use report::markdown::text;
 use report::number::{self, MISSING, significant};
 use report::palette::Look;
@@ -127,28 +127,33 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
 
 /// Figure of the heading error of every method on every held-out record, one row per cell and method.
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
-    let mut names = Vec::new();
-    let marks = lines.iter().map(|line| {
+    let marks = |line: &RecordSummary| {
         let method = &design.methods[line.method];
-        let labels = design.cells[line.cell].labels.join(", ");
-        names.push(if labels.is_empty() { method.label.clone() } else { format!("{labels}: {}", method.label) });
         let look = CurveOrigin::Method(method.id.clone()).look();
         let pale = Look { hollow: true, ..look };
         let trials = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
         let mut items: Vec<RowItem> = trials
             .filter_map(|row| row.validation_rmse_deg)
-            .map(|error| RowItem::new("", RowKind::Mark(pale, error, None)).softly())
+            .map(|error| RowItem {
+                place: RowPlace::Beside,
+                ..RowItem::new("", RowKind::Mark(pale, error, None)).softly()
+            })
             .collect();
         let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
         items.extend(median.map(|median| RowItem {
             number: Some(degrees(median.value)),
-            ..RowItem::new("", RowKind::Mark(look, median.value, median.ci95))
+            place: RowPlace::Beside,
+            ..RowItem::new(&method.label, RowKind::Mark(look, median.value, median.ci95))
         }));
+        items.iter_mut().take(1).for_each(|item| item.place = RowPlace::Below);
         items
-    });
+    };
+    let cells: Vec<usize> = distinct(lines.iter().map(|line| line.cell));
+    let names: Vec<String> = cells.iter().map(|&cell| design.cells[cell].labels.join(", ")).collect();
+    let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
         x: Ruler::new("heading error on records that were not fitted [°]", Division::Factors),
-        rows: marks.collect(),
+        rows: cells.iter().map(row).collect(),
         ..RowsColumn::default()
     };
     let caption = "Heading error of every method on held-out records: the recorded rudder is replayed; only the initial state is fitted. \
@@ -157,7 +162,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         names,
         columns: vec![column],
         note: Some(String::from(
-            "Hollow marks: one trial each; full marks: medians of five or more; bars: 95 % intervals over fits, of six or more.",
+            "Hollow marks: one trial each; full marks: medians of five or more, with bars over the fits from six on.",
         )),
         ..NamedRows::default()
     };

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 
 use campaign::scenario::{HULL, TRACE};
 use report::figures::{
-    CellMap, Division, Layer, LayerKind, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
-    RowsColumn, Ruler, Shades, Stack,
+    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
+    Shades, Stack,
 };
+use report::number::significant;
 use report::palette::{
     BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID,
 };
@@ -89,9 +90,9 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
 }
 
 /// Comparison of several traces over all ships whose effects are known: the share of trials with exact names, of ships
-/// that lack an effect, over the share of trials with a false name. `None` for one trace, or if no ship lacks an
+/// that lack an effect, and the share of trials with a false name. `None` for one trace, or if no ship lacks an
 /// effect.
-pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<Panels> {
+pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let listed: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
     let rules = grouped(listed, |line| line.method);
     if rules.len() < 2 {
@@ -131,7 +132,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     let is_same = |rows: &[(&str, &str, [u64; 2])]| {
         rows.len() == kinds.len() && rows.iter().all(|(.., counts)| *counts == rows[0].2)
     };
-    let mut note = String::from("Nothing is missing in any trial. Bars: 95 % intervals.");
+    let mut note = String::from("Nothing is missing in any trial.");
     if kinds.len() > 1 && variants.iter().all(|(_, rows)| is_same(rows)) {
         rules = variants.iter().map(|(variant, rows)| (*variant, rows[0].2)).collect();
         note += &format!(" The rules {} give the same.", kinds.join(", "));
@@ -145,7 +146,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         x: Ruler::decimal("trials with a false name [%]"),
         rows: rules.iter().map(row).collect::<Option<_>>()?,
         zero: true,
-        room: 0.9,
+        room: 0.47,
         ..RowsColumn::default()
     };
     Some(NamedRows {
@@ -156,33 +157,33 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     })
 }
 
-/// Rules as points: one line per kind before the comma of their labels, with the variants after it as words.
-fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> Panels {
+/// Rules as rows: one row for every variant after the comma of their labels, with every kind before it.
+fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
     const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
     let parts: Vec<(&str, &str)> =
-        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or((label, ""))).collect();
-    let mut layers = Vec::new();
-    for (number, (kind, variants)) in grouped(rules.iter().zip(&parts), |(_, (kind, _))| *kind).iter().enumerate() {
-        let (colour, marker) = (COLOURS[number % COLOURS.len()], MARKERS[number % MARKERS.len()]);
-        let pen = Pen::new(colour);
-        let points = || variants.iter().map(|((_, wrong, exact), _)| (wrong.value, exact.value, exact.ci95));
-        let look = Look { colour, marker, dash: SOLID, hollow: false };
-        layers.push(Layer::marks(*kind, look, points().collect()).joined(pen));
-        for ((_, wrong, exact), _) in variants {
-            let level = PlotCurve::new(wrong.ci95.unwrap_or([wrong.value; 2]), [exact.value; 2]);
-            layers.push(Layer::line(*kind, level, pen.width(0.7)).within(1.0));
-        }
-        let (x, y): (Vec<f64>, Vec<f64>) = points().map(|(x, y, _)| (x, y)).unzip();
-        // The words before the last are the same for all.
-        let labels = variants.iter().map(|(_, (_, variant))| variant.rsplit(' ').next().unwrap_or(variant).to_owned());
-        let labels = LayerKind::Words(colour, number % 2 == 0, labels.collect());
-        layers.push(Layer::new(*kind, PlotCurve::new(x, y), labels));
+        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or(("", label))).collect();
+    let kinds = distinct(parts.iter().map(|(kind, _)| *kind));
+    let variants = distinct(parts.iter().map(|(_, variant)| *variant));
+    let column = |title: &str, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
+        let item = |(rule, (kind, _)): (&(&str, Statistic, Statistic), &(&str, &str))| {
+            let number = kinds.iter().position(|other| other == kind).unwrap_or(0) % COLOURS.len();
+            let look = Look { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
+            let share = share(rule);
+            let number = Some(format!("{} %", significant(share.value, 2)));
+            RowItem { number, ..RowItem::below(*kind, look, share.value, share.ci95) }
+        };
+        let row = |variant: &&str| rules.iter().zip(&parts).filter(|(_, (_, of))| of == variant).map(item).collect();
+        RowsColumn { x: Ruler::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
+    };
+    NamedRows {
+        names: variants.iter().map(|variant| (*variant).to_owned()).collect(),
+        columns: vec![
+            column("trials with a false name [%]", |(_, wrong, _)| *wrong),
+            column("trials named exactly [%]", |(.., exact)| *exact),
+        ],
+        ..NamedRows::default()
     }
-    let row = PanelRow::new(Ruler::decimal("trials named exactly [%]"), 0.42);
-    let stack =
-        Stack { zero: true, ..Stack::over(Ruler::decimal("trials with a false name [%]"), vec![(row, layers)]) };
-    Panels { note: Some(String::from("Best is top left. Bars: 95 % intervals.")), ..Panels::of(stack) }
 }
 
 /// Minimum expected likelihood ratio that is plotted.
@@ -274,8 +275,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
     let x = Ruler::new("size of the effect: expected 2 ln Λ", Division::Factors);
-    let note = Some(String::from("Bars: 95 % intervals."));
-    Some(Panels { note, ..shares(x, "trials in which it is named [%]", series, theory.into()) })
+    Some(shares(x, "trials in which it is named [%]", series, theory.into()))
 }
 
 /// Number of trials with one missing effect in which it was named, and of all such trials.
@@ -353,12 +353,12 @@ mod tests {
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
         let data = rules(&design, &lines).expect("two rules");
-        let layers = &data.stacks[0].panels[0].layers;
-        let named = layers.iter().find(|layer| layer.name.as_deref() == Some("bic")).expect("one kind of rule");
-        assert_eq!(named.curve, PlotCurve::new([25.0, 0.0], [50.0, 0.0]));
-        let thresholds =
-            layers.iter().find_map(|layer| if let LayerKind::Words(.., all) = &layer.kind { Some(all) } else { None });
-        assert_eq!(thresholds.expect("thresholds"), &["0.5", "0.9"]);
+        assert_eq!(data.names, ["0.5", "0.9"]);
+        let shares = |column: usize, row: usize| match &data.columns[column].rows[row][..] {
+            [RowItem { name: Some(kind), kind: RowKind::Mark(_, share, _), .. }] if kind == "bic" => *share,
+            _ => panic!(),
+        };
+        assert_eq!([shares(0, 0), shares(0, 1), shares(1, 0), shares(1, 1)], [25.0, 0.0, 50.0, 0.0]);
         assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
         assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
         // For ships without a missing effect the bound is shown: Wilson's of 0 of 2.

@@ -9,7 +9,7 @@ use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
 
 use super::record_figures::heading_and_residual;
-use super::trace_figures::{models_over_time, ratio};
+use super::trace_figures::{models_over_time, ratio, rms};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// Maximum number of names in a title.
@@ -92,5 +92,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
                    with the effects that were found and the 95 % band. (b), (d): the residuals of both.";
-    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, ..Panels::default() }))
+    let [before, after] = rms(error.validation.iter()).map(|error| significant(error, 3));
+    let count = counted(error.validation.len() as u64, "held-out record");
+    let note = Some(format!("All {count}: rms {before}° → {after}°, {:.0} %.", 100.0 * ratio(error.validation.iter())));
+    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, note, ..Panels::default() }))
 }
