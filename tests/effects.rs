@@ -22,7 +22,7 @@ fn base() -> Vec<f64> {
 fn with_effect(effect: &Arc<dyn Effect>, value: fn(&Parameter) -> f64) -> Response {
     let mut parameters = base();
     parameters.extend(effect.parameters().iter().map(value));
-    ResponseModel::new(vec![Arc::clone(effect)]).with(parameters)
+    ResponseModel::new(vec![Arc::clone(effect)]).with_parameters(parameters)
 }
 
 /// A 10/10 zig-zag of 300 s.
@@ -74,7 +74,7 @@ fn neutral_and_typical_values_lie_within_the_bounds() {
 
 #[test]
 fn a_typical_effect_keeps_a_zig_zag_finite_and_is_seen_unless_it_needs_a_channel() {
-    let plain = steer(ResponseModel::first_order().with(base()));
+    let plain = steer(ResponseModel::first_order().with_parameters(base()));
     for effect in effects::all() {
         let simulated = steer(with_effect(&effect, |p| p.typical));
         let truth = &simulated.truth;

@@ -104,7 +104,7 @@ impl Notation {
         let t = seconds(tenth);
         let number = |text: String| if self.comma { text.replace('.', ",") } else { text };
         match self.clock {
-            Clock::Count(unit) => vec![number(format!("{:.10}", t / unit.to_si()))],
+            Clock::Count(unit) => vec![number(format!("{:.10}", t / unit.si_factor()))],
             Clock::Bare => vec![number(format!("{t:.1}"))],
             Clock::Epoch(per_second) => vec![format!("{}", ((EPOCH as f64 + t) * per_second).round())],
             Clock::Iso => vec![format!("2026-11-20T{}Z", time_of_day(tenth, true))],
@@ -162,7 +162,7 @@ impl Notation {
             text += &line(&head.iter().map(|[_, unit]| unit.clone()).collect::<Vec<_>>());
         }
         let number = |value: f64, unit: Unit| {
-            let text = format!("{:.14}", value.to_radians() / unit.to_si());
+            let text = format!("{:.14}", value.to_radians() / unit.si_factor());
             if self.comma { text.replace('.', ",") } else { text }
         };
         for tenth in every(STEP) {

@@ -24,7 +24,7 @@ const EXECUTES: usize = 5;
 /// time.
 fn own_zig_zag(vessel: Vessel, rate: f64, unit: f64, angle_deg: f64, first: Side) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, rate, 1.0);
-    simulation.manoeuvre = simulation.manoeuvre.to(first).until_execute(EXECUTES);
+    simulation.manoeuvre = simulation.manoeuvre.with_first_side(first).until_execute(EXECUTES);
     simulation.recording.duration = None;
     simulation.recording.period = 0.05 * unit;
     simulation
@@ -164,7 +164,7 @@ fn every_manoeuvre_leaves_a_record() {
     let rudder = from_deg(15.0);
     let signal = Polyline::new(vec![0.0, 20.0, 30.0, 90.0], vec![0.0, 0.2, -0.2, 0.1]).expect("increasing times");
     let zig_zag = Manoeuvre::zig_zag(rudder, from_deg(10.0));
-    let turn = Manoeuvre::turning_circle(rudder).to(Side::Port);
+    let turn = Manoeuvre::turning_circle(rudder).with_first_side(Side::Port);
     let to_heading =
         Manoeuvre::TurningCircle { rudder, side: Side::Port, duration: None, heading_change: Some(from_deg(540.0)) };
     let manoeuvres = [

@@ -28,7 +28,7 @@ const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
 fn ship(effects: Vec<Missing>) -> Response {
     let mut parameters = BASE.to_vec();
     parameters.extend(effects.iter().flat_map(|(_, values)| values.iter().copied()));
-    ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
+    ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with_parameters(parameters)
 }
 
 fn steered(vessel: Vessel, angle_deg: f64) -> Simulation {
@@ -201,7 +201,7 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
     let inflow = SpeedLoss::Inflow { approach_speed: 5.0, approach_rate: 2.0 };
     [
         (
-            (named("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
+            (find("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
             vec![(Channel::Sway, |t| 0.4 * (0.11 * t).sin())],
             "measured sway",
         ),

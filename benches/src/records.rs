@@ -41,7 +41,7 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
 /// 10/10 zig-zag as in [`first_order_zig_zag`], of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
 pub fn damped_zig_zag(rows: usize) -> Simulation {
     let effect: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
-    let ship: Response = ResponseModel::new(vec![effect]).with(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
+    let ship: Response = ResponseModel::new(vec![effect]).with_parameters(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
     Simulation { vessel: Vessel::from_response(ship), ..first_order_zig_zag(rows) }
 }
 

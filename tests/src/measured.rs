@@ -43,7 +43,7 @@ pub fn columns(file: &str) -> Option<Columns> {
         match column(name) {
             _ if name == "t_s" => columns.time = values(place).collect(),
             Some((channel, unit)) => {
-                columns.channels.insert(channel, values(place).map(|value| value * unit.to_si()).collect());
+                columns.channels.insert(channel, values(place).map(|value| value * unit.si_factor()).collect());
             }
             None => {}
         }

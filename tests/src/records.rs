@@ -65,7 +65,7 @@ impl Case {
             from_deg(self.rate_deg_s),
             self.duration_s,
         );
-        simulation.manoeuvre = simulation.manoeuvre.to(self.first);
+        simulation.manoeuvre = simulation.manoeuvre.with_first_side(self.first);
         if self.begin == Begin::Mid {
             (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.2));
         }

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Action, Description, Effect, EffectReal, OperatingPoint, Proposal, RecordScales, Targets, listed};
+use ship::effects::{
+    Action, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, Targets, listed,
+};
 use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
 
@@ -18,7 +20,7 @@ impl Effect for CubicByHand {
         listed("nonlinear_damping", "r³").description()
     }
 
-    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
         None
     }
 
@@ -37,7 +39,7 @@ impl<R: Real> Action<R> for CubicByHand {
 /// Heading at the end of a replay.
 fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
     let values = [1.0 / T, K / T, 0.0, 60.0];
-    let response = ResponseModel::new(vec![effect]).with(values.map(R::from).to_vec());
+    let response = ResponseModel::new(vec![effect]).with_parameters(values.map(R::from).to_vec());
     let mut state = vec![R::default(); response.dimension()];
     let recorded = RecordedSignals::rudder(rudder);
     replay_states(&response, &recorded, rudder.times(), |_, _| 0.25, &mut state, |_, _, _| {});

@@ -71,7 +71,7 @@ impl<'a> RecordFacts<'a> {
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
         let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
         self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
-        let hulls = hull::members(fitted, f64::INFINITY);
+        let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {
             let reason = hull::refusal(self.trials).unwrap_or(HullFitError::NoReplay);
@@ -401,7 +401,7 @@ mod tests {
 
     /// KVLCC2 in a manoeuvre, with a gear of 2.34°/s.
     fn tanker(kind: &str) -> Simulation {
-        let manoeuvre = predict::standard::steered(&kind.parse().expect("known"), KVLCC2).expect("steered");
+        let manoeuvre = predict::standard::with_end(&kind.parse().expect("known"), KVLCC2).expect("steered");
         let mut simulation = Simulation::new(Vessel::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.34));
         simulation.recording.period = 2.0;

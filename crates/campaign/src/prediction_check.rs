@@ -14,7 +14,7 @@ use crate::scenario::Predictions;
 pub struct PredictionCheck<'a> {
     asked: &'a Predictions,
     /// True characteristics by name, per manoeuvre; `None` if the ship does not complete it.
-    true_manoeuvres: Vec<Option<figures::Figures>>,
+    true_manoeuvres: Vec<Option<figures::Characteristics>>,
     facts: RecordFacts<'a>,
 }
 
@@ -36,7 +36,7 @@ impl<'a> PredictionCheck<'a> {
         let other = StreamKey { seed: !key.seed, ..*key };
         let true_figures = |kind: &Manoeuvre| {
             let calm = Simulation {
-                manoeuvre: standard::steered(kind, timescale)?,
+                manoeuvre: standard::with_end(kind, timescale)?,
                 sensors: Sensors::default(),
                 ..simulation.clone()
             };

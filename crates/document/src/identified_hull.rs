@@ -109,7 +109,7 @@ impl IdentifiedHull {
     pub fn particulars(&self) -> Result<HullParticulars, IdentifiedShipError> {
         let mut particulars = HullParticulars::default();
         for (key, value) in &self.particulars {
-            Particular::named(key).ok_or_else(|| self.refused())?.set(&mut particulars, *value);
+            Particular::find(key).ok_or_else(|| self.refused())?.set(&mut particulars, *value);
         }
         Ok(particulars)
     }

@@ -86,7 +86,7 @@ impl WeightedStructure {
     /// Response model. Fails for an unknown effect, and for parameters or a covariance of the wrong size.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
         let effect = |written: &IdentifiedEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
-            effects::named(&written.id, &written.form, &written.constants)
+            effects::find(&written.id, &written.form, &written.constants)
                 .ok_or_else(|| IdentifiedShipError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
         let model = ResponseModel::new(self.effects.iter().map(effect).collect::<Result<_, _>>()?);
@@ -116,7 +116,7 @@ impl WeightedStructure {
     /// Indices of the parameters that are dead times.
     pub fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
         let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
-        let dead_times = model.placed().filter(|(effect, _)| (effect.id(), effect.form()) == named);
+        let dead_times = model.effects_with_ranges().filter(|(effect, _)| (effect.id(), effect.form()) == named);
         dead_times.map(|(_, range)| range.start).collect()
     }
 }
@@ -193,7 +193,7 @@ impl IdentifiedShip {
         }
         for member in &mut calm.members {
             let model = member.model()?;
-            for (effect, range) in model.placed().filter(|(effect, _)| effect.is_heading_dependent()) {
+            for (effect, range) in model.effects_with_ranges().filter(|(effect, _)| effect.is_heading_dependent()) {
                 for (place, parameter) in range.clone().zip(effect.parameters()) {
                     member.parameters[place] = parameter.neutral;
                 }

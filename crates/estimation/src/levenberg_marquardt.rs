@@ -19,12 +19,12 @@ pub trait Objective {
 
     /// Value of J at a point; writes the normal equations. Called at the start and at every accepted point, there
     /// immediately after [`value`](Self::value), so that intermediate results of that call can be reused.
-    fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64;
+    fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64;
 }
 
 /// Normal equations at a point.
 #[derive(Debug, Clone)]
-pub struct Normal {
+pub struct NormalEquations {
     /// Matrix XᵀX with X = −∂e/∂θ: second derivatives of J/2 (Gauss–Newton).
     pub matrix: DMatrix<f64>,
     /// Right-hand side Xᵀe: first derivatives of −J/2.
@@ -77,7 +77,7 @@ pub struct Minimum {
     /// Value of J.
     pub value: f64,
     /// Normal equations at θ.
-    pub normal: Normal,
+    pub normal: NormalEquations,
     /// Number of accepted steps.
     pub steps: usize,
     /// Stopping reason.
@@ -87,7 +87,7 @@ pub struct Minimum {
 /// Ridge, relative to the second derivatives, that keeps a step finite without damping.
 const RIDGE: f64 = 1e-11;
 
-impl Normal {
+impl NormalEquations {
     /// Normal equations with this number of unknowns, all zero.
     pub fn zeros(unknowns: usize) -> Self {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), gradient: DVector::zeros(unknowns) }
@@ -117,7 +117,7 @@ impl StepWorkspace {
     }
 
     /// Scales the normal equations at a point.
-    fn prepare(&mut self, problem: &impl Objective, at: &DVector<f64>, normal: &Normal) {
+    fn prepare(&mut self, problem: &impl Objective, at: &DVector<f64>, normal: &NormalEquations) {
         for k in 0..at.len() {
             let curvature = normal.matrix[(k, k)];
             self.scale[k] = if curvature > 0.0 { curvature.sqrt().recip() } else { 1.0 };
@@ -127,7 +127,7 @@ impl StepWorkspace {
     }
 
     /// Predicted decrease of J by a damped step, which is computed; `None` if the step is not finite.
-    fn damped_step(&mut self, normal: &Normal, damping: f64) -> Option<f64> {
+    fn damped_step(&mut self, normal: &NormalEquations, damping: f64) -> Option<f64> {
         let unknowns = self.right.len();
         for j in 0..unknowns {
             for i in 0..unknowns {
@@ -156,7 +156,7 @@ impl StepWorkspace {
 pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &SearchSettings) -> Minimum {
     let unknowns = start.len();
     let (mut at, mut next) = (start, DVector::zeros(unknowns));
-    let mut normal = Normal::zeros(unknowns);
+    let mut normal = NormalEquations::zeros(unknowns);
     let mut value = problem.linearise(at.as_slice(), &mut normal);
     let mut work = StepWorkspace::new(unknowns);
     let (mut damping, mut small_steps) = (rules.damping, 0);
@@ -236,7 +236,7 @@ mod tests {
             (10.0 * (at[1] - at[0] * at[0])).powi(2) + (1.0 - at[0]).powi(2)
         }
 
-        fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
+        fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
             let e = DVector::from_vec(vec![10.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]]);
             let x = DMatrix::from_row_slice(2, 2, &[20.0 * at[0], -10.0, 1.0, 0.0]);
             normal.matrix = x.tr_mul(&x);

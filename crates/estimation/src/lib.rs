@@ -9,7 +9,7 @@
 //! | dual numbers, which carry derivatives | [`number`] |
 //! | linear least squares with covariance and condition number | [`least_squares`] |
 //! | nonlinear least squares between bounds | [`levenberg_marquardt`] |
-//! | the minimum of a function of one variable | [`minimum`](fn@minimum::minimum) |
+//! | the minimum of a function of one variable | [`minimum`](minimum::golden_section_minimum) |
 //! | covariances of scores that are correlated in time | [`covariance`] |
 //! | medians, quantiles and intervals of proportions | [`statistics`] |
 //! | mixtures of normal distributions, and ratios over them | [`mixture`] |

@@ -4,7 +4,7 @@
 
 /// Argument and value of the minimum on [lo, hi]: a grid of `points` intervals, then six golden sections about the grid
 /// point of the least value.
-pub fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub fn golden_section_minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
     let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
     let heights: Vec<f64> = (0..=points).map(|k| value(at(k))).collect();
     let best = (0..=points).min_by(|&i, &j| heights[i].total_cmp(&heights[j])).unwrap_or(0);
@@ -38,12 +38,12 @@ mod tests {
 
     #[test]
     fn the_lowest_point_of_a_range_is_found_inside_and_at_its_ends() {
-        let (place, value) = minimum(-1.0, 3.0, 12, |x| (x - 0.7).powi(2) - 2.0);
+        let (place, value) = golden_section_minimum(-1.0, 3.0, 12, |x| (x - 0.7).powi(2) - 2.0);
         assert!((place - 0.7).abs() < 0.02 && (value + 2.0).abs() < 1e-3, "{place}, {value}");
-        assert_eq!(minimum(-1.0, 3.0, 12, |x| x).0, -1.0);
-        assert_eq!(minimum(-1.0, 3.0, 12, |x| -x).0, 3.0);
+        assert_eq!(golden_section_minimum(-1.0, 3.0, 12, |x| x).0, -1.0);
+        assert_eq!(golden_section_minimum(-1.0, 3.0, 12, |x| -x).0, 3.0);
         // Two minima: the grid contains both.
-        let (place, _) = minimum(-2.0, 2.0, 12, |x: f64| (x * x - 1.0).powi(2) + 0.3 * x);
+        let (place, _) = golden_section_minimum(-2.0, 2.0, 12, |x: f64| (x * x - 1.0).powi(2) + 0.3 * x);
         assert!((place + 1.0).abs() < 0.1, "{place}");
     }
 }

@@ -4,7 +4,7 @@
 //! Science 39:447-462; Scargle (1982), Astrophysical Journal 263:835-853; Brown, Durbin and Evans (1975), Journal of
 //! the Royal Statistical Society B 37:149-192.
 
-use crate::transform::{Complex, power, transform};
+use crate::transform::{Complex, fourier_transform, power_spectrum};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 /// Series of residuals on an even time grid with gaps: values, each with its grid index.
@@ -143,7 +143,7 @@ const MAX_POINTS_PER_VALUE: usize = 16;
 /// With missing values, the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares sine.
 /// On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than four
 /// values, or if nearly all grid points are gaps.
-pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
+pub fn periodogram(series: &GappedSeries) -> Vec<SpectralLine> {
     let (n, span) = (series.values.len(), series.span());
     if n < 4 || span > MAX_POINTS_PER_VALUE * n {
         return Vec::new();
@@ -154,7 +154,7 @@ pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
         share: if total > 0.0 { power / total } else { 0.0 },
     };
     if n == span {
-        let power = power(&mut series.values.clone()).split_off(1);
+        let power = power_spectrum(&mut series.values.clone()).split_off(1);
         let total: f64 = power.iter().sum();
         return power.into_iter().enumerate().map(|(k, power)| line(k + 1, power, total)).collect();
     }
@@ -164,7 +164,7 @@ pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
         (values[step], present[step]) = (value - mean, 1.0);
     }
     let total: f64 = values.iter().map(|x| x * x).sum();
-    let (sums, window) = (transform(&mut values), transform(&mut present));
+    let (sums, window) = (fourier_transform(&mut values), fourier_transform(&mut present));
     (1..sums.len())
         .map(|k| {
             // Σ cos 2ωt − i Σ sin 2ωt; above the Nyquist frequency by symmetry.
@@ -231,7 +231,7 @@ mod tests {
     }
 
     fn strongest(series: &GappedSeries) -> SpectralLine {
-        spectrum(series).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines")
+        periodogram(series).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines")
     }
 
     /// Patterns of missing headings: none, every third, scattered, a third in one piece, all but every fifth.
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn a_sine_fitted_to_even_values_is_a_line_of_the_transform() {
         let values: Vec<f64> = (0..50_u32).map(|k| (0.7 * f64::from(k)).sin() + f64::from(k * k % 7) - 3.0).collect();
-        let (sums, window) = (transform(&mut values.clone()), transform(&mut vec![1.0; 50]));
+        let (sums, window) = (fourier_transform(&mut values.clone()), fourier_transform(&mut vec![1.0; 50]));
         for k in 1..13 {
             let plain = 2.0 * sums[k].norm_sqr() / 50.0;
             assert!((explained(sums[k], window[2 * k], 50.0) / plain - 1.0).abs() < 1e-9);

@@ -4,14 +4,14 @@
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;
 
-/// Squared magnitudes of the [`transform`] of `x`; overwrites `x`.
-pub fn power(x: &mut [f64]) -> Vec<f64> {
-    transform(x).into_iter().map(|z| z.norm_sqr()).collect()
+/// Squared magnitudes of the [`fourier_transform`] of `x`; overwrites `x`.
+pub fn power_spectrum(x: &mut [f64]) -> Vec<f64> {
+    fourier_transform(x).into_iter().map(|z| z.norm_sqr()).collect()
 }
 
 /// Discrete Fourier transform of `x`, from frequency zero to the Nyquist frequency: bin k has k periods over the length
 /// of `x`. Overwrites `x`; empty for an empty `x`.
-pub fn transform(x: &mut [f64]) -> Vec<Complex<f64>> {
+pub fn fourier_transform(x: &mut [f64]) -> Vec<Complex<f64>> {
     if x.is_empty() {
         return Vec::new();
     }
@@ -31,7 +31,7 @@ mod tests {
     fn power_is_that_of_the_definition() {
         for rows in [1, 2, 7, 30, 97] {
             let x: Vec<f64> = (0..rows).map(|k| (0.7 * k as f64).sin() + 0.2).collect();
-            let bins = power(&mut x.clone());
+            let bins = power_spectrum(&mut x.clone());
             assert_eq!(bins.len(), rows / 2 + 1);
             for (bin, value) in bins.into_iter().enumerate() {
                 let part = |of: fn(f64) -> f64| {
@@ -41,6 +41,6 @@ mod tests {
                 assert_relative_eq!(value, part(f64::cos).powi(2) + part(f64::sin).powi(2), epsilon = 1e-9);
             }
         }
-        assert!(power(&mut []).is_empty());
+        assert!(power_spectrum(&mut []).is_empty());
     }
 }

@@ -26,7 +26,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
-use points::{BaseHeadingOrigin, Points};
+use points::{BaseCourseOrigin, Points};
 use points_fit::AnalysedTrial;
 
 /// Selection and use of the characteristic points.
@@ -189,9 +189,9 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
     let base_course_warning = |(trial, analysed): (&Trial, &AnalysedTrial)| {
         let assumed = match analysed.points.base_from {
-            BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
-            BaseHeadingOrigin::Zero => "heading 0",
-            BaseHeadingOrigin::Middle => "the middle of its headings",
+            BaseCourseOrigin::Given | BaseCourseOrigin::Approach => return None,
+            BaseCourseOrigin::Zero => "heading 0",
+            BaseCourseOrigin::Middle => "the middle of its headings",
         };
         Some(WarningCode::Method.warning(format!(
             "{} has no straight approach: {assumed} was taken for the base course; set base-course-deg if you know it",

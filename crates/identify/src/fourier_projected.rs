@@ -29,7 +29,7 @@ use crate::fourier::basis::NestedBases;
 use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MAX_HARMONICS, TRUSTED_CONDITION};
-use crate::gaps::{longest_gap, pieces};
+use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
@@ -158,7 +158,7 @@ impl SeriesRows {
         if group == 1 {
             return self;
         }
-        let pieces = pieces(&self.time, longest_gap(None, &self.time));
+        let pieces = gap_free_ranges(&self.time, gap_threshold(None, &self.time));
         let groups: Vec<Range<usize>> = pieces
             .flat_map(|piece| piece.clone().step_by(group).map(move |from| from..piece.end.min(from + group)))
             .collect();

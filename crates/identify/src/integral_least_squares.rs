@@ -20,9 +20,9 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::gaps::{longest_gap, pieces};
+use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
-use crate::robust::{newey_west_of_three, select};
+use crate::robust::{newey_west_of_three, reported_covariance};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED, Solution};
@@ -106,7 +106,7 @@ impl Identifier for IntegralLeastSquares {
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust) {
             (Some(variance), Some(robust)) => {
-                select(covariance(noise.influence * variance), robust, noise.lag1, equations)
+                reported_covariance(covariance(noise.influence * variance), robust, noise.lag1, equations)
             }
             _ => (Uncertainty::None { reason: "no more equations than unknowns" }, None),
         };
@@ -135,9 +135,11 @@ impl IntegralLeastSquares {
     fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<IntegratedStretch<'a>>, IdentifyError> {
         let mut all = Vec::with_capacity(samples.len());
         for trial in samples {
-            let gap = longest_gap(self.settings.longest_gap_s, &trial.time);
+            let gap = gap_threshold(self.settings.longest_gap_s, &trial.time);
             let long_enough = |rows: &Range<usize>| rows.len() >= MIN_PIECE_ROWS;
-            all.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)));
+            all.extend(
+                gap_free_ranges(&trial.time, gap).filter(long_enough).map(|rows| IntegratedStretch::new(trial, rows)),
+            );
         }
         let count: usize = all.iter().map(|piece| piece.time.len()).sum();
         // Initial states, the shared parameters, and as many degrees of freedom for their error.

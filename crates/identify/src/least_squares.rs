@@ -14,7 +14,7 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
-use crate::gaps::{longest_gap, pieces};
+use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
 use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
@@ -238,7 +238,7 @@ impl MotionRegression {
     /// Adds an equation for every row with a complete window without a gap.
     fn add(&self, time: &[f64], signal: &[f64], rudder: &[f64], equations: &mut Equations) {
         let mut weights = WindowWeights::new(self.polynomial());
-        for range in pieces(time, longest_gap(self.settings.longest_gap_s, time)) {
+        for range in gap_free_ranges(time, gap_threshold(self.settings.longest_gap_s, time)) {
             let (time, signal, rudder) = (&time[range.clone()], &signal[range.clone()], &rudder[range]);
             let mut rows = Vec::with_capacity(time.len());
             for k in 0..time.len() {

@@ -296,7 +296,7 @@ impl RangeScan {
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) =
             invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;
-        let white = to_response(&(inverse * (rss / freedom)), &response, freedom);
+        let white = response_covariance(&(inverse * (rss / freedom)), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < MIN_GAIN_DEVIATIONS * gain_sd {
             return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
@@ -305,8 +305,8 @@ impl RangeScan {
         let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());
         // The factor corrects for the degrees of freedom of the fit, as in the variance above.
         let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
-        let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
-        let (uncertainty, warning) = robust::select(white, &robust_covariance, lag1, observations);
+        let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
+        let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
         warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
         if at_bound {
@@ -338,7 +338,7 @@ impl RangeScan {
 pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from the covariance of (1/T, b, b δ_r).
-pub(crate) fn to_response(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
+pub(crate) fn response_covariance(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
     let b = response.K_over_T;
     let jacobian = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -response.rudder_bias / b, 1.0 / b);
     Covariance { matrix: jacobian * linear_covariance * jacobian.transpose(), degrees_of_freedom: Some(freedom) }

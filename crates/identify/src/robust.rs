@@ -14,7 +14,12 @@ const MAX_WHITE_CORRELATION: f64 = 0.2;
 /// Covariance that a method reports: for a white residual the white covariance, for a coloured residual the robust
 /// covariance, with a warning. A negative correlation keeps the white covariance: the robust covariance would be
 /// smaller, which is not justified for a record of two instruments read in turn.
-pub(crate) fn select(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<Warning>) {
+pub(crate) fn reported_covariance(
+    white: Covariance,
+    robust: &Covariance,
+    lag1: f64,
+    rows: usize,
+) -> (Uncertainty, Option<Warning>) {
     if !is_coloured(lag1, rows) {
         return (Uncertainty::Covariance(white), None);
     }

@@ -24,7 +24,7 @@ use crate::error::PredictError;
 use crate::helm_replay::{DrawResult, SteeredZigZag};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{drawn, enough};
+use crate::prediction::{check_completed, in_parallel};
 use crate::replay::{file_of, thinned};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
@@ -174,13 +174,13 @@ pub fn correct(
         (full, &paired.full, format!("at {loading}")),
         (ballast, &paired.trial, String::from("in the condition of the trial")),
     ] {
-        enough(format!("{} ({condition})", record.name()), results.iter().flatten().count(), draws)?;
-        if ship.is_unseen(paired.rudder, results.iter().flatten().map(|result| result.largest_rate)) {
+        check_completed(format!("{} ({condition})", record.name()), results.iter().flatten().count(), draws)?;
+        if ship.is_extrapolated(paired.rudder, results.iter().flatten().map(|result| result.largest_rate)) {
             let text = format!("the model {condition} is extrapolated beyond its records");
             warnings.push(WarningCode::ModelsApart.warning(text));
         }
     }
-    let readings: Vec<f64> = drawn(draws, |replicate| {
+    let readings: Vec<f64> = in_parallel(draws, |replicate| {
         StreamKey { seed: READING, cell: 0, replicate }.rng(Purpose::Heading).sample(StandardNormal)
     });
     let corrected = |&(name, measured): &(&str, Quantity)| {
@@ -203,7 +203,7 @@ fn zig_zag(
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown = names.filter_map(|name| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
-    Some(PairedManoeuvre { rudder: steered.kind.rudder(), full, trial, shown })
+    Some(PairedManoeuvre { rudder: steered.kind.max_rudder(), full, trial, shown })
 }
 
 /// Turn of a record, simulated with both models; `None` for a record without a turn.
@@ -219,21 +219,21 @@ fn turned(
     let measured = turn.figures(&passage).into_iter();
     let shown: Vec<_> = measured.filter_map(|(name, value)| Some((name, Quantity::bare(value?)))).collect();
     let Some(rudder) = turn.held_on(record.rudder_signal()).filter(|_| !shown.is_empty()) else { return Ok(None) };
-    let Some([_, rate]) = ballast.beginning(record)? else { return Ok(None) };
+    let Some([_, rate]) = ballast.initial_motion(record)? else { return Ok(None) };
     let manoeuvre = Manoeuvre::replay(thinned(&rudder));
     let sail = |mixture: &ShipMixture, number| {
-        let mut ship = mixture.draw(number, &UncertaintySource::ALL);
+        let mut ship = mixture.sample_ship(number, &UncertaintySource::ALL);
         // Both ships start with the yaw rate of the record.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
         let standard_normal: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
         ship.yaw_rate = rate.0 + rate.1 * standard_normal;
-        let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
+        let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.whole_figures(&passage);
         // Characteristics at the end are read after the duration of the record for both ships.
         figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
         Some(DrawResult { figures, largest_rate: passage.largest_rate() })
     };
-    let [full, trial] = [full, ballast].map(|mixture| drawn(draws, |number| sail(mixture, number)));
+    let [full, trial] = [full, ballast].map(|mixture| in_parallel(draws, |number| sail(mixture, number)));
     Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
 }
 
@@ -318,11 +318,11 @@ mod tests {
         for number in 0..30_u64 {
             let trial = record(&ballast, "zig-zag:20/20", 1000 + number, from_deg(0.1));
             let correction = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
-            let manoeuvre = crate::standard::steered(&kind, full.timescale()).expect("steered");
+            let manoeuvre = crate::standard::with_end(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
-            let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
-            (ship.yaw_rate, ship.gear) = (0.0, ballast.draw(1000 + number, &UncertaintySource::ALL).gear);
-            let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, full.timescale()).expect("sails");
+            let mut ship = full.sample_ship(2000 + number, &UncertaintySource::ALL);
+            (ship.yaw_rate, ship.gear) = (0.0, ballast.sample_ship(1000 + number, &UncertaintySource::ALL).gear);
+            let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, full.timescale()).expect("sails");
             let truth = crate::figures::characteristics(&kind, &passage, full.particulars());
             for name in names {
                 let Some(figure) = correction.figures.get(name) else { continue };

@@ -17,26 +17,26 @@ const MAX_TRIES: usize = 100;
 
 /// Hull from which ships are sampled.
 #[derive(Debug, Clone)]
-pub(crate) struct DrawableHull {
+pub(crate) struct HullSampler {
     pub stored: IdentifiedHull,
     form: HullForm,
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
     root: DMatrix<f64>,
     /// Hull of the trials, and the gain G on its coefficients.
-    from: Option<(Box<DrawableHull>, DMatrix<f64>)>,
+    from: Option<(Box<HullSampler>, DMatrix<f64>)>,
 }
 
 /// Checks a hull; fails for an unknown form, wrong coefficients, or a matrix that is not a covariance.
 pub fn check(hull: &IdentifiedHull) -> Result<(), PredictError> {
-    DrawableHull::new(hull).map(drop)
+    HullSampler::new(hull).map(drop)
 }
 
-impl DrawableHull {
+impl HullSampler {
     /// Prepares the sampling; fails as [`check`] does.
     pub fn new(stored: &IdentifiedHull) -> Result<Self, PredictError> {
         let form = stored.form()?;
-        let range = |key| Particular::named(key).expect("it is one").range;
+        let range = |key| Particular::find(key).expect("it is one").range;
         let [length, speed] = ["length-m", "speed-m-s"].map(range);
         for (key, value, [least, most]) in [
             ("length-m", stored.length_m, length),
@@ -59,29 +59,29 @@ impl DrawableHull {
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
         let hull = Self { stored: stored.clone(), form, coefficients, root, from: from.transpose()? };
-        hull.with(&stored.values()).ok_or_else(|| stored.refused())?;
+        hull.with_coefficients(&stored.values()).ok_or_else(|| stored.refused())?;
         Ok(hull)
     }
 
-    fn with(&self, values: &[f64]) -> Option<ScaledHull> {
-        let hull = self.form.with(values)?;
+    fn with_coefficients(&self, values: &[f64]) -> Option<ScaledHull> {
+        let hull = self.form.with_coefficients(values)?;
         let IdentifiedHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.stored;
         (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
     }
 
     /// Hull with the stored values.
     pub fn most_probable(&self) -> ScaledHull {
-        self.with(&self.stored.values()).expect("checked when it was made")
+        self.with_coefficients(&self.stored.values()).expect("checked when it was made")
     }
 
     /// Hull with these coefficients, or the most probable hull if they are not valid.
     pub fn made_of(&self, values: &[f64]) -> ScaledHull {
-        self.with(values).unwrap_or_else(|| self.most_probable())
+        self.with_coefficients(values).unwrap_or_else(|| self.most_probable())
     }
 
     /// Sample of the coefficients, by their covariance and within their ranges. At another loading `rng` samples the
     /// hull of the trials, which this hull follows, and `independent` the part that is independent of the trials.
-    pub fn drawn(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
+    pub fn sample(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
         let mean = DVector::from(self.stored.values());
         let values = match &self.from {
             None => self.values(rng, &mean),
@@ -101,7 +101,7 @@ impl DrawableHull {
         };
         let mut tries = (0..MAX_TRIES)
             .map(|_| mean + &self.root * DVector::from_fn(mean.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
-        let accepted = tries.find(|values| is_within(values) && self.with(values.as_slice()).is_some());
+        let accepted = tries.find(|values| is_within(values) && self.with_coefficients(values.as_slice()).is_some());
         accepted.unwrap_or_else(|| self.stored.values().into())
     }
 }
@@ -131,7 +131,7 @@ mod tests {
         stored.hulls[0].weight = 2.0;
         let mixture = testing::mixture(stored);
         let is_first = |number| {
-            let hull = mixture.draw(number, &[UncertaintySource::Structure]).hull.expect("a hull");
+            let hull = mixture.sample_ship(number, &[UncertaintySource::Structure]).hull.expect("a hull");
             hull == mixture.most_probable().hull.expect("a hull")
         };
         assert_eq!((0..1000).filter(|&number| is_first(number)).count(), 500);
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn one_number_is_one_draw() {
         let mixture = testing::mixture(ship());
-        let draw = |number| mixture.draw(number, &UncertaintySource::ALL).hull.expect("a hull");
+        let draw = |number| mixture.sample_ship(number, &UncertaintySource::ALL).hull.expect("a hull");
         assert_eq!(draw(7), draw(7));
         assert_ne!(draw(7), draw(8));
         assert_eq!(circle(&mixture, 20).figures, circle(&mixture, 20).figures);
@@ -171,7 +171,7 @@ mod tests {
         let of = |stored: &IdentifiedHull, state: [f64; 4]| {
             let mut rate = [0.0; 4];
             let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
-            DrawableHull::new(stored).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
+            HullSampler::new(stored).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
             rate
         };
         let time = ratio.sqrt();
@@ -194,7 +194,7 @@ mod tests {
             .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::identified_ship() }));
         let full = full.independent_of(&trial);
         let values = |ship: &ShipMixture, number| {
-            let hull = ship.draw(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
+            let hull = ship.sample_ship(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
             let ship::vessel::prime::CalmHull::Quadratic(values) = hull else { panic!("{hull:?}") };
             [0, 8].map(|place| (values[place] - one.coefficients[place].value) / one.covariance[place][place].sqrt())
         };
@@ -215,7 +215,7 @@ mod tests {
         let refused = |change: fn(&mut IdentifiedHull)| {
             let mut hull = testing::hull("mmg");
             change(&mut hull);
-            DrawableHull::new(&hull).expect_err("refused").to_string()
+            HullSampler::new(&hull).expect_err("refused").to_string()
         };
         assert!(refused(|hull| hull.form = "magic".into()).contains("magic"));
         assert!(refused(|hull| hull.coefficients[0].key = "magic".into()).contains("mmg"));

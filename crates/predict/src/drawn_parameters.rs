@@ -5,7 +5,7 @@ use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{DrawableStructure, DrawnShip, GOLDEN, ShipMixture, UncertaintySource, chosen};
+use crate::mixture::{GOLDEN, SampledShip, ShipMixture, StructureSampler, UncertaintySource, chosen};
 
 /// Structure and parameters of a sampled ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +30,8 @@ impl ShipMixture {
     /// manoeuvres.
     pub fn parameters(&self, number: u64) -> DrawnParameters {
         let part = self.chosen(number);
-        let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw(number, &UncertaintySource::ALL);
+        let SampledShip { response, coefficients, gear, yaw_rate, .. } =
+            self.sample_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
                 let form = hull.stored.form.clone();
@@ -71,7 +72,7 @@ pub struct DrawnEstimate {
 /// not a ship: it has no hull, no steering gear and no random moment.
 #[derive(Debug, Clone)]
 pub struct EstimateDraws {
-    structures: Vec<DrawableStructure>,
+    structures: Vec<StructureSampler>,
     seed: u64,
 }
 
@@ -79,7 +80,7 @@ impl EstimateDraws {
     /// Samples of an estimate with this seed; fails if the estimate is not valid.
     pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
         let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
-        let structures = estimate.members.iter().map(|member| DrawableStructure::new(member, member.weight / total, 0));
+        let structures = estimate.members.iter().map(|member| StructureSampler::new(member, member.weight / total, 0));
         let structures = structures.collect::<Result<Vec<_>, _>>()?;
         if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
     }
@@ -89,7 +90,7 @@ impl EstimateDraws {
         let share = (0.5 + number as f64 * GOLDEN).fract();
         let structure = chosen(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
-        let (name, parameters) = named(&structure.model, &structure.drawn(&mut rng));
+        let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));
         DrawnEstimate { structure: name, weight: structure.weight, parameters }
     }
 }
@@ -123,7 +124,7 @@ mod tests {
     #[test]
     fn a_drawn_ship_is_reported_as_it_is_steered() {
         let mixture = testing::mixture(testing::identified_ship());
-        let (drawn, ship) = (mixture.parameters(7), mixture.draw(7, &UncertaintySource::ALL));
+        let (drawn, ship) = (mixture.parameters(7), mixture.sample_ship(7, &UncertaintySource::ALL));
         let keys = drawn.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
         assert_eq!(keys[..3], ["inverse_T", "K_over_T", "rudder_bias"]);
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");

@@ -15,7 +15,7 @@ use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
 use crate::standard::EXECUTES;
 
 /// Figures of merit by name.
-pub type Figures = IndexMap<&'static str, Option<f64>>;
+pub type Characteristics = IndexMap<&'static str, Option<f64>>;
 
 pub(crate) const OVERSHOOTS: [&str; EXECUTES - 2] =
     ["first_overshoot_deg", "second_overshoot_deg", "third_overshoot_deg", "fourth_overshoot_deg"];
@@ -26,8 +26,12 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// Characteristics of a manoeuvre: overshoots, times, diameters; lengths in ship lengths if length and speed are known.
 ///
 /// For a model without speed the distance of the initial turning is V times the time.
-pub fn characteristics(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
-    let side = kind.side().sign();
+pub fn characteristics(
+    kind: &Manoeuvre,
+    passage: &SimulatedManoeuvre,
+    particulars: Option<Particulars>,
+) -> Characteristics {
+    let side = kind.first_side().sign();
     let last = passage.heading.last().copied();
     match *kind {
         Manoeuvre::ZigZag { heading, .. } => {
@@ -44,17 +48,17 @@ pub fn characteristics(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particula
             figures.extend(circle(passage, 0.0));
             figures
         }
-        Manoeuvre::PullOut { .. } => Figures::from([
+        Manoeuvre::PullOut { .. } => Characteristics::from([
             ("rate_before_deg_s", mean_rate(passage, passage.heading.len() / 2, side)),
             ("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)),
         ]),
         // The ship returns from the other side: the opposite course is at −180°.
-        Manoeuvre::Williamson { .. } => Figures::from([
+        Manoeuvre::Williamson { .. } => Characteristics::from([
             ("second_execute_s", passage.executes.get(1).map(|execute| execute.time)),
             ("third_execute_s", passage.executes.get(2).map(|execute| execute.time)),
             ("course_error_deg", last.map(|heading| to_deg(-side * heading - PI))),
         ]),
-        Manoeuvre::Spiral { .. } | Manoeuvre::Replay { .. } => Figures::default(),
+        Manoeuvre::Spiral { .. } | Manoeuvre::Replay { .. } => Characteristics::default(),
     }
 }
 
@@ -63,7 +67,7 @@ pub(crate) fn initial_turning(
     passage: &SimulatedManoeuvre,
     turning: Option<f64>,
     particulars: Option<Particulars>,
-) -> Figures {
+) -> Characteristics {
     let lengths = particulars.map(|Particulars { length, speed }| {
         turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length)
     });
@@ -72,13 +76,13 @@ pub(crate) fn initial_turning(
 }
 
 /// Characteristics of the track of a turn with the execute at `execute` s; none without a track.
-pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Figures {
-    let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Figures::default() };
+pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Characteristics {
+    let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Characteristics::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
     let measures = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
     let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
     let speed_loss = ("speed_loss_share", measures.speed_ratio.map(|ratio| 1.0 - ratio));
-    Figures::from([
+    Characteristics::from([
         ("advance_m", measures.advance),
         ("advance_lengths", lengths(measures.advance)),
         ("transfer_m", measures.transfer),
@@ -99,7 +103,7 @@ pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
 /// Overshoots, executes and period of a zig-zag.
 ///
 /// An overshoot is counted from the heading at its execute.
-fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Figures) {
+fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
     let executes = &passage.executes;
     for (number, name) in OVERSHOOTS.into_iter().enumerate() {
         let overshoot = || {
@@ -125,13 +129,13 @@ pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
 }
 
 /// Times and steady rate, over the last half turn, of a turn to one side (±1).
-pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64) -> Figures {
+pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64) -> Characteristics {
     let last = passage.heading.last().map_or(0.0, |heading| side * heading);
     let steady = || {
         let from = passage.reached(last - PI, side).filter(|_| last > 1.5 * PI)?;
         Some(to_deg(PI / (passage.reached(last, side)? - from)))
     };
-    Figures::from([
+    Characteristics::from([
         ("time_to_90_s", passage.reached(FRAC_PI_2, side)),
         ("time_to_180_s", passage.reached(PI, side)),
         ("steady_rate_deg_s", steady()),
@@ -151,10 +155,10 @@ mod tests {
     use ship::angle::from_deg;
     use simulate::{Disturbances, SteeringGear, StreamKey};
 
-    use crate::mixture::DrawnShip;
+    use crate::mixture::SampledShip;
 
     fn yukun(kind: &Manoeuvre) -> SimulatedManoeuvre {
-        let ship = DrawnShip {
+        let ship = SampledShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             hull: None,
             coefficients: Vec::new(),
@@ -163,11 +167,11 @@ mod tests {
             yaw_rate: 0.0,
             key: StreamKey::default(),
         };
-        SimulatedManoeuvre::sail(&ship, &crate::standard::steered(kind, 12.8).expect("steered"), 12.8)
+        SimulatedManoeuvre::simulate(&ship, &crate::standard::with_end(kind, 12.8).expect("steered"), 12.8)
             .expect("a manoeuvre")
     }
 
-    fn value(figures: &Figures, name: &str) -> f64 {
+    fn value(figures: &Characteristics, name: &str) -> f64 {
         figures.get(name).copied().flatten().unwrap_or(f64::NAN)
     }
 

@@ -15,7 +15,7 @@ pub use document::ImoFormEntry;
 use serde_json::Value;
 use ship::Particulars;
 use simulate::{Manoeuvre, Side};
-use trial::imo::Unit;
+use trial::imo::CriterionUnit;
 use trial::{Conditions, Loading};
 
 use crate::imo::{LIMITS, Limit};
@@ -47,7 +47,7 @@ pub struct Form {
 ///
 /// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
-    standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().to(Side::Port), kind]).collect()
+    standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().with_first_side(Side::Port), kind]).collect()
 }
 
 /// Declarations of a file, with the length of the ship, m.
@@ -146,7 +146,7 @@ pub fn fill<'a>(
                 section: limit.section.into(),
                 field: limit.field.into(),
                 side: Some(side.into()),
-                unit: if limit.unit == Unit::Degrees { "deg" } else { "ship lengths" }.into(),
+                unit: if limit.unit == CriterionUnit::Degrees { "deg" } else { "ship lengths" }.into(),
                 limit: (limit.value)(particulars),
                 ..from_record.unwrap_or_else(|| predicted(limit, side, predictions, particulars, models))
             });
@@ -214,7 +214,7 @@ fn predicted(
 ) -> ImoFormEntry {
     let missing = |why: &str| ImoFormEntry { source: why.into(), ..ImoFormEntry::default() };
     let kind: Manoeuvre = limit.manoeuvre.parse().expect("the name of a manoeuvre");
-    let kind = if side == "port" { kind.to(Side::Port) } else { kind };
+    let kind = if side == "port" { kind.with_first_side(Side::Port) } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
         return missing(match predictions {
             [] => "not measured; `study predict --form` predicts it",

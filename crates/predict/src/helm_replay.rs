@@ -6,9 +6,9 @@ use ship::angle::to_deg;
 use simulate::Manoeuvre;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
-use crate::figures::{self, EXECUTE_TIMES, Figures, OVERSHOOTS};
+use crate::figures::{self, Characteristics, EXECUTE_TIMES, OVERSHOOTS};
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::drawn;
+use crate::prediction::in_parallel;
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::standard::{self, EXECUTES};
 
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 0.05;
 /// Result of one sampled ship.
 pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
-    pub figures: Figures,
+    pub figures: Characteristics,
     /// Maximum |yaw rate|, rad/s.
     pub largest_rate: f64,
 }
@@ -63,24 +63,24 @@ impl SteeredZigZag {
             }
             None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
         };
-        let kind = Manoeuvre::zig_zag(rudder, heading).to(side);
+        let kind = Manoeuvre::zig_zag(rudder, heading).with_first_side(side);
         let turned = measured.pair.map_or(heading, |pair| pair.heading);
         Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// Results of sampled ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
-        let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
+        let manoeuvre = standard::with_end(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         // The record gives the yaw rate of the approach.
         let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
         let sources: Vec<UncertaintySource> = UncertaintySource::ALL.into_iter().filter(is_drawn).collect();
-        drawn(draws, |number| {
-            let mut ship = mixture.draw(number, &sources);
+        in_parallel(draws, |number| {
+            let mut ship = mixture.sample_ship(number, &sources);
             ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
-            let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
+            let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let mut figures = figures::characteristics(&self.kind, &passage, mixture.particulars());
-            let turned = passage.reached(self.turned, self.kind.side().sign());
+            let turned = passage.reached(self.turned, self.kind.first_side().sign());
             let shown = passage.executes.get(..self.executes).unwrap_or(&passage.executes);
             figures.insert("period_s", figures::period(shown));
             figures.extend(figures::initial_turning(&passage, turned, mixture.particulars()));

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::angle::{DEGREE, to_deg};
 use simulate::Manoeuvre;
-use trial::imo::{self, Unit};
+use trial::imo::{self, CriterionUnit};
 
 use crate::interval::PredictionInterval;
 use crate::prediction::Prediction;
@@ -33,9 +33,9 @@ pub struct PredictedCriterion {
 /// Manoeuvre of the criteria and of the form of MSC/Circ.1053, at a positive rudder.
 pub(crate) type FormManoeuvre = &'static str;
 
-pub(crate) const TEN: FormManoeuvre = "zig-zag 10/10";
-pub(crate) const TWENTY: FormManoeuvre = "zig-zag 20/20";
-pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
+pub(crate) const ZIG_ZAG_10_10: FormManoeuvre = "zig-zag 10/10";
+pub(crate) const ZIG_ZAG_20_20: FormManoeuvre = "zig-zag 20/20";
+pub(crate) const TURNING_CIRCLE_35: FormManoeuvre = "turning-circle 35";
 
 /// Rudder of that circle and its tolerance, rad. The resolution also allows the maximum rudder angle, which no model
 /// gives.
@@ -51,7 +51,7 @@ pub(crate) struct Limit {
     /// Manoeuvre and figure of merit.
     pub manoeuvre: FormManoeuvre,
     pub figure: &'static str,
-    pub unit: Unit,
+    pub unit: CriterionUnit,
     /// Maximum value; `None` if it depends on an unknown L/V.
     pub value: fn(Option<Particulars>) -> Option<f64>,
 }
@@ -60,9 +60,9 @@ const IN_CIRCLE: Limit = Limit {
     name: "advance",
     section: "turning circle, rudder 35°",
     field: "advance",
-    manoeuvre: CIRCLE,
+    manoeuvre: TURNING_CIRCLE_35,
     figure: "advance_lengths",
-    unit: Unit::ShipLengths,
+    unit: CriterionUnit::ShipLengths,
     value: |_| Some(imo::MAX_ADVANCE_LENGTHS),
 };
 
@@ -70,9 +70,9 @@ const IN_TEN: Limit = Limit {
     name: "10/10 first overshoot",
     section: "zig-zag 10°/10°",
     field: "1st overshoot angle",
-    manoeuvre: TEN,
+    manoeuvre: ZIG_ZAG_10_10,
     figure: "first_overshoot_deg",
-    unit: Unit::Degrees,
+    unit: CriterionUnit::Degrees,
     value: |scale| scale.map(imo::first_overshoot_10_10_limit_deg),
 };
 
@@ -83,7 +83,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
         section: "initial turning",
         field: "distance to turn 10° with 10° rudder",
         figure: "initial_turning_lengths",
-        unit: Unit::ShipLengths,
+        unit: CriterionUnit::ShipLengths,
         value: |_| Some(imo::MAX_INITIAL_TURNING_LENGTHS),
         ..IN_TEN
     },
@@ -98,7 +98,7 @@ pub(crate) const LIMITS: [Limit; 6] = [
     Limit {
         name: "20/20 first overshoot",
         section: "zig-zag 20°/20°",
-        manoeuvre: TWENTY,
+        manoeuvre: ZIG_ZAG_20_20,
         value: |_| Some(imo::MAX_FIRST_OVERSHOOT_20_20_DEG),
         ..IN_TEN
     },
@@ -120,10 +120,10 @@ impl Limit {
         let is_pair =
             |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
-            CIRCLE => {
+            TURNING_CIRCLE_35 => {
                 matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= TOLERANCE)
             }
-            TWENTY => is_pair(20.0),
+            ZIG_ZAG_20_20 => is_pair(20.0),
             _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),
         }
     }

@@ -12,7 +12,7 @@ use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Wind};
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
-use crate::drawable_hull::DrawableHull;
+use crate::drawable_hull::HullSampler;
 use crate::error::PredictError;
 use crate::root::root_of;
 
@@ -56,7 +56,7 @@ const WHITE_CORRELATION_TIME: f64 = 0.05;
 
 /// Structure with the square root of its covariance; for a file with hulls, a hull with the most probable structure.
 #[derive(Debug, Clone)]
-pub(crate) struct DrawableStructure {
+pub(crate) struct StructureSampler {
     /// Probability among all structures.
     pub weight: f64,
     pub model: ResponseModel,
@@ -65,7 +65,7 @@ pub(crate) struct DrawableStructure {
     /// Indices of dead times among the parameters.
     dead_times: Vec<usize>,
     /// Hull that replaces the structure.
-    pub hull: Option<DrawableHull>,
+    pub hull: Option<HullSampler>,
     /// Index of the file.
     pub file: usize,
 }
@@ -73,7 +73,7 @@ pub(crate) struct DrawableStructure {
 /// Mixture of the models of a ship from one or several files.
 #[derive(Debug, Clone)]
 pub struct ShipMixture {
-    parts: Vec<DrawableStructure>,
+    parts: Vec<StructureSampler>,
     files: Vec<IdentifiedShip>,
     /// Probabilities of the files.
     shares: Vec<f64>,
@@ -88,7 +88,7 @@ pub struct ShipMixture {
 
 /// Ship for one trial.
 #[derive(Debug, Clone)]
-pub struct DrawnShip {
+pub struct SampledShip {
     /// Yaw response.
     pub response: Response,
     /// Hull, if one was fitted; it replaces the response.
@@ -114,7 +114,7 @@ impl ShipMixture {
         for (file, ((stored, _), share)) in files.iter().zip(&shares).enumerate() {
             let of_structures: f64 = stored.members.iter().map(|member| member.weight).sum();
             let structures = stored.members.iter().map(|member| {
-                DrawableStructure::new(member, share * member.weight / of_structures, file)?.sailing(stored)
+                StructureSampler::new(member, share * member.weight / of_structures, file)?.sailing(stored)
             });
             let structures = structures.collect::<Result<Vec<_>, PredictError>>()?;
             if stored.hulls.is_empty() {
@@ -124,8 +124,8 @@ impl ShipMixture {
             let beside = likeliest(structures.iter()).ok_or(PredictError::Empty)?;
             let of_hulls: f64 = stored.hulls.iter().map(|hull| hull.weight).sum();
             for fit in &stored.hulls {
-                let (hull, weight) = (DrawableHull::new(fit)?, checked(share * fit.weight / of_hulls, fit.weight)?);
-                parts.push(DrawableStructure { hull: Some(hull), weight, ..beside.clone() });
+                let (hull, weight) = (HullSampler::new(fit)?, checked(share * fit.weight / of_hulls, fit.weight)?);
+                parts.push(StructureSampler { hull: Some(hull), weight, ..beside.clone() });
             }
         }
         let timescale = files.first().and_then(|(stored, _)| stored.timescale()).ok_or(PredictError::Empty)?;
@@ -160,19 +160,19 @@ impl ShipMixture {
     }
 
     /// Most probable ship of the most probable file, without disturbances.
-    pub fn most_probable(&self) -> DrawnShip {
-        self.draw(0, &[])
+    pub fn most_probable(&self) -> SampledShip {
+        self.sample_ship(0, &[])
     }
 
     /// Ship number `number`, sampled from the given sources of uncertainty and otherwise the most probable ship.
-    pub fn draw(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
+    pub fn sample_ship(&self, number: u64, sources: &[UncertaintySource]) -> SampledShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.chosen(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
-            true => part.drawn(&mut rng),
+            true => part.sample(&mut rng),
             false => part.stored.parameters.clone(),
         };
         // A negative dead time is an error of the clock; a ship does not respond before its rudder moves.
@@ -188,7 +188,7 @@ impl ShipMixture {
         let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
-            true => hull.drawn(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
+            true => hull.sample(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
             false => hull.stored.values(),
         });
         let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.made_of(values));
@@ -197,8 +197,8 @@ impl ShipMixture {
         let error = random_part(UncertaintySource::ProcessNoise, of_beginning * of_hull);
         let is_random = has(UncertaintySource::ProcessNoise);
         let moment = if is_random { part.moment(stored) } else { RandomMoment::None };
-        DrawnShip {
-            response: part.model.clone().with(values),
+        SampledShip {
+            response: part.model.clone().with_parameters(values),
             hull,
             coefficients: coefficients.unwrap_or_default(),
             gear,
@@ -227,14 +227,14 @@ impl ShipMixture {
 
     /// Most probable structure of the most probable file, the first of equals; several hulls do not lower the rank of a
     /// file.
-    fn likeliest(&self) -> &DrawableStructure {
+    fn likeliest(&self) -> &StructureSampler {
         let file = (0..self.files.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
     /// Structure of a sample: for any number of samples the shares follow the probabilities (golden ratio). Samples of
     /// an independent mixture follow √2, which is incommensurable with it.
-    pub(crate) fn chosen(&self, number: u64) -> &DrawableStructure {
+    pub(crate) fn chosen(&self, number: u64) -> &StructureSampler {
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         chosen(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
@@ -244,7 +244,7 @@ impl ShipMixture {
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
-pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&DrawableStructure> {
+pub(crate) fn chosen(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {
     parts.iter().find(|part| {
         share -= part.weight;
         share < 0.0
@@ -252,7 +252,7 @@ pub(crate) fn chosen(parts: &[DrawableStructure], mut share: f64) -> Option<&Dra
 }
 
 /// Most probable structure, the first of equals.
-fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a DrawableStructure>) -> Option<&'a DrawableStructure> {
+fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a StructureSampler>) -> Option<&'a StructureSampler> {
     parts.rev().max_by(|a, b| a.weight.total_cmp(&b.weight))
 }
 
@@ -262,7 +262,7 @@ fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
     if is_weight { Ok(weight) } else { Err(IdentifiedShipError::Value { key: "weight", value: stored }.into()) }
 }
 
-impl DrawableStructure {
+impl StructureSampler {
     pub(crate) fn new(stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
         let (weight, model) = (checked(weight, stored.weight)?, stored.model()?);
         let (root, dead_times) = (root_of(&stored.covariance)?, stored.dead_times(&model));
@@ -293,7 +293,7 @@ impl DrawableStructure {
     }
 
     /// Sample of the parameters, by their covariance and within the ranges of the effects: normal, or Student's t.
-    pub(crate) fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
+    pub(crate) fn sample(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: stored, fitted, degrees_of_freedom, .. } = &self.stored;
         let mut values = stored.clone();
         if self.root.is_empty() {
@@ -332,7 +332,7 @@ mod tests {
         let stored = &mixture.first().members[0];
         let count = 4000;
         let draws: Vec<Vec<f64>> = (0..count)
-            .map(|k| mixture.draw(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
+            .map(|k| mixture.sample_ship(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
             .collect();
         let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
         for (row, &first) in stored.fitted.iter().enumerate() {
@@ -357,10 +357,10 @@ mod tests {
         (simple.weight, stored.members[0].weight) = (0.2, 0.6);
         stored.members.push(simple);
         let mixture = ShipMixture::new(vec![(stored, 2.0)]).expect("made up");
-        let is_simple = |k| mixture.draw(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
+        let is_simple = |k| mixture.sample_ship(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
-        assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
+        assert!((0..100).all(|k| mixture.sample_ship(k, &[]).response.parameters().len() == 4));
     }
 
     /// Of two equally probable files the first is chosen, although its two hulls share the weight.
@@ -384,7 +384,7 @@ mod tests {
         let stored = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::identified_ship() };
         let of = |stored: IdentifiedShip, sources: &[UncertaintySource]| {
             let mixture = testing::mixture(stored);
-            let squares = (0..1000).map(|number| mixture.draw(number, sources).yaw_rate.powi(2));
+            let squares = (0..1000).map(|number| mixture.sample_ship(number, sources).yaw_rate.powi(2));
             (squares.sum::<f64>() / 1000.0).sqrt()
         };
         let found = of(stored.clone(), &UncertaintySource::ALL);
@@ -416,7 +416,7 @@ mod tests {
     #[test]
     fn one_number_is_one_ship() {
         let mixture = testing::mixture(testing::identified_ship());
-        let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &UncertaintySource::ALL));
+        let [one, again, other] = [7, 7, 8].map(|k| mixture.sample_ship(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
         assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);

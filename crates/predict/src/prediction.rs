@@ -12,11 +12,11 @@ use simulate::Manoeuvre;
 use trial::manoeuvre::{deserialize_text, serialize_text};
 
 use crate::error::PredictError;
-use crate::figures::{self, Figures};
+use crate::figures::{self, Characteristics};
 use crate::interval::{PredictionInterval, band};
 use crate::median_track::{Turn, median_track};
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::simulated_manoeuvre::{SimulatedManoeuvre, period};
+use crate::simulated_manoeuvre::{SimulatedManoeuvre, row_interval};
 use crate::steady::SteadyCurve;
 
 /// Number of samples, relative to the number for a single source.
@@ -135,13 +135,17 @@ impl Prediction {
 const TRACKS: u64 = 40;
 
 /// Error for a manoeuvre that too few sampled ships complete.
-pub(crate) fn lost(what: impl ToString, made: usize, draws: usize) -> PredictError {
+pub(crate) fn too_few_error(what: impl ToString, made: usize, draws: usize) -> PredictError {
     PredictError::Lost { kind: what.to_string(), made, draws }
 }
 
 /// Fails if less than half of the sampled ships complete a manoeuvre.
-pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
-    if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 { Err(lost(what, made, draws)) } else { Ok(()) }
+pub(crate) fn check_completed(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
+    if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 {
+        Err(too_few_error(what, made, draws))
+    } else {
+        Ok(())
+    }
 }
 
 impl ShipMixture {
@@ -154,11 +158,12 @@ impl ShipMixture {
     ///
     /// Fails if less than half of the sampled ships complete the manoeuvre.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
+        let Some(manoeuvre) = crate::standard::with_end(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
         };
         let sail = |number: u64, sources: &[UncertaintySource]| {
-            let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
+            let passage =
+                SimulatedManoeuvre::simulate(&self.sample_ship(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::characteristics(kind, &passage, self.particulars()), passage))
         };
         let is_circle = matches!(kind, Manoeuvre::TurningCircle { .. });
@@ -168,23 +173,23 @@ impl ShipMixture {
             heading: passage.heading,
             is_shown: number < TRACKS,
         };
-        let all = drawn(draws, |number| {
+        let all = in_parallel(draws, |number| {
             let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
             Some((figures, series(number, passage)))
         });
-        let (values, made): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
+        let (values, made): (Vec<Option<Characteristics>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
         let made: Vec<DrawnSeries> = made.into_iter().flatten().collect();
-        enough(kind, made.len(), draws)?;
+        check_completed(kind, made.len(), draws)?;
         let lost = draws - made.len();
-        let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|series| series.largest_rate));
+        let extrapolated = self.is_extrapolated(kind.max_rudder(), made.iter().map(|series| series.largest_rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let headings: Vec<&[f64]> = made.iter().map(|series| series.heading.as_slice()).collect();
         let turns: Vec<Turn> = made.iter().filter(|_| is_circle).filter_map(DrawnSeries::turn).collect();
         let curves = ManoeuvreCurves {
-            heading: bands(&headings, most_probable.as_ref(), period(self.timescale())),
+            heading: bands(&headings, most_probable.as_ref(), row_interval(self.timescale())),
             most_probable,
-            median_track: median_track(&turns, kind.side().sign()),
+            median_track: median_track(&turns, kind.first_side().sign()),
             tracks: made.into_iter().filter(|series| series.is_shown).filter_map(|series| series.track).collect(),
             steady: Vec::new(),
         };
@@ -201,22 +206,24 @@ impl ShipMixture {
     /// Prediction of the steady turns of a spiral, without disturbances.
     fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
-            SteadyCurve::of(&self.draw(number, sources), kind.rudder(), self.timescale())
+            SteadyCurve::of(&self.sample_ship(number, sources), kind.max_rudder(), self.timescale())
         };
-        let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
-        let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder()))).collect();
+        let all: Vec<SteadyCurve> = in_parallel(draws, |number| curve(number, &UncertaintySource::ALL));
+        let values: Vec<Option<Characteristics>> =
+            all.iter().map(|curve| Some(curve.figures(kind.max_rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
-        let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder()));
-        let figures = predicted(&values, self.is_unseen(kind.rudder(), std::iter::once(largest)), sources, alone);
+        let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.max_rudder()));
+        let figures =
+            predicted(&values, self.is_extrapolated(kind.max_rudder(), std::iter::once(largest)), sources, alone);
         let steady = std::iter::once(most_probable).chain(all).collect();
         let curves = ManoeuvreCurves { steady, ..ManoeuvreCurves::default() };
         Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
     }
 
     /// `true` if a rudder (rad) or the median of the maximum yaw rates (rad/s) is beyond the range of the records.
-    pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
+    pub(crate) fn is_extrapolated(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let end =
             |value: fn(&ValidityRange) -> f64| self.files().iter().map(|ship| value(&ship.seen)).fold(0.0, f64::max);
@@ -225,26 +232,27 @@ impl ShipMixture {
 }
 
 /// Results of `draws` samples, computed in parallel, in the order of their numbers.
-pub(crate) fn drawn<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+pub(crate) fn in_parallel<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
 /// Figures of merit of the samples, with the shares of single sources.
 fn predicted(
-    draws: &[Option<Figures>],
+    draws: &[Option<Characteristics>],
     extrapolated: bool,
     sources: &[UncertaintySource],
-    draw: impl Fn(u64, &[UncertaintySource]) -> Option<Figures> + Sync + Send,
+    draw: impl Fn(u64, &[UncertaintySource]) -> Option<Characteristics> + Sync + Send,
 ) -> IndexMap<String, Predicted> {
-    let alone = |source: &UncertaintySource| drawn(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
+    let alone =
+        |source: &UncertaintySource| in_parallel(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
-        let value = |draw: &Option<Figures>| draw.as_ref().and_then(|figures| *figures.get(name)?);
+        let value = |draw: &Option<Characteristics>| draw.as_ref().and_then(|figures| *figures.get(name)?);
         let of_draws: Vec<Option<f64>> = draws.iter().map(value).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;
         let interval = PredictionInterval::of(&mut values)?;
-        let spread = |few: &[Option<Figures>]| {
+        let spread = |few: &[Option<Characteristics>]| {
             let interval = PredictionInterval::of(&mut few.iter().filter_map(value).collect::<Vec<f64>>());
             interval.map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
         };

@@ -13,12 +13,12 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::{self, Figures};
+use crate::figures::{self, Characteristics};
 use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{Bands, drawn, enough, lost};
+use crate::prediction::{Bands, check_completed, in_parallel, too_few_error};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
@@ -118,15 +118,15 @@ impl ShipMixture {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let ships = self.in_wind_of(trial);
-        let Some([first, rate]) = ships.beginning(trial)? else { return Ok(None) };
+        let Some([first, rate]) = ships.initial_motion(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
-            let mut ship = ships.draw(number, sources);
+            let mut ship = ships.sample_ship(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let noise_factor = if sources.is_empty() { 0.0 } else { 1.0 };
             ship.yaw_rate = rate.0 + noise_factor * rate.1 * of_rate;
-            let mut passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, self.timescale()).ok()?;
-            passage.turn_about(first.0 + noise_factor * first.1 * of_heading);
+            let mut passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, self.timescale()).ok()?;
+            passage.rotate_course(first.0 + noise_factor * first.1 * of_heading);
             Some((passage, rng))
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
@@ -142,9 +142,9 @@ impl ShipMixture {
             Some((passage, headings))
         };
         let (made, headings): (Vec<SimulatedManoeuvre>, Vec<Vec<f64>>) =
-            drawn(draws, of_draw).into_iter().flatten().unzip();
-        enough(trial.name(), made.len(), draws)?;
-        let (most_probable, _) = sail(0, &[]).ok_or_else(|| lost(trial.name(), made.len(), draws))?;
+            in_parallel(draws, of_draw).into_iter().flatten().unzip();
+        check_completed(trial.name(), made.len(), draws)?;
+        let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
         let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>()));
         let heading = Bands { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
@@ -188,8 +188,8 @@ impl ShipMixture {
             return Ok(ByName::new());
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
-        let drawn: Vec<Figures> = drawn.map(|result| result.figures).collect();
-        enough(&steered.kind, drawn.len(), draws)?;
+        let drawn: Vec<Characteristics> = drawn.map(|result| result.figures).collect();
+        check_completed(&steered.kind, drawn.len(), draws)?;
         Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
     }
 
@@ -205,10 +205,10 @@ impl ShipMixture {
     /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, from this ship: a straight line
     /// through the differences between the first readings and the replay from zero heading and yaw rate. `None` if the
     /// record has too few headings at its beginning.
-    pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
+    pub(crate) fn initial_motion(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
-        let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale());
-        let at_rest = at_rest.map_err(|_| lost(trial.name(), 0, 1))?;
+        let at_rest = SimulatedManoeuvre::simulate(&self.most_probable(), &manoeuvre, self.timescale());
+        let at_rest = at_rest.map_err(|_| too_few_error(trial.name(), 0, 1))?;
         let read = |row: usize| {
             let time = trial.time()[row] - trial.time()[0];
             (time, trial.heading()[row] - at_rest.at(&at_rest.heading, time))
@@ -224,7 +224,7 @@ impl ShipMixture {
 type ByName = IndexMap<String, Compared>;
 
 /// Comparison of measured characteristics with their draws, each draw with the error of the measured characteristic.
-fn compared(drawn: &[Figures], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
+fn compared(drawn: &[Characteristics], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
     let figure = |(number, &name): (usize, &&'static str)| {
         let Quantity { value: measured, sd, .. } = shown(name)?;
         let mut rng = StreamKey::default().indexed(Purpose::Heading, 1 + number as u32);
@@ -252,9 +252,9 @@ fn turns(
     let measured = turn.figures(&record);
     let drawn_figures = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
         None => turn.figures(passage),
-        Some(current) => turn.figures(&turn::in_doubt(passage, &current, number as u64)),
+        Some(current) => turn.figures(&turn::with_current_error(passage, &current, number as u64)),
     };
-    let drawn: Vec<Figures> = made.iter().enumerate().map(drawn_figures).collect();
+    let drawn: Vec<Characteristics> = made.iter().enumerate().map(drawn_figures).collect();
     let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare));
     (figures, TurnTracks::of(&turn, &record, most_probable, made))
 }
@@ -320,7 +320,8 @@ mod tests {
         let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
         let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
         let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
-        let of = |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw(1, &UncertaintySource::ALL);
+        let of =
+            |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).sample_ship(1, &UncertaintySource::ALL);
         let met = of(known.clone()).disturbances.wind.expect("a wind");
         assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
         assert_eq!(of(testing::identified_ship()).disturbances.wind, None);

@@ -11,7 +11,7 @@ use simulate::vessel::Solver;
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
 use trial::{Channel, Trial};
 
-use crate::mixture::DrawnShip;
+use crate::mixture::SampledShip;
 
 /// Rows per timescale of the ship.
 const ROWS_PER_TIMESCALE: f64 = 20.0;
@@ -60,13 +60,13 @@ impl PlanarMotion {
         let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
         let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
         let velocity: Vec<[f64; 2]> = speed.iter().zip(sway).map(surge).collect();
-        let track = motion::track(trial.time(), heading, &velocity);
+        let track = motion::dead_reckoning(trial.time(), heading, &velocity);
         Some(Self { length, velocity, track })
     }
 }
 
 /// Time between rows, s.
-pub(crate) fn period(timescale: f64) -> f64 {
+pub(crate) fn row_interval(timescale: f64) -> f64 {
     (timescale / ROWS_PER_TIMESCALE).clamp(2e-3, 900.0)
 }
 
@@ -76,7 +76,7 @@ const MAX_CELL_S: f64 = 60.0;
 const MAX_CORRELATION_SHARE: f64 = 0.5;
 
 /// Simulated vessel of a sampled ship.
-fn vessel(ship: &DrawnShip) -> Vessel {
+fn vessel(ship: &SampledShip) -> Vessel {
     match &ship.hull {
         Some(hull) => Vessel::from_dynamics(Arc::new(hull.clone()))
             .with_particulars(Particulars { length: hull.length, speed: hull.speed }),
@@ -111,7 +111,7 @@ impl SimulatedManoeuvre {
     ///
     /// Fails if the ship does not reach a heading that the helm waits for, turns without end, or exceeds the speeds for
     /// which the equations of a hull are valid.
-    pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
+    pub fn simulate(ship: &SampledShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
             simulation.gear = ship.gear;
@@ -120,13 +120,13 @@ impl SimulatedManoeuvre {
         simulation.disturbances = ship.disturbances;
         // As fine as the rows, because a ship does not respond to faster changes.
         let correlation = ship.disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
-        simulation.weather_grid = period(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
+        simulation.weather_grid = row_interval(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
             None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),
         };
         if let Some(shortest) = shortest {
-            let step = (shortest / STEPS_PER_TIME_CONSTANT).min(period(timescale));
+            let step = (shortest / STEPS_PER_TIME_CONSTANT).min(row_interval(timescale));
             simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
         let passage = Self::of(simulation, &ship.key, timescale)?;
@@ -150,7 +150,7 @@ impl SimulatedManoeuvre {
     ///
     /// Fails as the simulation does.
     pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
-        simulation.recording = Recording::every(period(timescale));
+        simulation.recording = Recording::every(row_interval(timescale));
         simulation.longest_wait = MAX_WAIT_TIMESCALES * timescale;
         let Simulated { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
@@ -160,7 +160,7 @@ impl SimulatedManoeuvre {
     }
 
     /// Rotates the motion to another course: headings increase by `angle` (rad).
-    pub fn turn_about(&mut self, angle: f64) {
+    pub fn rotate_course(&mut self, angle: f64) {
         self.heading.iter_mut().for_each(|heading| *heading += angle);
         let (sin, cos) = angle.sin_cos();
         for place in self.way.iter_mut().flat_map(|way| &mut way.track) {

@@ -23,7 +23,7 @@ pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
 }
 
 /// Manoeuvre with its end, for a ship with this timescale, s; `None` for a spiral, which is a curve of steady turns.
-pub fn steered(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
+pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {
         Manoeuvre::ZigZag { executes, .. } => *executes = Some(EXECUTES),

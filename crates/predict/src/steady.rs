@@ -4,8 +4,8 @@
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
-use crate::figures::Figures;
-use crate::mixture::DrawnShip;
+use crate::figures::Characteristics;
+use crate::mixture::SampledShip;
 
 /// Number of points to either side of a straight course.
 const POINTS: usize = 24;
@@ -24,7 +24,7 @@ pub struct SteadyCurve {
 
 /// Instability loop: the part of a steady curve over which the ship is unstable.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loop {
+pub struct InstabilityLoop {
     /// Difference of the rudder angles at the ends of the loop, rad.
     pub width: f64,
     /// Difference of the yaw rates of the outer branches at the rudder in the middle of the loop, rad/s.
@@ -34,7 +34,7 @@ pub struct Loop {
 impl SteadyCurve {
     /// Curve of a ship up to `largest` rad of rudder to either side; `timescale` is the timescale of the ship, s. Rates
     /// without a rudder are left out.
-    pub fn of(ship: &DrawnShip, largest: f64, timescale: f64) -> Self {
+    pub fn of(ship: &SampledShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),
@@ -88,21 +88,21 @@ impl SteadyCurve {
     }
 
     /// Loop of a course-unstable ship; `None` for a stable ship.
-    pub fn instability(&self) -> Option<Loop> {
+    pub fn instability(&self) -> Option<InstabilityLoop> {
         let falls = |pair: &[f64]| pair[1] < pair[0];
         let from = self.rudder.windows(2).position(falls)?;
         let until = self.rudder.windows(2).rposition(falls)? + 1;
         let (high, low) = (self.rudder[from], self.rudder[until]);
         let mut rates = self.rates_at(0.5 * (high + low));
         let first = rates.next()?;
-        Some(Loop { width: high - low, height: rates.next_back().unwrap_or(first) - first })
+        Some(InstabilityLoop { width: high - low, height: rates.next_back().unwrap_or(first) - first })
     }
 
     /// Characteristics of a spiral up to this rudder, rad.
-    pub(crate) fn figures(&self, rudder: f64) -> Figures {
+    pub(crate) fn figures(&self, rudder: f64) -> Characteristics {
         let instability = self.instability();
-        let of_loop = |value: fn(Loop) -> f64| Some(to_deg(instability.map_or(0.0, value)));
-        Figures::from([
+        let of_loop = |value: fn(InstabilityLoop) -> f64| Some(to_deg(instability.map_or(0.0, value)));
+        Characteristics::from([
             ("rate_starboard_deg_s", self.outer(rudder).map(to_deg)),
             ("rate_port_deg_s", self.outer(-rudder).map(to_deg)),
             ("loop_width_deg", of_loop(|unstable| unstable.width)),
@@ -120,7 +120,7 @@ mod tests {
 
     fn curve(inverse_time: f64) -> SteadyCurve {
         let model = ResponseModel::new(vec![listed("nonlinear_damping", "r³")]);
-        let ship = model.with(vec![inverse_time, 6e-3, 0.0, 300.0]);
+        let ship = model.with_parameters(vec![inverse_time, 6e-3, 0.0, 300.0]);
         SteadyCurve::of_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
     }
 

@@ -8,7 +8,7 @@ pub use simulate::motion::Current;
 use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial, ZigZag};
 
-use crate::figures::{self, Figures};
+use crate::figures::{self, Characteristics};
 use crate::median_track::{Turn, median_track};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
@@ -49,7 +49,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
 }
 
 /// Motion of a sampled ship with a random error of the removed current, from the first row on.
-pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
+pub(crate) fn with_current_error(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
@@ -117,12 +117,12 @@ impl HeldTurn {
     }
 
     /// Characteristics of a turn up to the end of the recorded turn.
-    pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+    pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Characteristics {
         self.whole_figures(&passage.until(self.until - self.start))
     }
 
     /// Characteristics of a turn up to its end; the clock starts with the record.
-    pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Figures {
+    pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Characteristics {
         let first = self.first_row(passage);
         let begin = passage.at(&passage.heading, self.approach());
         let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
@@ -163,7 +163,7 @@ pub struct MeasuredCircle {
     /// Held rudder.
     pub turn: HeldTurn,
     /// Figures of merit.
-    pub figures: Figures,
+    pub figures: Characteristics,
     /// North and east in ship lengths from the execute on, where the course is north; `None` without positions or
     /// length.
     pub track: Option<Vec<[f64; 2]>>,
@@ -224,7 +224,7 @@ impl TurnTracks {
 /// Record resampled to the rows of a simulation with this timescale, s; with velocity and track if it has positions and
 /// a length, m. `None` without headings.
 pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
-    let period = simulated_manoeuvre::period(timescale);
+    let period = simulated_manoeuvre::row_interval(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
         let read =

@@ -102,7 +102,7 @@ impl PyRecord {
         let channel = Channel::ALL.into_iter().find(|channel| channel.column_name() == name);
         match channel {
             Some(channel) => {
-                let factor = channel.written_unit().to_si();
+                let factor = channel.written_unit().si_factor();
                 let values = self.trial.channel(channel)?.iter().map(|value| value / factor);
                 Some(PyArray1::from_vec(py, values.collect()))
             }

@@ -7,7 +7,7 @@ use estimation::number::Real;
 
 /// Measured channels other than heading and rudder at one instant; `None` for a channel that is not in the record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Measured {
+pub struct MeasuredChannels {
     /// Speed through the water, m/s.
     pub speed: Option<f64>,
     /// Sway velocity to starboard, m/s.
@@ -20,7 +20,7 @@ pub struct Measured {
     pub propeller: Option<f64>,
 }
 
-impl Measured {
+impl MeasuredChannels {
     /// `true` if a channel was measured.
     pub fn has(&self, channel: Regressor) -> bool {
         match channel {
@@ -32,7 +32,7 @@ impl Measured {
     }
 }
 
-/// Kind of a channel of [`Measured`], a possible regressor of an effect.
+/// Kind of a channel of [`MeasuredChannels`], a possible regressor of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regressor {
     /// Speed through the water.
@@ -65,7 +65,7 @@ pub struct Input<R = f64> {
     /// Yaw disturbance as equivalent rudder angle (same yaw moment at approach speed), rad.
     pub disturbance: f64,
     /// Measured channels that effects may use as regressors.
-    pub measured: Measured,
+    pub measured: MeasuredChannels,
 }
 
 /// Motion of a ship at one instant.
@@ -103,7 +103,7 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Update of memory that follows no differential equation (backlash), once at the end of every step.
     ///
     /// The rudder is monotone between two calls: a step ends at every corner of the rudder signal.
-    fn settle(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
+    fn update_memory(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
 
     /// Motion in a state.
     fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;

@@ -24,7 +24,7 @@ impl<R: Real> RungeKutta4<R> {
 
     /// Advances `state` from `t` by `h` seconds; `input` returns the input at a time within the step.
     ///
-    /// [`Dynamics::settle`] is not called, so that a trial step changes no memory.
+    /// [`Dynamics::update_memory`] is not called, so that a trial step changes no memory.
     pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], mut input: F)
     where
         D: Dynamics<R> + ?Sized,

@@ -37,7 +37,7 @@ pub mod short_number;
 pub mod signal;
 pub mod vessel;
 
-pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
+pub use dynamics::{Dynamics, Input, MeasuredChannels, Motion, Regressor};
 pub use effects::EffectReal;
 pub use estimation::number::Real;
 pub use first_order::FirstOrder;

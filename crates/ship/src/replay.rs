@@ -1,7 +1,7 @@
 //! Replay of a recorded rudder through any [`Dynamics`]: deterministic simulation without helmsman, sensors or noise,
 //! for use in identification.
 
-use crate::dynamics::{Dynamics, Input, Measured, Motion};
+use crate::dynamics::{Dynamics, Input, MeasuredChannels, Motion};
 use crate::integrate::RungeKutta4;
 use crate::signal::Polyline;
 use estimation::number::Real;
@@ -36,9 +36,9 @@ impl<'a> RecordedSignals<'a> {
         Input { rudder, disturbance: 0.0, measured: self.measured(t, corner.saturating_sub(1)) }
     }
 
-    fn measured(&self, t: f64, piece: usize) -> Measured {
+    fn measured(&self, t: f64, piece: usize) -> MeasuredChannels {
         let at = |signal: Option<&Polyline>| signal.map(|signal| signal.at_from(t, piece));
-        Measured {
+        MeasuredChannels {
             speed: at(self.speed),
             sway: at(self.sway),
             wind_speed: at(self.wind_speed),
@@ -164,7 +164,7 @@ pub fn replay_states<R, D, S, V>(
                 act(&mut inputs[1], from + 0.5 * h, &ramp, corner);
                 act(&mut inputs[2], from + h, &ramp, corner);
                 solver.step_with(dynamics, from, h, state, &inputs);
-                dynamics.settle(from + h, state, &inputs[2]);
+                dynamics.update_memory(from + h, state, &inputs[2]);
             }
             t = end;
         }

@@ -39,7 +39,7 @@ impl TimeConstants {
 /// Ship whose record can be replayed from any row.
 pub trait Replayable<R: Real = f64>: Dynamics<R> {
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input.
-    fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]);
+    fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]);
 
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory.
     fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]);

@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{Effect, EffectReal, OperatingPoint, Parameter, Scale, SwayCoupling, Targets};
+use crate::effects::{BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling, Targets};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -65,7 +65,7 @@ pub struct ResponseModel {
 /// Combined action of the effects at one instant.
 struct Instant<R> {
     rudder: R,
-    scale: Scale<R>,
+    scale: BaseFactors<R>,
     acceleration: R,
 }
 
@@ -105,7 +105,7 @@ impl ResponseModel {
     }
 
     /// Effects, each with the index range of its parameters.
-    pub fn placed(&self) -> impl Iterator<Item = (&dyn Effect, Range<usize>)> {
+    pub fn effects_with_ranges(&self) -> impl Iterator<Item = (&dyn Effect, Range<usize>)> {
         self.effects.iter().zip(&self.places).map(|(effect, place)| (effect.as_ref(), place.parameters()))
     }
 
@@ -124,7 +124,7 @@ impl ResponseModel {
     /// # Panics
     /// If the number of values is not [`parameter_count`](Self::parameter_count): a programming error, not a user's
     /// error.
-    pub fn with<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
+    pub fn with_parameters<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
             let place = self.places[index];
@@ -149,7 +149,7 @@ pub struct Response<R = f64> {
 impl Response {
     /// First-order ship without effects.
     pub fn first_order_ship(base: FirstOrder) -> Self {
-        ResponseModel::first_order().with(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
+        ResponseModel::first_order().with_parameters(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
     }
 
     /// Base parameters.
@@ -163,8 +163,8 @@ impl Response {
     }
 
     /// Ship in another number type, with constant parameters.
-    pub fn constant<R: EffectReal>(&self) -> Response<R> {
-        self.model.clone().with(self.parameters.iter().map(|&value| R::from(value)).collect())
+    pub fn to_real<R: EffectReal>(&self) -> Response<R> {
+        self.model.clone().with_parameters(self.parameters.iter().map(|&value| R::from(value)).collect())
     }
 }
 
@@ -211,12 +211,12 @@ impl<R: EffectReal> Response<R> {
             rudder = R::action(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
-        let mut scale = Scale::none();
+        let mut scale = BaseFactors::none();
         let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
             if place.acts.scale {
-                let factor = R::action(effect).scale(p, z, &now);
+                let factor = R::action(effect).base_factors(p, z, &now);
                 scale.damping = scale.damping * factor.damping;
                 scale.gain = scale.gain * factor.gain;
             }
@@ -265,7 +265,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
 
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the memory of the
     /// effects is that of a constant rudder angle.
-    fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+    fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
@@ -294,7 +294,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
 
 impl ReplayedShip for Response {
     fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
-        Box::new(self.constant::<Tangent>())
+        Box::new(self.to_real::<Tangent>())
     }
 }
 
@@ -304,7 +304,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
     }
 
     fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]) {
-        self.enter(heading, yaw_rate, &Input::default(), state);
+        self.initialise(heading, yaw_rate, &Input::default(), state);
     }
 
     fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
@@ -336,14 +336,14 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         }
     }
 
-    fn settle(&self, _t: f64, state: &mut [R], input: &Input<R>) {
+    fn update_memory(&self, _t: f64, state: &mut [R], input: &Input<R>) {
         if self.model.states == 2 {
             return;
         }
         let mut before = input.rudder;
         for (effect, p, place) in self.effects().take(self.model.with_memory) {
             let z = &mut state[place.states()];
-            R::action(effect).settle(p, z, before);
+            R::action(effect).update_memory(p, z, before);
             before = R::action(effect).rudder(p, z, before);
         }
     }

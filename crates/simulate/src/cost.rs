@@ -1,5 +1,5 @@
 //! Upper estimate of the cost of a run, so that no random or mistyped specification runs without end or exhausts the
-//! memory. [`Simulation::validate`] rejects a run whose estimate is too large; a run that exceeds its estimate stops
+//! memory. [`Simulation::check`] rejects a run whose estimate is too large; a run that exceeds its estimate stops
 //! with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
 use ship::narrow_band::NarrowBand;
@@ -118,7 +118,7 @@ impl Simulation {
             (None, Solver::Automatic) => exposed::largest_step(dynamics.largest_step(), self.sensors.heading_lag),
         };
         let display = self.helmsman.reads_display_every.map_or(0.0, |period| 1.0 / period);
-        let weather = if self.disturbances.change() { 1.0 / self.weather_grid } else { 0.0 };
+        let weather = if self.disturbances.are_time_dependent() { 1.0 / self.weather_grid } else { 0.0 };
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
         let declared = self.disturbances.waves.map(|waves| waves.process());
         let seas = declared.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();

@@ -114,13 +114,13 @@ impl WaveSpectrum {
 
 impl Disturbances {
     /// `true` if a moment, or the gust factor of the wind, depends on time alone.
-    pub(crate) fn change(&self) -> bool {
+    pub(crate) fn are_time_dependent(&self) -> bool {
         let gusting = self.wind.is_some_and(|wind| wind.gusting.is_some());
         self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0 || gusting
     }
 
     /// Check of every value; fails with the first invalid value.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         if let Some(wind) = &self.wind {
             error::finite("disturbance.wind.moment-deg", wind.moment)?;
             error::finite("disturbance.wind.from-deg", wind.from)?;

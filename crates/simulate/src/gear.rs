@@ -110,7 +110,7 @@ impl SteeringGear {
     }
 
     /// Check of every value; fails with the first invalid value.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         error::positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
         error::time("steering-gear.lag-s", self.lag)?;
         error::time("steering-gear.dead-time-s", self.dead_time)?;

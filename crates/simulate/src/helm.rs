@@ -25,7 +25,7 @@ pub(crate) const MAX_PERIOD_S: f64 = 1e3;
 
 impl Helmsman {
     /// Check of every value; fails with the first invalid value.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         if let Some(period) = self.reads_display_every {
             error::between("helmsman.reads-display-every-s", period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         }
@@ -65,7 +65,7 @@ impl<'a> Helm<'a> {
     /// Helm at the beginning of a run with the first execute at `first_execute` s.
     pub fn new(manoeuvre: &'a Manoeuvre, helmsman: &Helmsman, first_execute: f64) -> Self {
         let Helmsman { reaction_time, .. } = *helmsman;
-        let end = first_execute + manoeuvre.length();
+        let end = first_execute + manoeuvre.duration();
         Self { manoeuvre, reaction_time, orders: 0, last: first_execute, due: None, end, finished: false }
     }
 

@@ -9,7 +9,7 @@ use crate::limits::MAX_EXECUTES;
 pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
     let [rudder_key, duration_key] = key_of(manoeuvre);
     if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
-        error::positive(rudder_key, manoeuvre.rudder())?;
+        error::positive(rudder_key, manoeuvre.max_rudder())?;
     }
     match manoeuvre {
         Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
@@ -57,7 +57,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
         | Manoeuvre::TurningCircle { duration: Some(duration), .. }
         | Manoeuvre::PullOut { duration, .. }
         | Manoeuvre::Williamson { duration, .. } => error::positive_time(duration_key, *duration),
-        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.length()),
+        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.duration()),
         _ => Ok(()),
     }
 }

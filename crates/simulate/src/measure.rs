@@ -1,5 +1,5 @@
 //! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`Scene`] contains the
-//! readings of perfect instruments; [`write`] adds the random errors of one record.
+//! readings of perfect instruments; [`with_sensor_errors`] adds the random errors of one record.
 //!
 //! Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265, for bursts of lost rows.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
@@ -103,7 +103,7 @@ impl Scene {
 }
 
 /// Record of a scene with the random errors of `key`.
-pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &StreamKey) -> WrittenRows {
+pub(crate) fn with_sensor_errors(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &StreamKey) -> WrittenRows {
     let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut rudder = scene.rudder.clone();
     if scene.rudder_is_read {
@@ -161,7 +161,8 @@ fn compass_and_rate(
     mut waves: SeaWaves,
     key: &StreamKey,
 ) -> (Vec<f64>, Option<Vec<f64>>) {
-    let (mut heading, mut yaw_rate) = (scene.gyro.clone(), sensors.read_yaw_rate().then(|| scene.yaw_rate.clone()));
+    let (mut heading, mut yaw_rate) =
+        (scene.gyro.clone(), sensors.has_rate_of_turn_indicator().then(|| scene.yaw_rate.clone()));
     if !waves.are_none() {
         for (row, &instant) in scene.instants.iter().enumerate() {
             let [wave, wave_rate] = waves.at(instant);

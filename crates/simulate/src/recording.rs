@@ -77,7 +77,7 @@ impl Recording {
     }
 
     /// Check of every value; fails with the first value that is invalid or requires another key.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         error::positive("recording.sampling-s", self.period)?;
         error::between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         if let Some(duration) = self.duration {

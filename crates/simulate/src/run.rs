@@ -18,7 +18,7 @@ const END_TOLERANCE: f64 = 1e-9;
 
 /// Event at which a run stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Progress {
+pub(crate) enum RunEvent {
     /// Requested time.
     Reached,
     /// Execute; it is the last in the list.
@@ -75,7 +75,7 @@ impl<'a, P: Propagator> Run<'a, P> {
     /// Fails if the run ends before this execute.
     pub fn reach_execute(&mut self, number: usize) -> Result<f64, SimulateError> {
         while self.executes.len() < number {
-            if self.advance(f64::INFINITY)? == Progress::Over {
+            if self.advance(f64::INFINITY)? == RunEvent::Over {
                 return Err(SimulateError::NoSuchExecute { execute: number, made: self.executes.len() });
             }
         }
@@ -86,7 +86,7 @@ impl<'a, P: Propagator> Run<'a, P> {
     ///
     /// At an execute the order has been given. Fails if the motion diverges, a heading is never reached, or a limit of
     /// the run is exceeded.
-    pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
+    pub fn advance(&mut self, until: f64) -> Result<RunEvent, SimulateError> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;
             let deadline = self.deadline();
@@ -108,7 +108,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 Trigger::Never => {}
             }
             if to == f64::INFINITY {
-                return Ok(Progress::Over);
+                return Ok(RunEvent::Over);
             }
             let crossed = self.travel(to, watch)?;
             let t = self.propagator.time();
@@ -129,12 +129,12 @@ impl<'a, P: Propagator> Run<'a, P> {
                     if self.executes.len() > MAX_EXECUTES {
                         return Err(SimulateError::TooLong { time: t, what: "executes", most: MAX_EXECUTES });
                     }
-                    return Ok(Progress::Executed);
+                    return Ok(RunEvent::Executed);
                 }
             } else if t >= until {
-                return Ok(Progress::Reached);
+                return Ok(RunEvent::Reached);
             } else if t >= end {
-                return Ok(Progress::Over);
+                return Ok(RunEvent::Over);
             } else if let Trigger::Deviation { angle, .. } = trigger
                 && t >= deadline
             {

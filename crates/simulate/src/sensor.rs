@@ -107,12 +107,12 @@ const MAX_SPIKE_DEG: f64 = 180.0;
 
 impl Sensors {
     /// `true` if there is a rate-of-turn indicator.
-    pub fn read_yaw_rate(&self) -> bool {
+    pub fn has_rate_of_turn_indicator(&self) -> bool {
         [self.yaw_rate_noise, self.yaw_rate_bias, self.yaw_rate_scale_error].iter().any(Option::is_some)
     }
 
     /// Check of every value; fails with the first value that is invalid or requires another key.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         error::not_negative("sensor.heading-noise-deg", self.heading_noise)?;
         error::not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
         if self.heading_lag != 0.0 {
@@ -136,7 +136,7 @@ impl Sensors {
         error::not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
         error::time("sensor.jitter-s", self.jitter)?;
         error::between("sensor.heading-delay-s", self.heading_delay, -MAX_TIME_S, MAX_TIME_S)?;
-        self.drop_out.validate()
+        self.drop_out.check()
     }
 
     /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` if both are
@@ -156,7 +156,7 @@ impl Sensors {
 }
 
 impl DropOut {
-    fn validate(&self) -> Check {
+    fn check(&self) -> Check {
         error::between("sensor.drop-out.probability", self.probability, 0.0, 1.0)?;
         match (self.burst_probability, self.burst_mean_rows) {
             (Some(probability), Some(mean_rows)) => {

@@ -21,7 +21,7 @@ use crate::manoeuvre::{check_manoeuvre, key_of};
 use crate::measure::{self, Scene, View};
 use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
 use crate::recording::{Recording, RudderSource, Sampler};
-use crate::run::{Progress, Run, RunResult};
+use crate::run::{Run, RunEvent, RunResult};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
@@ -50,7 +50,7 @@ pub struct BeforeExecute {
 
 impl BeforeExecute {
     /// Check of every value; fails with the first invalid value.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         error::finite("approach.heading-deg", self.heading)?;
         error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
         error::finite("approach.rudder-deg", self.rudder)?;
@@ -155,7 +155,7 @@ impl PreparedSimulation {
     ///
     /// Fails if [`Simulation::run`] fails.
     pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
-        simulation.validate()?;
+        simulation.check()?;
         let true_run = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
         Ok(Self { simulation, true_run })
     }
@@ -198,14 +198,14 @@ impl Simulation {
     }
 
     /// Check of the complete specification; fails with the first value that is invalid or does not fit the manoeuvre.
-    pub fn validate(&self) -> Check {
+    pub fn check(&self) -> Check {
         check_manoeuvre(&self.manoeuvre)?;
-        self.helmsman.validate()?;
-        self.gear.validate()?;
-        self.disturbances.validate()?;
-        self.sensors.validate()?;
-        self.recording.validate()?;
-        self.approach.validate()?;
+        self.helmsman.check()?;
+        self.gear.check()?;
+        self.disturbances.check()?;
+        self.sensors.check()?;
+        self.recording.check()?;
+        self.approach.check()?;
         error::positive_time("longest_wait", self.longest_wait)?;
         error::between("weather_grid", self.weather_grid, MIN_STEP_S, MAX_STEP_S)?;
         if let Solver::RungeKutta(step) = self.solver {
@@ -214,11 +214,11 @@ impl Simulation {
         error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.largest_rudder())?;
         let is_replay = matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         if !is_replay {
-            error::at_most(key_of(&self.manoeuvre)[0], self.manoeuvre.rudder(), self.gear.largest_rudder())?;
+            error::at_most(key_of(&self.manoeuvre)[0], self.manoeuvre.max_rudder(), self.gear.largest_rudder())?;
         }
         // A negative dead time belongs to a record with a late clock, not to a ship.
         error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
-        let end = self.approach.lead_in + self.manoeuvre.length();
+        let end = self.approach.lead_in + self.manoeuvre.duration();
         match (&self.manoeuvre, self.recording.duration) {
             (_, None) if end.is_finite() => {
                 error::at_most(key_of(&self.manoeuvre)[1], end, self.recording.max_duration())?;
@@ -257,7 +257,7 @@ impl Simulation {
     /// Fails if the specification is invalid or too costly, the motion diverges, a heading is never reached, the record
     /// starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
-        self.validate()?;
+        self.check()?;
         self.record(&self.sail(key)?, key)
     }
 
@@ -334,9 +334,9 @@ impl Simulation {
                 break;
             }
             match run.advance(next)? {
-                Progress::Executed => {}
-                Progress::Over => break,
-                Progress::Reached => {
+                RunEvent::Executed => {}
+                RunEvent::Over => break,
+                RunEvent::Reached => {
                     let sample = run.sample();
                     rows.take(&sample);
                     if let Some(sampler) = &mut instruments {
@@ -385,7 +385,7 @@ impl Simulation {
     /// Record of a run with the random errors of `key`.
     fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<Simulated, SimulateError> {
         let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
-        let written = measure::write(&self.sensors, &true_run.scene, waves, key);
+        let written = measure::with_sensor_errors(&self.sensors, &true_run.scene, waves, key);
         let truth = match &written.kept {
             None => Arc::clone(&true_run.truth),
             Some(kept) => Arc::new(true_run.truth.keep(kept)),

@@ -97,7 +97,7 @@ impl Weather {
                 .map(|gusts| MarkovChain::new(gusts.sd, gusts.correlation_time, grid, key.rng(Purpose::Gust))),
             gusting: gusting.map(|g| MarkovChain::new(g.sd, g.correlation_time, grid, key.rng(Purpose::WindGust))),
         };
-        if disturbances.change() {
+        if disturbances.are_time_dependent() {
             weather.cell.end = grid;
             let (moment, gust) = (weather.moment(0.0), weather.gust());
             weather.step();

@@ -223,7 +223,7 @@ fn weighed(
     let has_waves = candidates::has_waves(trials, &settings.selection);
     let choose = |kinds: &[CorrelatedNoise]| {
         let fulls = full::fit(problem, base, candidates, has_waves, kinds);
-        let fulls = rudder::bounded(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
+        let fulls = rudder::with_rudder_noise(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
         structures::choose(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
     };
     let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
@@ -267,7 +267,7 @@ fn compare_fitted(
         let before = base_result(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
-        let mut after = averaged.on(trial, &record, &starts(trial, response), depth)?;
+        let mut after = averaged.replay_on(trial, &record, &starts(trial, response), depth)?;
         if is_base {
             // No effect is added: keep the closed-form replay of the base.
             let band = after.band;
@@ -327,7 +327,7 @@ impl Analysis {
             let fitted = structure.fitted();
             let covariance = fit.kept_covariance(None).map(|kept| {
                 // A parameter given relative to another one is converted to its physical value.
-                let all = structure.physical_covariance(&structure.spread(&kept));
+                let all = structure.physical_covariance(&structure.expanded_covariance(&kept));
                 DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
             });
             PlausibleStructure { weight, response: structure.response(None, &theta), fitted, covariance }
@@ -360,6 +360,6 @@ impl Analysis {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
-        averaged.on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
+        averaged.replay_on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

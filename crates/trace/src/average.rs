@@ -55,13 +55,13 @@ impl AverageReplay {
 
 impl AveragedModel<'_> {
     /// Weight of one hull: the total weight of the structures.
-    pub fn share(&self) -> f64 {
+    pub fn hull_weight(&self) -> f64 {
         1.0 / (1 + self.hulls.len()) as f64
     }
 
     /// Weights of the ships: structures first.
     pub fn weights(&self) -> impl Iterator<Item = f64> {
-        let share = self.share();
+        let share = self.hull_weight();
         self.members.iter().map(move |(weight, _)| share * weight).chain(self.hulls.iter().map(move |_| share))
     }
 

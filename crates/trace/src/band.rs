@@ -35,7 +35,7 @@ pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: 
     let rows = record.observed.len();
     let mut variance = vec![0.0; rows];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
-    let share = after.share();
+    let share = after.hull_weight();
     for ((weight, fit), replay) in after.members.iter().zip(members) {
         let sampler = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
         for _ in 0..DRAWS {

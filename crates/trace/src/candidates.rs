@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Backlash, Effect, Proposal, RecordScales, SecondOrder, SteeringLag, WaveYaw};
+use ship::effects::{Backlash, CandidateEffect, Effect, RecordScales, SecondOrder, SteeringLag, WaveYaw};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -29,7 +29,7 @@ pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
 }
 
 /// Scales of the manoeuvres in some records; `span` is the duration of `record`.
-pub fn manoeuvres(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
+pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
     let mean_speed = mean_square(records, |record| record.speed.as_ref());
     // The speed is needed if speed or sway is recorded.
@@ -76,8 +76,8 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             false => vec![None],
         };
         for only in places.into_iter().filter(|only| !is_becalmed(effect.as_ref(), *only, trials, selection)) {
-            let about = manoeuvres(records, trials, time, &records[only.unwrap_or(0)]);
-            let Some(Proposal { effect, priors }) = effect.proposal(&about) else { continue };
+            let about = record_scales(records, trials, time, &records[only.unwrap_or(0)]);
+            let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
             candidates.push(Term { effect, only, priors, log_odds: 0.0 });
         }
     }

@@ -16,7 +16,7 @@ use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
 use crate::replay_errors::{
-    HORIZONS, ReplayDepth, ReplayErrors, WindowError, duration, is_shorter, overshoot_error, root_mean_square,
+    HORIZONS, ReplayDepth, ReplayErrors, WindowError, duration, has_several_windows, overshoot_error, root_mean_square,
 };
 use crate::settings::TraceError;
 
@@ -119,7 +119,7 @@ impl RecordComparison {
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
-        let shorter = before.windows.iter().filter(|window| is_shorter(window.length, time));
+        let shorter = before.windows.iter().filter(|window| has_several_windows(window.length, time));
         let windows = shorter.filter_map(|window| Some((window.length, window.heading?, after.within(window.length)?)));
         let all = windows.chain([(duration(time), before.heading, after.heading)]);
         let entry = |(horizon_s, before, after)| HorizonEntry {
@@ -167,7 +167,7 @@ impl AveragedModel<'_> {
         let mut before = base_result(trial, &record, base, depth)?;
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
-        let mut after = self.on(trial, &record, &starts, depth)?;
+        let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
             before.errors.with_moment = Some(moment.of_base(&before.replay));
             after.errors.with_moment = Some(moment.of_average(&self.average(), &after.replay));
@@ -186,7 +186,7 @@ impl AveragedModel<'_> {
     }
 
     /// Replay of the average on a record from initial states near the `starts`; fails if no replay is finite.
-    pub fn on(
+    pub fn replay_on(
         &self,
         trial: &Trial,
         record: &PreparedRecord,

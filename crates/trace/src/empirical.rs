@@ -1,7 +1,7 @@
 //! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates in
 //! addition to the named effects.
 
-use ship::effects::{Action, Description, Effect, OperatingPoint, Parameter, Proposal, RecordScales, Targets};
+use ship::effects::{Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, RecordScales, Targets};
 use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
 
@@ -9,7 +9,7 @@ use std::sync::{Arc, LazyLock};
 
 use trial::Trial;
 
-use crate::candidates::{manoeuvres, mean_square};
+use crate::candidates::{mean_square, record_scales};
 use crate::model::Term;
 use crate::record::PreparedRecord;
 
@@ -102,7 +102,7 @@ const LOG_ODDS: f64 = -4.0;
 
 /// Candidate terms of the monomials, if the records have the required channels.
 pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
-    let about = manoeuvres(records, trials, time, &records[0]);
+    let about = record_scales(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
         let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
         (square / count.max(1) as f64).sqrt().max(1e-9)
@@ -111,7 +111,7 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
     let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
     all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
-        let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
+        let CandidateEffect { effect, priors } = Monomial { powers, size }.candidate(&about)?;
         Some(Arc::new(Term { effect, only: None, priors, log_odds: LOG_ODDS }))
     })
 }
@@ -142,8 +142,8 @@ impl Effect for Monomial {
         self.powers.exponents[2] > 0
     }
 
-    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
-        Some(Proposal::with_normal_prior(*self, PRIOR_SD))
+    fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
+        Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD))
     }
 
     fn targets(&self) -> Targets {

@@ -5,13 +5,13 @@
 //! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the whitening filter W of the
 //! record. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate of every record.
 
-use estimation::levenberg_marquardt::{Minimum, Normal, Objective, SearchSettings, minimise};
+use estimation::levenberg_marquardt::{Minimum, NormalEquations, Objective, SearchSettings, minimise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use ship::effects::Prior;
 use statrs::distribution::{self, ContinuousCDF};
 
-use crate::linear::{Linear, tangents};
+use crate::linear::{Linearisation, tangents};
 use crate::model::{Structure, headings};
 use crate::noise::RecordNoise;
 use crate::record::PreparedRecord;
@@ -19,14 +19,14 @@ use crate::weights::{NoiseLaw, Weights};
 
 /// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Effort {
+pub struct StoppingRule {
     /// Maximum number of steps.
     pub steps: usize,
     /// Predicted decrease of J below which the fit ends.
     pub negligible: f64,
 }
 
-impl Effort {
+impl StoppingRule {
     /// Tolerance that suffices for a quadratic approximation of the posterior.
     pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
     /// Tolerance of a converged fit.
@@ -115,7 +115,7 @@ impl FittedRecords {
     }
 
     /// Residual and heading sensitivities at a point.
-    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
+    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linearisation {
         let (entries, fitted) = (structure.entries(), structure.fitted());
         let unknowns = fitted.len() + 2 * self.records.len();
         let sensitivities = |(number, record): (usize, &PreparedRecord)| {
@@ -134,7 +134,7 @@ impl FittedRecords {
             }
             block
         };
-        Linear { blocks: self.records.par_iter().enumerate().map(sensitivities).collect(), unknowns }
+        Linearisation { blocks: self.records.par_iter().enumerate().map(sensitivities).collect(), unknowns }
     }
 
     /// Fits a structure from a start point.
@@ -144,7 +144,7 @@ impl FittedRecords {
         theta: Vec<f64>,
         initial: Vec<[f64; 2]>,
         weights: &Weights,
-        effort: Effort,
+        effort: StoppingRule,
     ) -> StructureFit {
         let priors = structure.entries().into_iter().map(|entry| entry.prior).collect();
         let (last, kept) = (FitPoint::default(), FitPoint::default());
@@ -166,8 +166,14 @@ impl FittedRecords {
     }
 
     /// Normal equations of J at a point.
-    pub fn posterior(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], weights: &Weights) -> Normal {
-        posterior(&self.linear(structure, theta, initial), structure, theta, weights)
+    pub fn normal_equations(
+        &self,
+        structure: &Structure,
+        theta: &[f64],
+        initial: &[[f64; 2]],
+        weights: &Weights,
+    ) -> NormalEquations {
+        normal_equations(&self.linear(structure, theta, initial), structure, theta, weights)
     }
 }
 
@@ -228,16 +234,21 @@ impl Objective for PosteriorSearch<'_> {
         self.last.value
     }
 
-    fn linearise(&mut self, _: &[f64], normal: &mut Normal) -> f64 {
+    fn linearise(&mut self, _: &[f64], normal: &mut NormalEquations) -> f64 {
         self.kept.clone_from(&self.last);
         let FitPoint { theta, initial, .. } = &self.kept;
-        *normal = self.problem.posterior(self.structure, theta, initial, self.weights);
+        *normal = self.problem.normal_equations(self.structure, theta, initial, self.weights);
         self.kept.value
     }
 }
 
 /// Normal equations of J from residual and sensitivities at a point.
-pub fn posterior(linear: &Linear, structure: &Structure, theta: &[f64], weights: &Weights) -> Normal {
+pub fn normal_equations(
+    linear: &Linearisation,
+    structure: &Structure,
+    theta: &[f64],
+    weights: &Weights,
+) -> NormalEquations {
     let (mut normal, _) = linear.normal(weights);
     for (k, (prior, value)) in structure.fitted_priors(theta).into_iter().enumerate() {
         normal.matrix[(k, k)] += curvature(prior);
@@ -271,7 +282,7 @@ pub fn log_normaliser(prior: Prior) -> f64 {
 
 /// Log marginal likelihood by Laplace's approximation, up to a constant shared by all structures. The probability mass
 /// beyond a bound is excluded.
-fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
+fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);
     let of_terms = structure.entries()[structure.base_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
@@ -318,17 +329,17 @@ pub struct StructureFit {
 
 impl StructureFit {
     /// Refit without one of the terms.
-    pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: Effort) -> Self {
+    pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: StoppingRule) -> Self {
         let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
         theta.drain(self.structure.term_ranges()[out].clone());
         terms.remove(out);
-        problem.fit(&self.structure.of(terms), theta, self.initial.clone(), weights, effort)
+        problem.fit(&self.structure.with_terms(terms), theta, self.initial.clone(), weights, effort)
     }
 
     /// Covariance of all entries of θ, zero for fixed ones; `None` if the precision is singular.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
-        let covariance = self.structure.spread(&inverse);
+        let covariance = self.structure.expanded_covariance(&inverse);
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
     }
 
@@ -344,7 +355,8 @@ impl StructureFit {
     pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();
-        let kept = self.structure.places(record).into_iter().filter(|&place| entries[place].prior.is_fitted());
+        let kept =
+            self.structure.response_indices(record).into_iter().filter(|&place| entries[place].prior.is_fitted());
         let kept: Vec<usize> = kept.collect();
         Some(DMatrix::from_fn(kept.len(), kept.len(), |i, j| all[(kept[i], kept[j])]))
     }

@@ -7,7 +7,7 @@ use ship::FirstOrder;
 
 use crate::base::Base;
 use crate::candidates::is_variant;
-use crate::fit::{Effort, FittedRecords, StructureFit};
+use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
 use crate::noise::CorrelatedNoise;
@@ -41,7 +41,7 @@ pub fn fit(
     let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
         candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).partition(|term| term.effect.has_instant());
     let base_structure = Structure::base(problem.records.len(), problem.time);
-    let structure = base_structure.of(stationary.into_iter().cloned().collect());
+    let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST_NOISE_RATIO * FIRST_NOISE_RATIO) * base.mean_square());
     let fit = fit_stationary(problem, base, &structure, &problem.weights(&first));
     let estimate_law = |fit: &StructureFit, from: &NoiseLaw, kinds: &[CorrelatedNoise]| {
@@ -53,15 +53,15 @@ pub fn fit(
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
     let weights = problem.weights(&stationary.law);
     let moments: Vec<&Term> = transient.iter().map(|term| term.as_ref()).collect();
-    for (candidate, place) in transient.iter().zip(transient::places(problem, &fit, &weights, &moments)) {
+    for (candidate, place) in transient.iter().zip(transient::start_values(problem, &fit, &weights, &moments)) {
         if let Some(place) = place {
             theta.extend(place);
             terms.push(Arc::clone(candidate));
         }
     }
-    let structure = base_structure.of(terms);
+    let structure = base_structure.with_terms(terms);
     let refit = |law: &NoiseLaw| {
-        problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.weights(law), Effort::COARSE)
+        problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.weights(law), StoppingRule::COARSE)
     };
     let stationary_law = stationary.law.clone();
     let whole = refit(&stationary_law);
@@ -91,7 +91,7 @@ fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[Co
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
     let theta = start(&structure, &base.estimate.response, std::iter::empty());
     let refit = |theta: Vec<f64>, initial: Vec<[f64; 2]>, law: &NoiseLaw| {
-        problem.fit(&structure, theta, initial, &problem.weights(law), Effort::FINE)
+        problem.fit(&structure, theta, initial, &problem.weights(law), StoppingRule::FINE)
     };
     let fit = refit(theta, base.initial(), &law);
     let EstimatedNoiseLaw { law, waves_gain, .. } = law::estimate(problem, &fit, &law.variance, with_waves, kinds);
@@ -104,7 +104,7 @@ fn fit_stationary(problem: &FittedRecords, base: &Base, structure: &Structure, w
         [|term| term.priors.iter().map(|prior| prior.mean).collect(), Term::neutral];
     let fits = starts.par_iter().map(|values| {
         let theta = start(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
-        problem.fit(structure, theta, base.initial(), weights, Effort { steps: 4, ..Effort::COARSE })
+        problem.fit(structure, theta, base.initial(), weights, StoppingRule { steps: 4, ..StoppingRule::COARSE })
     });
     let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
     let fits: Vec<StructureFit> = fits.collect();

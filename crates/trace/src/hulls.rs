@@ -20,7 +20,7 @@ pub fn fit(
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
-    hull::members(hull::fit_all(trials, &settings.earlier), (squares(comparisons)[1] / rows as f64).sqrt())
+    hull::supported_hulls(hull::fit_all(trials, &settings.earlier), (squares(comparisons)[1] / rows as f64).sqrt())
 }
 
 /// Hulls refitted to other records under the same priors.

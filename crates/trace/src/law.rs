@@ -8,13 +8,13 @@
 //! The penalty of a colour is log n per parameter (Schwarz 1978). All structures share the law, so the misfit of a
 //! structure without an effect is never attributed to weather. The criterion of a law is −2 log p plus this penalty.
 
-use estimation::levenberg_marquardt::Normal;
-use estimation::minimum::minimum;
+use estimation::levenberg_marquardt::NormalEquations;
+use estimation::minimum::golden_section_minimum;
 use nalgebra::{Cholesky, DVector, Dyn};
 use rayon::prelude::*;
 
 use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
-use crate::linear::Linear;
+use crate::linear::Linearisation;
 use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::waves;
 use crate::weights::{NoiseLaw, Weights};
@@ -42,7 +42,7 @@ const ROUNDS: usize = 2;
 ///
 /// A corner of the rudder between two rows is cut, which changes the integral of the rudder by up to an eighth of its
 /// second difference times the step, and the heading by that times K.
-pub fn floors(problem: &FittedRecords, gain: f64) -> Vec<f64> {
+pub fn min_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
     let floor = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
@@ -60,7 +60,7 @@ pub struct LinearisedFit<'a> {
     /// Fitted records.
     pub problem: &'a FittedRecords,
     /// Residual and heading sensitivities.
-    pub linear: Linear,
+    pub linear: Linearisation,
     /// Prior precision of every unknown and its offset from the prior mean; zero for the initial states.
     pub prior: Vec<(f64, f64)>,
     floors: Vec<f64>,
@@ -76,7 +76,7 @@ impl<'a> LinearisedFit<'a> {
         });
         let mut prior: Vec<(f64, f64)> = prior.collect();
         prior.resize(linear.unknowns, (0.0, 0.0));
-        Self { problem, linear, prior, floors: floors(problem, fit.theta[1]) }
+        Self { problem, linear, prior, floors: min_variances(problem, fit.theta[1]) }
     }
 
     /// Law with the least criterion among some kinds, with the waves and the start variances of the law `start`.
@@ -85,7 +85,7 @@ impl<'a> LinearisedFit<'a> {
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
         let sum = |c: EstimatedNoiseLaw| EstimatedNoiseLaw {
-            criterion: c.criterion + c.law.colour.freedom() as f64 * log_n,
+            criterion: c.criterion + c.law.colour.parameter_count() as f64 * log_n,
             ..c
         };
         let all = [white].into_iter().chain(coloured).map(sum);
@@ -103,7 +103,7 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Adds the priors to normal equations.
-    fn add_prior(&self, normal: &mut Normal) {
+    fn add_prior(&self, normal: &mut NormalEquations) {
         for (k, &(precision, offset)) in self.prior.iter().enumerate() {
             normal.matrix[(k, k)] += precision;
             normal.gradient[k] -= precision * offset;
@@ -116,7 +116,8 @@ impl<'a> LinearisedFit<'a> {
         let weights = self.problem.weights(&unit);
         let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
         // Normal equations of every record under unit variance: for other variances they are multiples.
-        let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|k| self.record_normal(k, &weights)).collect();
+        let blocks: Vec<(NormalEquations, Vec<f64>)> =
+            (0..start.len()).map(|k| self.record_normal(k, &weights)).collect();
         let mut criterion = f64::INFINITY;
         for _ in 0..ROUNDS {
             let Some((next, value)) = self.update(&law, &blocks, &weights) else { break };
@@ -127,21 +128,26 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Normal equations and sum of squares of one record.
-    fn record_normal(&self, record: usize, all: &Weights) -> (Normal, Vec<f64>) {
-        let alone = Linear { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
+    fn record_normal(&self, record: usize, all: &Weights) -> (NormalEquations, Vec<f64>) {
+        let alone = Linearisation { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
         let weights = Weights { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
         alone.normal(&weights)
     }
 
     /// Updated variances and the criterion at the old variances; `None` if the precision is singular.
-    fn update(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
-        let mut normal = Normal::zeros(self.linear.unknowns);
+    fn update(
+        &self,
+        law: &NoiseLaw,
+        blocks: &[(NormalEquations, Vec<f64>)],
+        weights: &Weights,
+    ) -> Option<(Vec<f64>, f64)> {
+        let mut normal = NormalEquations::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
             normal.matrix += &block.matrix / *variance;
             normal.gradient += &block.gradient / *variance;
         }
         self.add_prior(&mut normal);
-        let Normal { matrix, gradient } = normal;
+        let NormalEquations { matrix, gradient } = normal;
         let penalty = self.prior.iter().fold(0.0, |sum, &(precision, offset)| sum + precision * offset * offset);
         let factor = matrix.cholesky()?;
         let step = factor.solve(&gradient);
@@ -173,7 +179,9 @@ impl<'a> LinearisedFit<'a> {
         let mut all: Vec<(f64, CorrelatedNoise)> = kinds.par_iter().map(screen).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         all.truncate(FINALISTS);
-        all.into_par_iter().map(|(_, k)| at(k, minimum(low, high, GRID, |log| at(k, log).criterion).0)).collect()
+        all.into_par_iter()
+            .map(|(_, k)| at(k, golden_section_minimum(low, high, GRID, |log| at(k, log).criterion).0))
+            .collect()
     }
 }
 
@@ -207,7 +215,7 @@ pub fn estimate(
         ];
         for colour in colours.into_iter().flatten() {
             let EstimatedNoiseLaw { law, criterion, .. } = linearised.evaluate(colour, &best.law.variance);
-            let criterion = criterion + colour.freedom() as f64 * log_n;
+            let criterion = criterion + colour.parameter_count() as f64 * log_n;
             if criterion < best.criterion {
                 best = EstimatedNoiseLaw { law, criterion, waves_gain: best.waves_gain + best.criterion - criterion };
             }

@@ -9,7 +9,7 @@ use trial::Trial;
 use crate::average::AveragedModel;
 use crate::base::Base;
 use crate::comparison::RecordComparison;
-use crate::fit::{Effort, FittedRecords, StructureFit};
+use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::hulls;
 use crate::model::Structure;
@@ -42,7 +42,7 @@ pub fn leave_one_out(
         let weights = kept.weights(&law);
         let refitted = structures.all.iter().take(MAX_STRUCTURES).map(|member| {
             let (structure, theta) = without_record(&member.fit, omitted);
-            kept.fit(&structure, theta, without(&member.fit.initial, omitted), &weights, Effort::FINE)
+            kept.fit(&structure, theta, without(&member.fit.initial, omitted), &weights, StoppingRule::FINE)
         });
         let fits: Vec<(f64, StructureFit)> =
             refitted.zip(&structures.all).map(|(fit, member)| (log_posterior(&fit, member), fit)).collect();

@@ -43,7 +43,7 @@ pub mod weights;
 
 pub use analysis::{Analysis, trace, trace_with_watcher, without_spikes};
 pub use document::trace::{Document, Verdict};
-pub use remainder::{IMPROBABLE, Innovations};
+pub use remainder::{Innovations, SIGNIFICANCE_LEVEL};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};
 pub use watcher::Watcher;

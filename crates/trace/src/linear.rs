@@ -1,7 +1,7 @@
 //! Linearisation of the headings: residual and sensitivities of the records, and their normal equations.
 
 use estimation::column::dot;
-use estimation::levenberg_marquardt::Normal;
+use estimation::levenberg_marquardt::NormalEquations;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use ship::DIRECTIONS;
@@ -70,17 +70,17 @@ pub fn tangents(
 
 /// Heading residual and sensitivities of all records.
 #[derive(Debug, Clone)]
-pub struct Linear {
+pub struct Linearisation {
     /// One block per record.
     pub blocks: Vec<HeadingSensitivities>,
     /// Number of unknowns.
     pub unknowns: usize,
 }
 
-impl Linear {
+impl Linearisation {
     /// Normal equations under weights, and |e|² of every record.
-    pub fn normal(&self, weights: &Weights) -> (Normal, Vec<f64>) {
-        let (mut normal, mut squares) = (Normal::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
+    pub fn normal(&self, weights: &Weights) -> (NormalEquations, Vec<f64>) {
+        let (mut normal, mut squares) = (NormalEquations::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
             let HeadingSensitivities { residual, columns } = block.white(record, weights);
             for (k, (i, column)) in columns.iter().enumerate() {

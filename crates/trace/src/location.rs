@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::fit::{Effort, FittedRecords, StructureFit};
+use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named};
@@ -197,7 +197,7 @@ impl NamedStructures<'_> {
             return None;
         }
         let weights = self.problem.weights(&self.full.law);
-        let structure = best.structure.of(terms);
-        Some(self.problem.fit(&structure, theta, best.initial.clone(), &weights, Effort::FINE))
+        let structure = best.structure.with_terms(terms);
+        Some(self.problem.fit(&structure, theta, best.initial.clone(), &weights, StoppingRule::FINE))
     }
 }

@@ -7,7 +7,7 @@ use ship::effects::Prior;
 
 use crate::analysis::Analysis;
 use crate::candidates::is_variant;
-use crate::fit::Effort;
+use crate::fit::StoppingRule;
 use crate::full::start;
 use crate::law::MIN_HEADING_SD;
 use crate::missing_moment::{Explanation, MissingMoment};
@@ -31,9 +31,10 @@ impl Analysis {
             .par_iter()
             .filter(|term| !term.effect.has_instant())
             .map(|term| {
-                let structure = structure.of(vec![Arc::clone(term)]);
+                let structure = structure.with_terms(vec![Arc::clone(term)]);
                 let mut values = term.priors.iter().map(|prior: &Prior| prior.mean);
-                let fit = self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, Effort::COARSE);
+                let fit =
+                    self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, StoppingRule::COARSE);
                 (term.name(), fit.residual)
             })
             .collect();

@@ -100,7 +100,7 @@ impl Structure {
 
     /// Structure of the same base with other terms.
     #[must_use]
-    pub fn of(&self, terms: Vec<Arc<Term>>) -> Self {
+    pub fn with_terms(&self, terms: Vec<Arc<Term>>) -> Self {
         Self { terms, ..*self }
     }
 
@@ -167,7 +167,7 @@ impl Structure {
     }
 
     /// Covariance of all entries of θ from the covariance of the fitted entries; zero for fixed entries.
-    pub fn spread(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn expanded_covariance(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
         let places = self.fitted();
         let mut all = DMatrix::zeros(self.count(), self.count());
         for (i, &row) in places.iter().enumerate() {
@@ -212,7 +212,7 @@ impl Structure {
 
     /// Indices in θ of the parameters of [`response`](Self::response) for a record, base first; with `None` without the
     /// terms of single records.
-    pub fn places(&self, record: Option<usize>) -> Vec<usize> {
+    pub fn response_indices(&self, record: Option<usize>) -> Vec<usize> {
         let mut places: Vec<usize> = (0..BASE_PARAMETERS).collect();
         for (term, range) in self.terms.iter().zip(self.term_ranges()) {
             if Self::applies(term, record) {
@@ -226,7 +226,7 @@ impl Structure {
     pub fn for_record(&self, record: Option<usize>, theta: &[f64]) -> (Self, Vec<f64>) {
         let kept = self.terms.iter().filter(|term| Self::applies(term, record));
         let terms = kept.map(|term| Arc::new(Term { only: None, ..term.as_ref().clone() })).collect();
-        let mut values: Vec<f64> = self.places(record).into_iter().map(|place| theta[place]).collect();
+        let mut values: Vec<f64> = self.response_indices(record).into_iter().map(|place| theta[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             values[2] += theta[BASE_PARAMETERS + record];
         }
@@ -244,12 +244,12 @@ impl Structure {
     /// Response for one fitted record; with `None` for any other record, without the terms of single records.
     pub fn response<R: EffectReal>(&self, record: Option<usize>, theta: &[R]) -> Response<R> {
         let values = self.physical(theta);
-        let mut parameters: Vec<R> = self.places(record).into_iter().map(|place| values[place]).collect();
+        let mut parameters: Vec<R> = self.response_indices(record).into_iter().map(|place| values[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             parameters[2] = parameters[2] + values[BASE_PARAMETERS + record];
         }
         let effects = self.terms.iter().filter(|term| Self::applies(term, record));
-        ResponseModel::new(effects.map(|term| Arc::clone(&term.effect)).collect()).with(parameters)
+        ResponseModel::new(effects.map(|term| Arc::clone(&term.effect)).collect()).with_parameters(parameters)
     }
 }
 
@@ -276,7 +276,7 @@ pub fn headings<R: EffectReal>(
     let recorded = record.recorded(response);
     let mut state = vec![R::from(0.0); response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time());
-    response.enter(initial[0], initial[1], &start, &mut state);
+    response.initialise(initial[0], initial[1], &start, &mut state);
     let mut number = 0;
     let step = step(response, record.spacing, STEPS);
     replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
@@ -308,7 +308,7 @@ mod tests {
                 Arc::new(Term { effect: Arc::clone(effect), only, priors, log_odds: 0.0 })
             };
             let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();
-            let structure = Structure::base(records, 13.0).of(terms);
+            let structure = Structure::base(records, 13.0).with_terms(terms);
             let theta: Vec<f64> = (0..structure.count()).map(|place| 0.01 * (1 + place) as f64).collect();
             let last = theta[theta.len() - 1];
             let (alone, values) = structure.for_record(None, &theta);

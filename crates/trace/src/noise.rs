@@ -24,16 +24,16 @@ use crate::record::PreparedRecord;
 pub enum CorrelatedNoise {
     /// White yaw moment: r' = −a r + w.
     White,
-    /// Gusts: r' = −a r + d, d' = −d/τ + w; the index is that of τ in [`GUSTS`].
+    /// Gusts: r' = −a r + d, d' = −d/τ + w; the index is that of τ in [`GUST_CORRELATION_SHARES`].
     OrnsteinUhlenbeck(usize),
     /// Random-walk moment: r' = −a r + d, d' = w.
     Walk,
-    /// Compass error ε added to the heading: ε' = −ε/τ + w; the index is that of τ in [`COMPASS`].
+    /// Compass error ε added to the heading: ε' = −ε/τ + w; the index is that of τ in [`COMPASS_CORRELATION_SHARES`].
     Compass(usize),
-    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w; the index is that of τ in [`SMOOTH`].
+    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w; the index is that of τ in [`SMOOTH_ERROR_CORRELATION_SHARES`].
     Smooth(usize),
     /// Smooth moment of unknown shape (Matérn 3/2): r' = −a r + d, d'' + 2d'/τ + d/τ² = w; the index is that of τ in
-    /// [`SMOOTH_MOMENTS`].
+    /// [`SMOOTH_MOMENT_CORRELATION_SHARES`].
     SmoothMoment(usize),
 }
 
@@ -42,29 +42,33 @@ pub enum CorrelatedNoise {
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// Correlation times of gusts, as shares of the longest record.
-pub const GUSTS: [f64; 3] = [0.02, 0.05, 0.12];
+pub const GUST_CORRELATION_SHARES: [f64; 3] = [0.02, 0.05, 0.12];
 
 /// Correlation times of compass errors, as shares of the longest record.
-pub const COMPASS: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
+pub const COMPASS_CORRELATION_SHARES: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
 
 /// Correlation times of smooth model errors, as shares of the longest record.
-pub const SMOOTH: [f64; 3] = [0.01, 0.03, 0.08];
+pub const SMOOTH_ERROR_CORRELATION_SHARES: [f64; 3] = [0.01, 0.03, 0.08];
 
 /// Correlation times of smooth moments, as shares of the longest record.
-pub const SMOOTH_MOMENTS: [f64; 4] = [0.03, 0.06, 0.12, 0.25];
+pub const SMOOTH_MOMENT_CORRELATION_SHARES: [f64; 4] = [0.03, 0.06, 0.12, 0.25];
 
 impl CorrelatedNoise {
     /// Smooth moments. They are no noise laws: a residual that one of them describes better than any of
     /// [`all`](Self::all) is not random.
     pub fn smooth_moments() -> impl Iterator<Item = Self> {
-        (0..SMOOTH_MOMENTS.len()).map(Self::SmoothMoment)
+        (0..SMOOTH_MOMENT_CORRELATION_SHARES.len()).map(Self::SmoothMoment)
     }
 
     /// Kinds of the noise laws: random moments, then errors of the heading.
     pub fn all() -> impl Iterator<Item = Self> {
-        let gusts = (0..GUSTS.len()).map(Self::OrnsteinUhlenbeck);
-        let compass = (0..COMPASS.len()).map(Self::Compass);
-        [Self::White, Self::Walk].into_iter().chain(gusts).chain(compass).chain((0..SMOOTH.len()).map(Self::Smooth))
+        let gusts = (0..GUST_CORRELATION_SHARES.len()).map(Self::OrnsteinUhlenbeck);
+        let compass = (0..COMPASS_CORRELATION_SHARES.len()).map(Self::Compass);
+        [Self::White, Self::Walk]
+            .into_iter()
+            .chain(gusts)
+            .chain(compass)
+            .chain((0..SMOOTH_ERROR_CORRELATION_SHARES.len()).map(Self::Smooth))
     }
 
     /// `true` for an error of the heading, `false` for a moment.
@@ -73,18 +77,18 @@ impl CorrelatedNoise {
     }
 
     /// Number of parameters: the level, and the correlation time if there is one.
-    pub fn freedom(self) -> usize {
+    pub fn parameter_count(self) -> usize {
         if matches!(self, Self::White | Self::Walk) { 1 } else { 2 }
     }
 
     /// Correlation time (s) for a longest record of `longest` seconds; `None` for a white moment and a walk.
-    pub fn correlation(self, longest: f64) -> Option<f64> {
+    pub fn correlation_time(self, longest: f64) -> Option<f64> {
         match self {
             Self::White | Self::Walk => None,
-            Self::OrnsteinUhlenbeck(number) => Some(GUSTS[number] * longest),
-            Self::Compass(number) => Some(COMPASS[number] * longest),
-            Self::Smooth(number) => Some(SMOOTH[number] * longest),
-            Self::SmoothMoment(number) => Some(SMOOTH_MOMENTS[number] * longest),
+            Self::OrnsteinUhlenbeck(number) => Some(GUST_CORRELATION_SHARES[number] * longest),
+            Self::Compass(number) => Some(COMPASS_CORRELATION_SHARES[number] * longest),
+            Self::Smooth(number) => Some(SMOOTH_ERROR_CORRELATION_SHARES[number] * longest),
+            Self::SmoothMoment(number) => Some(SMOOTH_MOMENT_CORRELATION_SHARES[number] * longest),
         }
     }
 
@@ -93,11 +97,11 @@ impl CorrelatedNoise {
         let white = 3.0 / longest.powi(3);
         match self {
             Self::White => white,
-            Self::OrnsteinUhlenbeck(number) => white / (GUSTS[number] * longest).powi(2),
+            Self::OrnsteinUhlenbeck(number) => white / (GUST_CORRELATION_SHARES[number] * longest).powi(2),
             Self::Walk => 20.0 / longest.powi(5),
-            Self::Compass(number) => 2.0 / (COMPASS[number] * longest),
-            Self::Smooth(number) => 4.0 / (SMOOTH[number] * longest).powi(3),
-            Self::SmoothMoment(number) => 4.0 / (SMOOTH_MOMENTS[number] * longest).powi(3),
+            Self::Compass(number) => 2.0 / (COMPASS_CORRELATION_SHARES[number] * longest),
+            Self::Smooth(number) => 4.0 / (SMOOTH_ERROR_CORRELATION_SHARES[number] * longest).powi(3),
+            Self::SmoothMoment(number) => 4.0 / (SMOOTH_MOMENT_CORRELATION_SHARES[number] * longest).powi(3),
         }
     }
 
@@ -106,7 +110,7 @@ impl CorrelatedNoise {
     /// second; for an error of the heading the standard deviation, rad.
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
-        match (self, self.correlation(longest)) {
+        match (self, self.correlation_time(longest)) {
             (Self::Smooth(_) | Self::SmoothMoment(_), _) => level.sqrt(),
             (_, Some(time)) => (0.5 * time * square).sqrt(),
             (_, None) => square.sqrt(),
@@ -115,7 +119,7 @@ impl CorrelatedNoise {
 
     /// Matrix G of x' = G x + w (w on the last state; heading first) for a ship of this 1/T, 1/s.
     fn generator(self, damping: f64, longest: f64) -> DMatrix<f64> {
-        let fading = self.correlation(longest).map_or(0.0, f64::recip);
+        let fading = self.correlation_time(longest).map_or(0.0, f64::recip);
         match self {
             Self::White => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -damping]),
             Self::OrnsteinUhlenbeck(_) | Self::Walk => {
@@ -147,15 +151,15 @@ impl NoiseColour {
     pub const WHITE: Self = Self { correlated: None, waves: None };
 
     /// Number of parameters besides σ.
-    pub fn freedom(&self) -> usize {
-        self.correlated.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
+    pub fn parameter_count(&self) -> usize {
+        self.correlated.map_or(0, |(kind, _)| kind.parameter_count()) + if self.waves.is_some() { 3 } else { 0 }
     }
 
     /// Random moment of a record with white noise of this variance (rad²), as rudder angle for |K/T| = `gain` (1/s²).
     pub fn moment(&self, variance: f64, longest: f64, gain: f64) -> RandomMoment {
         let Some((kind, level)) = self.correlated else { return RandomMoment::None };
         let size = kind.size(level * variance, longest) / gain;
-        match (kind, kind.correlation(longest)) {
+        match (kind, kind.correlation_time(longest)) {
             (CorrelatedNoise::White, _) => RandomMoment::White { rudder_rad_root_s: size },
             (CorrelatedNoise::Walk, _) => RandomMoment::Walk { rudder_rad_per_root_s: size },
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(correlation_s)) => {
@@ -182,7 +186,7 @@ impl NoiseTransition {
     fn new(kind: CorrelatedNoise, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
         let intensity = kind.intensity(longest);
         let generator = kind.generator(inverse_time, longest);
-        let initial = match (kind, kind.correlation(longest)) {
+        let initial = match (kind, kind.correlation_time(longest)) {
             (CorrelatedNoise::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0, 0.0],
             (CorrelatedNoise::SmoothMoment(_), Some(time)) => [0.0, 0.0, 1.0, time.powi(-2)],
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity, 0.0],

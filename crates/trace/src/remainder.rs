@@ -116,7 +116,7 @@ fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
 }
 
 /// Significance level: at smaller p values innovations contradict the noise law.
-pub const IMPROBABLE: f64 = 1e-4;
+pub const SIGNIFICANCE_LEVEL: f64 = 1e-4;
 
 /// Normalised innovations of all records: their residuals (rad) whitened under a law.
 pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Vec<Innovations> {
@@ -134,5 +134,5 @@ pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLa
 fn are_noise(all: &[Innovations]) -> bool {
     let even = all.iter().map(|record| constant_variance_p_value(&record.values)).fold(1.0, f64::min);
     let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();
-    whiteness(&series).p_value.min(even * series.len() as f64) > IMPROBABLE
+    whiteness(&series).p_value.min(even * series.len() as f64) > SIGNIFICANCE_LEVEL
 }

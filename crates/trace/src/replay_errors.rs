@@ -100,7 +100,7 @@ impl ReplayDepth {
         let mut lengths: Vec<f64> = match self {
             Self::Heading => Vec::new(),
             Self::Windows => HORIZONS.into(),
-            Self::Growth => doubled.take_while(|length| is_shorter(*length, time)).chain(HORIZONS).collect(),
+            Self::Growth => doubled.take_while(|length| has_several_windows(*length, time)).chain(HORIZONS).collect(),
         };
         lengths.sort_by(f64::total_cmp);
         lengths.dedup();
@@ -109,7 +109,7 @@ impl ReplayDepth {
 }
 
 /// `true` if a record with rows at these times holds more than one window of a length, s.
-pub fn is_shorter(length: f64, time: &[f64]) -> bool {
+pub fn has_several_windows(length: f64, time: &[f64]) -> bool {
     (1.0 + MIN_LAST_PIECE) * length <= duration(time)
 }
 
@@ -230,7 +230,7 @@ fn enter<R: Real>(
         }
         None => {
             let input = record.recorded(ship).input(record.time[row], ship.dead_time());
-            ship.enter(start[0], start[1], &input, state);
+            ship.initialise(start[0], start[1], &input, state);
         }
     }
 }

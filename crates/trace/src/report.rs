@@ -420,7 +420,7 @@ impl TraceParts<'_> {
                 file: sentences::file_of(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
-                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation(self.problem.longest())),
+                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest())),
                 heading_wander: heading
                     .map(|_| if law.is_of_model() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,

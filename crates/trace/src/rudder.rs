@@ -177,7 +177,7 @@ const MIN_CRITERION_DECREASE: f64 = 10.0;
 /// Full models whose noise laws contain at least the rudder noise.
 ///
 /// The rudder noise is a white moment; another law replaces it only if it explains the records far better.
-pub fn bounded(
+pub fn with_rudder_noise(
     fulls: Vec<FullModel>,
     problem: &FittedRecords,
     gain: f64,

@@ -1,6 +1,6 @@
 //! Location of a residual within a record: time, frequency, heading, side of the rudder.
 
-use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
+use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 
 /// Location of a residual.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +58,7 @@ pub fn signature(
         None => ([f64::NAN; 2], 0.0),
     };
     let series = GappedSeries::new(time, residual, spacing);
-    let line = spectrum(&series).into_iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    let line = periodogram(&series).into_iter().max_by(|a, b| a.share.total_cmp(&b.share));
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&a, &b| heading[a].total_cmp(&heading[b]));
     let largest = by_heading

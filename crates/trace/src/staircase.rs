@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::analysis::Analysis;
-use crate::fit::{Effort, StructureFit};
+use crate::fit::{StoppingRule, StructureFit};
 use crate::model::TermName;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
@@ -50,11 +50,12 @@ impl Analysis {
         let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
         let law = NoiseLaw { colour: NoiseColour::WHITE, ..self.full.law.clone() };
         let weights = problem.weights(&law);
-        let mut fit = problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &weights, Effort::FINE);
+        let mut fit =
+            problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &weights, StoppingRule::FINE);
         let mut steps = Vec::new();
         while !fit.structure.terms.is_empty() {
             let places = 0..fit.structure.terms.len();
-            let without = |out: usize| (out, fit.without(out, problem, &weights, Effort::FINE));
+            let without = |out: usize| (out, fit.without(out, problem, &weights, StoppingRule::FINE));
             let fewer: Vec<(usize, StructureFit)> = places.into_par_iter().map(without).collect();
             let nearest = |(_, a): &(usize, StructureFit), (_, b): &(usize, StructureFit)| {
                 root_mean_square(a).total_cmp(&root_mean_square(b))

@@ -11,7 +11,7 @@ use estimation::subsets::{RemovableTerm, conditional_mean};
 use rayon::prelude::*;
 
 use crate::candidates::{is_delay, is_variant};
-use crate::fit::{Effort, FittedRecords, StructureFit};
+use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
 use crate::selection::Selection;
@@ -64,7 +64,7 @@ pub fn choose(
         .map(|full| {
             let structures = weigh(problem, &full, candidates, selection, rule);
             let evidence = structures.all.first().map_or(f64::NEG_INFINITY, |top| top.log_posterior - top.weight.ln());
-            let law = problem.log_normaliser(&full.law) - penalty * full.law.colour.freedom() as f64;
+            let law = problem.log_normaliser(&full.law) - penalty * full.law.colour.parameter_count() as f64;
             (evidence + law, full, structures)
         })
         .collect();
@@ -130,7 +130,7 @@ fn weigh(
         seen.push(names(&top.structure));
         // Alternatives to a term appear after its removal.
         for out in 0..top.structure.terms.len() {
-            let less = top.without(out, problem, &search.weights, Effort::COARSE);
+            let less = top.without(out, problem, &search.weights, StoppingRule::COARSE);
             search.screen(&search.full_parameters(&less), &less.initial, &search.terms_of(&less));
             search.store(vec![less]);
         }
@@ -145,7 +145,7 @@ impl StructureSearch<'_> {
     /// Weighs all subsets about a point of the full model and refits the best; `about` are the terms of that point.
     fn screen(&mut self, theta: &[f64], initial: &[[f64; 2]], about: &[bool]) {
         let structure = &self.full.fit.structure;
-        let normal = self.problem.posterior(structure, theta, initial, &self.weights);
+        let normal = self.problem.normal_equations(structure, theta, initial, &self.weights);
         let odds: Vec<f64> = structure.terms.iter().map(|term| self.odds(term, 1e6)).collect();
         let Some(quadratic) = QuadraticPosterior::new(&normal, structure, theta, &odds) else { return };
         if self.visibility.is_empty() {
@@ -168,7 +168,7 @@ impl StructureSearch<'_> {
                 terms[place] = Arc::clone(other);
                 let start = other.priors.iter().map(|prior| prior.mean.max(DELAY_START * prior.sd).min(prior.highest));
                 theta.splice(top.structure.term_ranges()[place].clone(), start);
-                fresh.push((top.structure.of(terms), theta, top.initial.clone()));
+                fresh.push((top.structure.with_terms(terms), theta, top.initial.clone()));
             }
         }
         self.fit_all(fresh);
@@ -179,7 +179,9 @@ impl StructureSearch<'_> {
         let fits: Vec<StructureFit> = fresh
             .into_par_iter()
             .filter(|(model, ..)| !self.evaluated.contains_key(&names(model)))
-            .map(|(model, theta, initial)| self.problem.fit(&model, theta, initial, &self.weights, Effort::COARSE))
+            .map(|(model, theta, initial)| {
+                self.problem.fit(&model, theta, initial, &self.weights, StoppingRule::COARSE)
+            })
             .collect();
         self.store(fits);
     }
@@ -207,7 +209,7 @@ impl StructureSearch<'_> {
             .take(MAX_CONVERGED)
             .map(|WeighedStructure { fit, .. }| {
                 let StructureFit { structure, theta, initial, .. } = fit.clone();
-                self.problem.fit(&structure, theta, initial, &self.weights, Effort::FINE)
+                self.problem.fit(&structure, theta, initial, &self.weights, StoppingRule::FINE)
             })
             .collect();
         self.store(fits);
@@ -269,7 +271,7 @@ impl StructureSearch<'_> {
             terms.push(Arc::clone(term));
             theta.extend_from_slice(&all[range]);
         }
-        (structure.of(terms), theta, initial)
+        (structure.with_terms(terms), theta, initial)
     }
 
     /// Log evidence plus log prior odds of a fit.

@@ -18,7 +18,7 @@ pub const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
 /// Base response with effects.
 pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
     let parameters = BASE.iter().copied().chain(effects.iter().flat_map(|(_, values)| values.clone())).collect();
-    ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
+    ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with_parameters(parameters)
 }
 
 /// Plan of a simulated record.

@@ -5,8 +5,8 @@ use estimation::column::dot;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
-use crate::fit::{FittedRecords, StructureFit, posterior};
-use crate::linear::Linear;
+use crate::fit::{FittedRecords, StructureFit, normal_equations};
+use crate::linear::Linearisation;
 use crate::model::Term;
 use crate::weights::Weights;
 
@@ -18,14 +18,14 @@ const STEP_SPACING: f64 = 1.0 / 80.0;
 
 /// Best start values of some moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step;
 /// `None` if the precision of the fit is singular.
-pub fn places(
+pub fn start_values(
     problem: &FittedRecords,
     fit: &StructureFit,
     weights: &Weights,
     terms: &[&Term],
 ) -> Vec<Option<Vec<f64>>> {
     let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
-    let normal = posterior(&linear, &fit.structure, &fit.theta, weights);
+    let normal = normal_equations(&linear, &fit.structure, &fit.theta, weights);
     let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
     let explained = factor.solve(&normal.gradient);
     terms.iter().map(|term| place(problem, fit, weights, term, &linear, &factor, &explained)).collect()
@@ -37,7 +37,7 @@ fn place(
     fit: &StructureFit,
     weights: &Weights,
     term: &Term,
-    linear: &Linear,
+    linear: &Linearisation,
     factor: &Cholesky<f64, Dyn>,
     explained: &DVector<f64>,
 ) -> Option<Vec<f64>> {

@@ -94,7 +94,7 @@ pub fn unquoted(cell: &str) -> String {
 /// Most plausible separator of a line: the highest `score` of its cells, the first in [`Separator::ALL`] on a tie.
 ///
 /// If no cell scores, the first separator that occurs in the line.
-pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
+pub fn detect_separator(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
     let mut ranges = Vec::new();
     let mut best = (0, 0, Separator::Blank);
     for separator in Separator::ALL {
@@ -195,11 +195,11 @@ mod tests {
     #[test]
     fn the_separator_with_the_most_known_names_wins() {
         let known = |cells: &[&str]| cells.iter().filter(|cell| cell.starts_with("k_")).count();
-        assert_eq!(recognise("k_a [x, y];k_b", known), Separator::Semicolon);
-        assert_eq!(recognise("k_a,k_b,other name", known), Separator::Comma);
-        assert_eq!(recognise("k_a k_b", known), Separator::Blank);
-        assert_eq!(recognise("k_a\tk_b", known), Separator::Tab);
-        assert_eq!(recognise("nothing,known", known), Separator::Comma);
+        assert_eq!(detect_separator("k_a [x, y];k_b", known), Separator::Semicolon);
+        assert_eq!(detect_separator("k_a,k_b,other name", known), Separator::Comma);
+        assert_eq!(detect_separator("k_a k_b", known), Separator::Blank);
+        assert_eq!(detect_separator("k_a\tk_b", known), Separator::Tab);
+        assert_eq!(detect_separator("nothing,known", known), Separator::Comma);
     }
 
     #[test]

@@ -109,7 +109,7 @@ impl Unit {
     }
 
     /// Factor from this unit to SI units and radians.
-    pub fn to_si(self) -> f64 {
+    pub fn si_factor(self) -> f64 {
         UNITS[self as usize].3
     }
 }
@@ -267,10 +267,10 @@ mod tests {
 
     #[test]
     fn factors_lead_to_si_units() {
-        approx::assert_relative_eq!(180.0 * Unit::Degree.to_si(), std::f64::consts::PI);
+        approx::assert_relative_eq!(180.0 * Unit::Degree.si_factor(), std::f64::consts::PI);
         // 15.5 knots are 7.974 m/s (1852 m in 3600 s).
-        approx::assert_relative_eq!(15.5 * Unit::Knot.to_si(), 7.973_888_888_888_89, max_relative = 1e-14);
-        approx::assert_relative_eq!(60.0 * Unit::DegreePerMinute.to_si(), Unit::DegreePerSecond.to_si());
-        assert_eq!(90.0 * Unit::PerMinute.to_si(), 1.5);
+        approx::assert_relative_eq!(15.5 * Unit::Knot.si_factor(), 7.973_888_888_888_89, max_relative = 1e-14);
+        approx::assert_relative_eq!(60.0 * Unit::DegreePerMinute.si_factor(), Unit::DegreePerSecond.si_factor());
+        assert_eq!(90.0 * Unit::PerMinute.si_factor(), 1.5);
     }
 }

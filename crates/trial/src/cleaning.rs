@@ -182,7 +182,7 @@ impl Rhythm {
 }
 
 /// Interpolates linearly between the values of two rows.
-pub(crate) fn draw_line(time: &[f64], values: &mut [f64], from: usize, to: usize) {
+pub(crate) fn interpolate_rows(time: &[f64], values: &mut [f64], from: usize, to: usize) {
     let slope = (values[to] - values[from]) / (time[to] - time[from]);
     for row in from + 1..to {
         values[row] = values[from] + slope * (time[row] - time[from]);
@@ -196,7 +196,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let rhythm = Rhythm::of(rudder)?;
     let new: Vec<usize> = (0..rudder.len()).filter(|&row| rhythm.is_new(row)).collect();
     for pair in new.windows(2) {
-        draw_line(time, rudder, pair[0], pair[1]);
+        interpolate_rows(time, rudder, pair[0], pair[1]);
     }
     Some(WarningCode::MissingValues.warning(format!(
         "the rudder has a new value in every {} row only; it is interpolated between the new values",

@@ -146,7 +146,7 @@ fn draught_note(share: f64) -> String {
 
 impl Conditions {
     /// The same conditions without blanks around texts.
-    pub(crate) fn trimmed(mut self) -> Self {
+    pub(crate) fn without_blanks(mut self) -> Self {
         let Self {
             administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, trial, ..
         } = &mut self;

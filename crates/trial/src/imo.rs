@@ -10,7 +10,7 @@ use document::fit::CriterionVerdict;
 use ship::Particulars;
 use ship::angle::to_deg;
 
-use crate::zigzag::{Pair, ZigZag};
+use crate::zigzag::{NominalAngles, ZigZag};
 
 /// Minimum length of a ship under the criteria, m.
 pub const MIN_LENGTH_M: f64 = 100.0;
@@ -59,14 +59,14 @@ pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
 
 /// Unit of a criterion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum CriterionUnit {
     /// Degrees.
     Degrees,
     /// Ship lengths L.
     ShipLengths,
 }
 
-impl Unit {
+impl CriterionUnit {
     /// Symbol after a number.
     pub fn symbol(self) -> &'static str {
         match self {
@@ -86,7 +86,7 @@ pub struct Criterion {
     /// Maximum value, in `unit`.
     pub limit: f64,
     /// Unit of value and limit.
-    pub unit: Unit,
+    pub unit: CriterionUnit,
 }
 
 impl Criterion {
@@ -107,7 +107,7 @@ impl Criterion {
 /// The distance of the initial turning is the integral of the recorded speed, or V t_a if the speed was not
 /// recorded; the latter is slightly long, because a ship loses speed as it begins to turn.
 pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
-    let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
+    let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: NominalAngles| pair.is_deg(angle_deg, angle_deg));
     let is_straight = zigzag.straight_yaw_rate().is_some();
     let overshoot = |angle_deg: f64, n: usize| {
         let angle = zigzag.nth_overshoot(n).filter(|_| is_pair(angle_deg) && (n > 1 || is_straight))?.angle;
@@ -121,10 +121,10 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let criterion = |name, measured, limit, unit| Criterion { name, measured, limit, unit };
     let [first, second] = [first_overshoot_10_10_limit_deg(particulars), second_overshoot_10_10_limit_deg(particulars)];
     vec![
-        criterion("10/10 first overshoot", overshoot(10.0, 1), first, Unit::Degrees),
-        criterion("10/10 second overshoot", overshoot(10.0, 2), second, Unit::Degrees),
-        criterion("20/20 first overshoot", overshoot(20.0, 1), MAX_FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
-        criterion("initial turning", initial_turning, MAX_INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
+        criterion("10/10 first overshoot", overshoot(10.0, 1), first, CriterionUnit::Degrees),
+        criterion("10/10 second overshoot", overshoot(10.0, 2), second, CriterionUnit::Degrees),
+        criterion("20/20 first overshoot", overshoot(20.0, 1), MAX_FIRST_OVERSHOOT_20_20_DEG, CriterionUnit::Degrees),
+        criterion("initial turning", initial_turning, MAX_INITIAL_TURNING_LENGTHS, CriterionUnit::ShipLengths),
     ]
 }
 

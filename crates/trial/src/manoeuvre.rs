@@ -228,7 +228,7 @@ impl Manoeuvre {
     }
 
     /// Time from the first execute to the end, s; infinite if headings or the record determine it.
-    pub fn length(&self) -> f64 {
+    pub fn duration(&self) -> f64 {
         if let Self::ZigZag { duration: Some(duration), .. } = self {
             return *duration;
         }
@@ -251,7 +251,7 @@ impl Manoeuvre {
     }
 
     /// Maximum ordered rudder angle, rad.
-    pub fn rudder(&self) -> f64 {
+    pub fn max_rudder(&self) -> f64 {
         match self {
             Self::ZigZag { rudder, .. }
             | Self::TurningCircle { rudder, .. }
@@ -267,7 +267,7 @@ impl Manoeuvre {
     }
 
     /// Side of the first execute; starboard if there is none.
-    pub fn side(&self) -> Side {
+    pub fn first_side(&self) -> Side {
         match self {
             Self::ZigZag { first: side, .. }
             | Self::TurningCircle { side, .. }
@@ -279,7 +279,7 @@ impl Manoeuvre {
     }
 
     /// The same manoeuvre with its first execute to a side; a replay and a spiral are unchanged.
-    pub fn to(mut self, first_side: Side) -> Self {
+    pub fn with_first_side(mut self, first_side: Side) -> Self {
         match &mut self {
             Self::ZigZag { first: side, .. }
             | Self::TurningCircle { side, .. }
@@ -315,16 +315,16 @@ impl Manoeuvre {
 /// Writes the notation of the command line with a blank for the colon: "zig-zag 20/10", "pull-out -20" to port.
 impl fmt::Display for Manoeuvre {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.name(), whole_deg(self.rudder() * self.side().sign()))?;
+        write!(f, "{} {}", self.name(), rounded_deg(self.max_rudder() * self.first_side().sign()))?;
         match self {
-            Self::ZigZag { heading, .. } => write!(f, "/{}", whole_deg(*heading)),
+            Self::ZigZag { heading, .. } => write!(f, "/{}", rounded_deg(*heading)),
             _ => Ok(()),
         }
     }
 }
 
 /// Angle (rad) in degrees, rounded to a millionth.
-pub fn whole_deg(angle: f64) -> f64 {
+pub fn rounded_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 

@@ -20,10 +20,10 @@ use thiserror::Error;
 use crate::channel::Channel;
 use crate::record::{RejectedReading, Trial};
 use crate::wording::counted;
-use alternation::alternation;
+use alternation::sensor_disagreement;
 pub use motion::reversals;
 pub(crate) use motion::{changes, extremes, mean_rate, range};
-use regression::{PartialSlope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
+use regression::{PartialSlope, heading_on_yaw_rate, rudder_on_heading, turn_with_rudder};
 use rudder::rudder_movements;
 
 /// Implausibility of a record, with angles in degrees for messages.
@@ -234,7 +234,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
 /// Check that heading and rudder each come from a single sensor.
 fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
     for (channel, values) in [(Channel::Heading, trial.heading()), (Channel::Rudder, trial.rudder())] {
-        if let Some(apart) = alternation(trial.time(), values) {
+        if let Some(apart) = sensor_disagreement(trial.time(), values) {
             return Err(Implausible::TwoInputs { channel: channel.label(), apart_deg: to_deg(apart) });
         }
     }
@@ -243,7 +243,7 @@ fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
 
 /// Check of the yaw rate against the heading.
 fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
-    let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > MIN_RANGE_DEG) else {
+    let Some(slope) = heading_on_yaw_rate(trial).filter(|_| range_deg(trial.heading()) > MIN_RANGE_DEG) else {
         return Ok(None);
     };
     let ratio = slope.value;

@@ -28,7 +28,7 @@ pub const SIDECAR: Kind = Kind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Which {
+pub(crate) enum ColumnReference {
     /// Index, from 0.
     Index(usize),
     /// Name in the header.
@@ -41,7 +41,7 @@ pub(crate) enum Which {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
-    pub(crate) which: Which,
+    pub(crate) which: ColumnReference,
     pub(crate) meaning: Option<ColumnMeaning>,
     /// Value of a unit of the numbers; negative for a changed sign.
     pub(crate) scale: f64,
@@ -119,7 +119,7 @@ impl Sidecar {
     }
 
     /// Used part of the record, s.
-    pub(crate) fn part(&self) -> RangeInclusive<f64> {
+    pub(crate) fn used_interval(&self) -> RangeInclusive<f64> {
         self.part.from_s.unwrap_or(f64::NEG_INFINITY)..=self.part.until_s.unwrap_or(f64::INFINITY)
     }
 
@@ -217,14 +217,14 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
         toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let conditions = conditions(text, &document, ship, Conditions { weather, trial, ..form }.trimmed())?;
+    let conditions = conditions(text, &document, ship, Conditions { weather, trial, ..form }.without_blanks())?;
     let noise = Noise {
         heading: noise.heading_deg.map(from_deg),
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
         rudder: noise.rudder_deg.map(from_deg),
     };
     let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, rudder, noise, conditions };
-    let (from_s, until_s) = sidecar.part().into_inner();
+    let (from_s, until_s) = sidecar.used_interval().into_inner();
     // Comparisons with NaN are false.
     if from_s.partial_cmp(&until_s) != Some(std::cmp::Ordering::Less) {
         let key = if sidecar.part.until_s.is_some() { "until-s" } else { "from-s" };
@@ -262,22 +262,24 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
     let fault = |problem| Err((Some(column.span()), problem));
     let ColumnKeys { index, name, is, flip, scale, zero, formula, ignore } = column.get_ref();
     let which = match (index, name, formula) {
-        (None, None, Some(formula)) => Which::Formula(ColumnFormula::read(formula.get_ref()).map_err(|error| {
-            let problem = error.to_string();
-            (Some(formula.span()), SidecarProblem::Formula { problem })
-        })?),
+        (None, None, Some(formula)) => {
+            ColumnReference::Formula(ColumnFormula::read(formula.get_ref()).map_err(|error| {
+                let problem = error.to_string();
+                (Some(formula.span()), SidecarProblem::Formula { problem })
+            })?)
+        }
         (.., Some(_)) | (Some(_), Some(_), None) => return fault(SidecarProblem::Which { given: "both" }),
         (None, None, None) => return fault(SidecarProblem::Which { given: "neither" }),
         (Some(0), None, None) => return fault(SidecarProblem::Which { given: "index 0" }),
-        (Some(index), None, None) => Which::Index(index - 1),
+        (Some(index), None, None) => ColumnReference::Index(index - 1),
         (None, Some(_), None) if !header => return fault(SidecarProblem::NameWithoutHeader),
-        (None, Some(name), None) => Which::Name(name.trim().to_owned()),
+        (None, Some(name), None) => ColumnReference::Name(name.trim().to_owned()),
     };
     let is_changed = *flip || scale.is_some() || zero.is_some();
     if *ignore && (is.is_some() || is_changed) {
         return fault(SidecarProblem::IgnoredAndUsed);
     }
-    let is_formula = matches!(which, Which::Formula(_));
+    let is_formula = matches!(which, ColumnReference::Formula(_));
     if !ignore && is.is_none() && (is_formula || !is_changed) {
         return fault(if is_formula { formula_without_meaning() } else { SidecarProblem::Idle });
     }
@@ -338,10 +340,10 @@ mod tests {
         let table = &sidecar.table;
         assert_eq!((table.skip_lines, table.header, sidecar.part.every), (4, Some(false), Some(4)));
         assert_eq!((table.separator, table.encoding), (Some(Separator::Blank), Encoding::Windows1252));
-        assert_eq!((sidecar.part(), table.time_step_s), (20.0..=110.0, Some(0.1)));
+        assert_eq!((sidecar.used_interval(), table.time_step_s), (20.0..=110.0, Some(0.1)));
         assert_eq!(sidecar.columns.len(), 2);
         assert_eq!(sidecar.columns[0].line, 11);
-        assert_eq!(sidecar.columns[0].which, Which::Index(3));
+        assert_eq!(sidecar.columns[0].which, ColumnReference::Index(3));
         assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
         let particulars = sidecar.conditions.particulars.expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);

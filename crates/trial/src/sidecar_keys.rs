@@ -145,7 +145,7 @@ impl<'de> Deserialize<'de> for ShipKeys {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut keys = Self::default();
         for (ShipKey(key), value) in BTreeMap::<ShipKey, f64>::deserialize(deserializer)? {
-            match Particular::named(&key) {
+            match Particular::find(&key) {
                 Some(particular) => particular.set(&mut keys.hull, value),
                 None => keys.speed_kn = Some(value),
             }

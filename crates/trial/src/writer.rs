@@ -19,7 +19,7 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     let channels: Vec<(Channel, f64, &[f64])> = Channel::ALL
         .into_iter()
         .filter(|&channel| channel != Channel::Heading || !trial.heading_from_yaw_rate())
-        .filter_map(|channel| Some((channel, channel.written_unit().to_si(), trial.channel(channel)?)))
+        .filter_map(|channel| Some((channel, channel.written_unit().si_factor(), trial.channel(channel)?)))
         .collect();
     let mut table = csv::Writer::from_writer(output);
     let names = channels.iter().map(|(channel, ..)| channel.column_name());

@@ -14,7 +14,7 @@ use campaign::scenario::Scenario;
 use campaign::summary::Tally;
 use identify::{Identifier, registry};
 use ship::effects::{self, Effect, Formula, OperatingPoint};
-use ship::{EffectReal, Measured, Tangent};
+use ship::{EffectReal, MeasuredChannels, Tangent};
 use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
@@ -276,8 +276,8 @@ pub fn formula(data: &[u8]) -> bool {
 fn worked_out(formula: &Formula) {
     for size in [0.0, -0.3, 1e-12, 7.0, 1e300, f64::NAN] {
         let some = Some(size);
-        let measured = Measured { speed: some, sway: some, wind_speed: some, wind_from: some, propeller: some };
-        for measured in [measured, Measured::default()] {
+        let measured = MeasuredChannels { speed: some, sway: some, wind_speed: some, wind_from: some, propeller: some };
+        for measured in [measured, MeasuredChannels::default()] {
             let values = vec![size; formula.parameters().len()];
             let plain = acceleration::<f64>(formula, &values, size, &measured);
             let Tangent { value, .. } = acceleration::<Tangent>(formula, &values, size, &measured);
@@ -286,7 +286,7 @@ fn worked_out(formula: &Formula) {
     }
 }
 
-fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, measured: &Measured) -> R {
+fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, measured: &MeasuredChannels) -> R {
     let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
     let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
     let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();

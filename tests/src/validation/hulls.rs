@@ -150,7 +150,7 @@ fn straight_approach() -> impl Iterator<Item = Check> {
 /// Yaw rate, deg/s, at the end of a long turn.
 fn steady_rate(ship: &Ship, rudder_deg: f64) -> f64 {
     let side = if rudder_deg < 0.0 { Side::Port } else { Side::Starboard };
-    let manoeuvre = Manoeuvre::turning_circle(from_deg(rudder_deg.abs())).to(side).lasting(STEADY);
+    let manoeuvre = Manoeuvre::turning_circle(from_deg(rudder_deg.abs())).with_first_side(side).lasting(STEADY);
     let mut simulation = Simulation::new(Vessel::from_ship(ship), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.32));
     simulation.recording.period = 100.0;

@@ -11,7 +11,7 @@ use ship::effects::{Effect, SecondOrder, SteeringLag, listed};
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
-use trace::fit::{Effort, FittedRecords, StructureFit};
+use trace::fit::{FittedRecords, StoppingRule, StructureFit};
 use trace::full::start;
 use trace::model::Structure;
 use trace::record::PreparedRecord;
@@ -119,13 +119,13 @@ fn lines() -> Vec<Line> {
 const NOISE: f64 = 0.01;
 
 /// Effort of fits that run to convergence.
-const EFFORT: Effort = Effort { steps: 60, negligible: 1e-4 };
+const EFFORT: StoppingRule = StoppingRule { steps: 60, negligible: 1e-4 };
 
 /// Residual of the base (deg), K (1/s), T (s); residual (deg) and parameters of the effect after it is added.
 fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let mut parameters = vec![1.0 / line.time, 0.1 / line.time, 0.0];
     parameters.extend(&line.truth);
-    let ship: Response = ResponseModel::new(vec![Arc::clone(&line.effect)]).with(parameters);
+    let ship: Response = ResponseModel::new(vec![Arc::clone(&line.effect)]).with_parameters(parameters);
     let mut simulation = zig_zag(Vessel::from_response(ship), 10.0, 10.0, from_deg(2.5), 270.0);
     simulation.sensors.heading_noise = from_deg(NOISE);
     let trial = simulation.run(&StreamKey { seed: 52, cell: 0, replicate: 0 }).expect("a plain zig-zag").trial;
@@ -140,7 +140,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());
     let term = term.expect("a candidate");
     let own = Structure::base(1, time);
-    let structure = own.of(vec![Arc::clone(&term)]);
+    let structure = own.with_terms(vec![Arc::clone(&term)]);
     let weights = problem.weights(&NoiseLaw::white(1, from_deg(NOISE).powi(2)));
     let starts = [term.priors.iter().map(|prior| prior.mean).collect(), term.neutral()];
     let fits = starts.map(|values: Vec<f64>| {

@@ -111,7 +111,7 @@ impl Anchor {
             Vessel::from_ship(&ship)
         };
         let mut simulation = zig_zag(vessel, self.rudder_deg, self.heading_deg, from_deg(self.rate_deg_s), duration);
-        simulation.manoeuvre = simulation.manoeuvre.to(self.first);
+        simulation.manoeuvre = simulation.manoeuvre.with_first_side(self.first);
         if way == Way::Stepped {
             simulation.solver = Solver::RungeKutta(STEP);
             simulation.helmsman.reads_display_every = Some(STEP);

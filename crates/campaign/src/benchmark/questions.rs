@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 
 use simulate::Manoeuvre;
-use trial::manoeuvre::whole_deg;
+use trial::manoeuvre::rounded_deg;
 use trial::{Origin, Side, Trial, ZigZag};
 
 use crate::benchmark::cases::{BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, Skipped, rounded};
@@ -48,9 +48,9 @@ impl SteeredRecord {
     }
 
     fn simulated(manoeuvre: &Manoeuvre) -> Self {
-        let rudder = whole_deg(manoeuvre.rudder());
+        let rudder = rounded_deg(manoeuvre.max_rudder());
         let zig_zag = match manoeuvre {
-            Manoeuvre::ZigZag { heading, first, .. } => Some((Some([rudder, whole_deg(*heading)]), *first)),
+            Manoeuvre::ZigZag { heading, first, .. } => Some((Some([rudder, rounded_deg(*heading)]), *first)),
             _ => None,
         };
         Self::new(None, zig_zag, manoeuvre.to_string(), None)
@@ -58,7 +58,7 @@ impl SteeredRecord {
 
     fn measured(trial: &Trial) -> Self {
         let zig_zag = ZigZag::of(trial).ok().filter(|zig_zag| zig_zag.executes.len() > 1).map(|zig_zag| {
-            let angles = zig_zag.pair.map(|pair| [pair.rudder, pair.heading].map(whole_deg));
+            let angles = zig_zag.pair.map(|pair| [pair.rudder, pair.heading].map(rounded_deg));
             (angles, zig_zag.side.unwrap_or_else(|| zig_zag.executes[0].side()))
         });
         let sha256 = match trial.origin() {

@@ -221,7 +221,7 @@ pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Resul
         effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |ship| ship.length))));
         parameters.extend(values);
     }
-    let model = Model::Response(ResponseModel::new(effects).with(parameters));
+    let model = Model::Response(ResponseModel::new(effects).with_parameters(parameters));
     Ok(Ship { model, ..ship })
 }
 

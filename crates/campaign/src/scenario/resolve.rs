@@ -27,7 +27,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         disturbances: wire.disturbance,
         ..Simulation::new(vessel(&ship, wire)?, manoeuvre(&wire.manoeuvre, folder)?)
     };
-    simulation.validate()?;
+    simulation.check()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
     let also = wire.also.iter().enumerate().map(|(index, entry)| {
         let context = format!("in the further record {}", index + 1);
@@ -121,7 +121,7 @@ fn further(
 ) -> Result<Simulation, KeyFault> {
     let checked = manoeuvre(&wire.manoeuvre, folder).and_then(|manoeuvre| {
         let simulation = Simulation { manoeuvre, ..record };
-        simulation.validate()?;
+        simulation.check()?;
         Ok(simulation)
     });
     checked.map_err(|fault| KeyFault {

@@ -100,7 +100,7 @@ pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
 fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault> {
     let mut particulars = HullParticulars::default();
     for (name, value) in numbers {
-        if let Some(particular) = Particular::named(name) {
+        if let Some(particular) = Particular::find(name) {
             particular.set(&mut particulars, *value);
         }
     }

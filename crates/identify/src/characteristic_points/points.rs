@@ -23,7 +23,7 @@ const MIN_INTERVALS: f64 = 3.0;
 
 /// Origin of the base course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BaseHeadingOrigin {
+pub enum BaseCourseOrigin {
     /// Given in the settings.
     Given,
     /// Mean heading before the first execute.
@@ -59,7 +59,7 @@ pub struct Points {
     /// Base course, rad.
     pub base: f64,
     /// Origin of the base course.
-    pub base_from: BaseHeadingOrigin,
+    pub base_from: BaseCourseOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
 }
@@ -85,11 +85,11 @@ impl Points {
         let approach = approach(samples, base, [lo, hi]);
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
         let (base, base_from) = match (base, &approach) {
-            (Some(base), _) => (base, BaseHeadingOrigin::Given),
-            (None, Some(rows)) => (mean(rows.clone()), BaseHeadingOrigin::Approach),
+            (Some(base), _) => (base, BaseCourseOrigin::Given),
+            (None, Some(rows)) => (mean(rows.clone()), BaseCourseOrigin::Approach),
             // A zero between the quarter points of the headings may be the base course.
-            (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseHeadingOrigin::Zero),
-            (None, None) => (0.5 * (lo + hi), BaseHeadingOrigin::Middle),
+            (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseCourseOrigin::Zero),
+            (None, None) => (0.5 * (lo + hi), BaseCourseOrigin::Middle),
         };
         let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;

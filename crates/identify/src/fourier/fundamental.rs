@@ -100,7 +100,7 @@ fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (
     let start = from.max(floor);
     let value = profile.rss(start);
     let direction = if profile.rss(start + step) < value { step } else { -step };
-    let mut walk = profile.walk(start, direction);
+    let mut walk = profile.sweep(start, direction);
     let mut value = walk.next_rss();
     let mut steps = 0;
     let at = |steps: i32| start + f64::from(steps) * direction;
@@ -207,7 +207,7 @@ pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
     }
     let mean = even.iter().sum::<f64>() / rows as f64;
     even.iter_mut().for_each(|x| *x -= mean);
-    let power = estimation::transform::power(&mut even);
+    let power = estimation::transform::power_spectrum(&mut even);
     let bin = (1..power.len()).max_by(|&p, &q| power[p].total_cmp(&power[q])).expect("a record has many rows");
     TAU * bin as f64 / (rows as f64 * step)
 }

@@ -83,14 +83,14 @@ impl Profile {
 
     /// RSS at `count` fundamentals from `lowest` in steps of `step` (rad/s).
     pub fn scan(&mut self, lowest: f64, step: f64, count: usize) -> Vec<f64> {
-        let mut walk = self.walk(lowest, step);
+        let mut walk = self.sweep(lowest, step);
         (0..count).map(|_| walk.next_rss()).collect()
     }
 
     /// Walk over fundamentals from `from` in steps of `step` (rad/s, either sign).
-    pub fn walk(&mut self, from: f64, step: f64) -> Walk<'_> {
+    pub fn sweep(&mut self, from: f64, step: f64) -> FrequencySweep<'_> {
         let turn = self.rows.time.iter().map(|u| phasor(0.5 * step * u)).collect();
-        Walk { profile: self, turn, from, step, done: 0 }
+        FrequencySweep { profile: self, turn, from, step, done: 0 }
     }
 
     /// Sets the phasors of `fundamental`.
@@ -168,7 +168,7 @@ impl Profile {
 
 /// Walk through fundamentals in even steps: phasors are rotated by the step instead of being computed anew.
 #[derive(Debug)]
-pub struct Walk<'a> {
+pub struct FrequencySweep<'a> {
     profile: &'a mut Profile,
     turn: Vec<[f64; 2]>,
     from: f64,
@@ -176,7 +176,7 @@ pub struct Walk<'a> {
     done: usize,
 }
 
-impl Walk<'_> {
+impl FrequencySweep<'_> {
     /// RSS at the next fundamental; the first call is at the start of the walk.
     pub fn next_rss(&mut self) -> f64 {
         let fundamental = self.from + self.done as f64 * self.step;

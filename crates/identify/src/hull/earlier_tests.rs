@@ -121,7 +121,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
     let expected = FormPrior::of_ship(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
-    let [covariance, gain] = expected.law().expect("trials are in it");
+    let [covariance, gain] = expected.covariance_and_gain().expect("trials are in it");
     let own = expected.form.coefficients();
     let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
     let of =
@@ -129,7 +129,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     near(of("epsilon"), [11.0 / 12.0, 1.0 / 12.0]);
     near(of("R0"), [0.0, 1.0]);
     near(of("delta_r"), [0.0, 1.0]);
-    assert!(FormPrior::of_ship(Some(&ballast), &[])[0].law().is_none());
+    assert!(FormPrior::of_ship(Some(&ballast), &[])[0].covariance_and_gain().is_none());
 }
 
 /// Particulars that only one ship declares are used for both ships.

@@ -88,7 +88,7 @@ impl FormPrior {
 
     /// Covariance C of the coefficients, and their gain G = C (Λ − Λ₀) on the coefficients of the earlier hull: the
     /// identity if the trials dominate, 0 if they have no information. `None` without trials.
-    pub fn law(&self) -> Option<[DMatrix<f64>; 2]> {
+    pub fn covariance_and_gain(&self) -> Option<[DMatrix<f64>; 2]> {
         let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
         let gain = &covariance * (&self.precision - precision_of(&self.form));
         Some([covariance, gain])

@@ -127,7 +127,8 @@ pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullF
         window: misfit.window.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
     };
-    let moment = FormMoment::of(&form.with(search.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &misfits);
+    let moment =
+        FormMoment::of(&form.with_coefficients(search.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &misfits);
     let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(misfits).map(residual).collect();
     let expected = expected.clone();
@@ -157,7 +158,7 @@ pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
 
 /// Hulls supported by their records: the residual of whole records is at most three times the smallest residual of all
 /// hulls and of another model (`rival`, rad; infinite without another model).
-pub fn members(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
+pub fn supported_hulls(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
     let residual = |hull: &HullEstimate| hull.mean_square().sqrt();
     let smallest = hulls.iter().map(residual).fold(rival, f64::min);
     hulls.into_iter().filter(|hull| residual(hull) <= MAX_RESIDUAL_RATIO * smallest).collect()
@@ -168,7 +169,7 @@ impl HullEstimate {
     pub fn ship<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
-        let hull = self.expected.form.with(&values).expect("the fit has replayed it");
+        let hull = self.expected.form.with_coefficients(&values).expect("the fit has replayed it");
         ScaledHull { hull, length, speed, propeller }
     }
 

@@ -1,7 +1,7 @@
 //! Objective of the fit of a hull: replays of the rudder over whole records and over windows, in which heading and yaw
 //! rate at the start are fitted while speed and sway run on; and the speed, if it was recorded.
 
-use estimation::levenberg_marquardt::{Normal, Objective};
+use estimation::levenberg_marquardt::{NormalEquations, Objective};
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
@@ -166,7 +166,7 @@ impl<'a> HullObjective<'a> {
     /// Mean square residuals of every record; `None` if the coefficients are not valid.
     pub fn misfits(&mut self, at: &[f64]) -> Option<Vec<Misfit>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
-        let hull = self.expected.form.with(&values)?;
+        let hull = self.expected.form.with_coefficients(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
         let misfit = |(track, starts): (&HullTrack, &mut Starts)| {
             let mut misfit = Misfit::default();
@@ -218,7 +218,9 @@ impl Objective for HullObjective<'_> {
     /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard
     /// over.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with(at)) else { return f64::INFINITY };
+        let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with_coefficients(at)) else {
+            return f64::INFINITY;
+        };
         let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &HullDeviations)| {
             let HullDeviations { whole, window, speed } = *deviations;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
@@ -230,12 +232,12 @@ impl Objective for HullObjective<'_> {
             + self.tracks.iter().zip(misfits).zip(&self.deviations).map(record_term).sum::<f64>()
     }
 
-    fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
+    fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
         let value = self.value(at);
-        *normal = Normal { matrix: self.expected.precision.clone(), gradient: self.prior_terms(at).0 };
+        *normal = NormalEquations { matrix: self.expected.precision.clone(), gradient: self.prior_terms(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-        let Some(hull) = self.expected.form.with(&values) else { return f64::INFINITY };
+        let Some(hull) = self.expected.form.with_coefficients(&values) else { return f64::INFINITY };
         for departure in self.turn.departures(&hull) {
             let by = DVector::from_column_slice(&departure.by[..at.len()]);
             normal.matrix.ger(1.0, &by, &by, 1.0);
@@ -256,7 +258,7 @@ impl Objective for HullObjective<'_> {
 
 /// Adds the normal equations of the windows of a record; `speed_weight` is the weight of a speed reading.
 fn add(
-    normal: &mut Normal,
+    normal: &mut NormalEquations,
     hull: &PrimeHull<Dual<DIRECTIONS>>,
     track: &HullTrack,
     cuts: &[usize],
@@ -324,7 +326,7 @@ pub(super) fn variances(
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
-    let Replayed { rows, .. } = replayed(&expected.form.with(&variables)?, track, track.whole, start);
+    let Replayed { rows, .. } = replayed(&expected.form.with_coefficients(&variables)?, track, track.whole, start);
     let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;
@@ -334,7 +336,7 @@ pub(super) fn variances(
 }
 
 /// Adds XᵀX and Xᵀe of the columns X before the column e = `error`.
-fn add_squares(normal: &mut Normal, columns: &DMatrix<f64>, error: usize, weight: f64) {
+fn add_squares(normal: &mut NormalEquations, columns: &DMatrix<f64>, error: usize, weight: f64) {
     let regressors = columns.columns(0, error - 1);
     normal.matrix.gemm_tr(weight, &regressors, &regressors, 1.0);
     normal.gradient.gemv_tr(weight, &regressors, &columns.column(error), 1.0);

@@ -10,12 +10,12 @@ use ship::vessel::mmg::Mmg;
 use ship::vessel::prime::HullForm;
 use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
-use ship::{Dynamics, Input, Measured, Motion, Particulars};
+use ship::{Dynamics, Input, MeasuredChannels, Motion, Particulars};
 use trial::{Channel, Columns, Origin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{FormMoment, FormPrior, HullEstimate, HullFitError, HullReference, fit, fit_all, members};
+use super::{FormMoment, FormPrior, HullEstimate, HullFitError, HullReference, fit, fit_all, supported_hulls};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -30,7 +30,7 @@ fn form() -> HullForm {
 }
 
 pub(super) fn hull(truth: &[f64; 19]) -> ScaledHull {
-    let hull = form().with(truth).expect("a ship");
+    let hull = form().with_coefficients(truth).expect("a ship");
     ScaledHull { hull, length: LENGTH, speed: SPEED, propeller: None }
 }
 
@@ -117,7 +117,8 @@ impl Dynamics for InWind {
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
         let Self(ship, [speed, from]) = self;
         let (wind, from) = relative_wind(*speed, *from, state[2].hypot(state[3]), state[0]);
-        let measured = Measured { wind_speed: Some(wind), wind_from: Some(from), ..Measured::default() };
+        let measured =
+            MeasuredChannels { wind_speed: Some(wind), wind_from: Some(from), ..MeasuredChannels::default() };
         ship.rates(t, state, &Input { measured, ..*input }, rate);
     }
 
@@ -238,13 +239,13 @@ fn positions_stand_for_a_speed_that_was_not_recorded() {
 
 #[test]
 fn the_hulls_that_records_speak_for_are_near_them() {
-    let found = members(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
+    let found = supported_hulls(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
     // All three forms are fitted; the quadratic form is the truth, and forms with three times its residual are left
     // out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
-    assert!(members(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
+    assert!(supported_hulls(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
 /// A start near rest is relative to the approach speed at the propeller rate of the record.

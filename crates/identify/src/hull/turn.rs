@@ -65,7 +65,7 @@ mod tests {
         }
         for form in HullForm::candidates(None) {
             let values: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
-            let departures = HardTurn::new().departures(&form.with(&values).expect("a ship"));
+            let departures = HardTurn::new().departures(&form.with_coefficients(&values).expect("a ship"));
             assert!(departures.iter().all(|departure| departure.abs() < 2.5), "{}: {departures:?}", form.as_str());
         }
     }

@@ -66,19 +66,19 @@ pub struct TrackStep {
     /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
     /// Corner of the rudder within the step.
-    pub bend: Option<Bend>,
+    pub bend: Option<RudderCorner>,
 }
 
 /// Change of the rudder rate between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bend {
+pub struct RudderCorner {
     /// Signed time from the change to the end of the step, s.
     pub remaining: f64,
     /// Change of the rate, rad/s.
     pub change: f64,
 }
 
-impl Bend {
+impl RudderCorner {
     /// Contribution to the heading (rad s²) and the yaw rate (rad s) at the end of the step, for b = 1/s².
     #[inline]
     pub fn response(&self, inverse_time: f64) -> [f64; 2] {
@@ -229,11 +229,12 @@ impl Track {
                 next = corner_at(passed);
             }
             if backward {
-                let bend = corner.map(|c| Bend { remaining: -c.after, change: rudder_rate - c.rudder_rate });
+                let bend = corner.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
                 let rudder_rate = corner.map_or(rudder_rate, |corner| corner.rudder_rate);
                 TrackStep { from: row + 1, to: row, length: -length, rudder_rate, bend }
             } else {
-                let bend = corner.map(|c| Bend { remaining: length - c.after, change: c.rudder_rate - rudder_rate });
+                let bend =
+                    corner.map(|c| RudderCorner { remaining: length - c.after, change: c.rudder_rate - rudder_rate });
                 TrackStep { from: row, to: row + 1, length, rudder_rate, bend }
             }
         })
@@ -287,7 +288,7 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if differs(step.h, length) {
+            if needs_new_transition(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
             let delta = self.rudder[from];
@@ -343,7 +344,7 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if differs(step.value.h, length) {
+            if needs_new_transition(step.value.h, length) {
                 step = TangentTransition::new(inverse_time, length);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
@@ -356,7 +357,7 @@ impl Track {
                 heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
-            if let Some(Bend { remaining, change }) = bend {
+            if let Some(RudderCorner { remaining, change }) = bend {
                 let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, remaining);
                 let change = coefficients.gain * change;
                 for (motion, part) in [by_inverse_T.phi3, value.phi3].into_iter().enumerate() {
@@ -395,7 +396,7 @@ impl Track {
         visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate, bend } in self.steps(backward) {
-            if differs(step.h, length) {
+            if needs_new_transition(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
@@ -422,6 +423,6 @@ fn keep(rows: &[usize], column: &mut Vec<f64>) {
 
 /// `true` if a step requires a transition other than that of the last step.
 #[inline(always)]
-pub fn differs(last: f64, h: f64) -> bool {
+pub fn needs_new_transition(last: f64, h: f64) -> bool {
     (last - h).abs() > STEP_TOLERANCE * h.abs()
 }

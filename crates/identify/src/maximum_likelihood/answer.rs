@@ -17,7 +17,7 @@ use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::RUDDER;
 use crate::likelihood::track::{Coefficients, Track, is_backward};
-use crate::output_error::{CONDITION_LIMIT, COURSE_UNSTABLE, MIN_GAIN_DEVIATIONS, to_response};
+use crate::output_error::{CONDITION_LIMIT, COURSE_UNSTABLE, MIN_GAIN_DEVIATIONS, response_covariance};
 use crate::profile::invert;
 use crate::robust;
 use trial::noise_model::{MomentKind, NoiseModel};
@@ -134,7 +134,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let singular = |condition| IdentifyError::Singular { condition, limit: CONDITION_LIMIT };
     let (inverse, condition) = covariance(&maximum.linearised.information).map_err(singular)?;
     let (averaged, degrees_of_freedom) = averaged_covariance(&chosen, freedom);
-    let white = to_response(&averaged, &response, degrees_of_freedom);
+    let white = response_covariance(&averaged, &response, degrees_of_freedom);
     let gain_sd = white.matrix[(1, 1)].sqrt();
     if gain < MIN_GAIN_DEVIATIONS * gain_sd {
         return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
@@ -143,9 +143,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
         .map(|(scores, part)| scores.each_ref().map(|column| column.iter().map(|x| x / part.variance).collect()))
         .collect();
     let long_run = robust::newey_west_of_three(&scores) * (readings as f64 / freedom);
-    let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
+    let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
-    let (uncertainty, warning) = robust::select(white, &robust_covariance, lag1, readings);
+    let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
     warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
@@ -297,5 +297,5 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noi
     let information = record.information(truth.inverse_T, &NoiseVector::of(noise, truth), &coefficients)?;
     let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);
-    Some(Covariance { degrees_of_freedom: None, ..to_response(&covariance, truth, 1.0) })
+    Some(Covariance { degrees_of_freedom: None, ..response_covariance(&covariance, truth, 1.0) })
 }

@@ -233,7 +233,7 @@ fn fit_laws(
         all.clear();
     }
     for (a, vectors) in coloured_starts {
-        let starts = search.spread(a, &vectors, COMPASS);
+        let starts = search.entry_starts(a, &vectors, COMPASS);
         let start = search.best_start(starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
@@ -279,10 +279,10 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
             continue;
         }
         let starts = match kind {
-            MomentKind::None if none[0].rudder => search.spread(a, &none, RUDDER),
+            MomentKind::None if none[0].rudder => search.entry_starts(a, &none, RUDDER),
             MomentKind::None => vec![(a, none.clone())],
-            MomentKind::White | MomentKind::Walk => search.levels(a, &none, kind),
-            MomentKind::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
+            MomentKind::White | MomentKind::Walk => search.level_starts(a, &none, kind),
+            MomentKind::OrnsteinUhlenbeck => search.gust_starts(white.as_ref(), walk.as_ref()),
         };
         let start = search.best_start(starts, |point| point.restricted);
         // A moment without gain at any size is absent; the BIC still counts its entries.

@@ -39,7 +39,7 @@ pub(super) struct Record {
 /// Whitened columns of one record: nuisance columns of its initial state and jumps, orthonormal; and the responses to
 /// rudder and constant and the readings, projected off the nuisance columns.
 #[derive(Debug, Clone)]
-pub(super) struct White {
+pub(super) struct WhitenedColumns {
     pub filter: Whitener,
     pub nuisance: Vec<Vec<f64>>,
     /// Triangular factor from the orthonormal columns to those of the initial state and the jumps.
@@ -65,7 +65,7 @@ pub(super) struct RecordAtPoint {
     pub determinant: f64,
     /// Products of the sensitivities to 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
-    pub white: White,
+    pub white: WhitenedColumns,
     /// Whitened sensitivity of the readings to 1/T, projected off the nuisance columns.
     pub by_time: Vec<f64>,
 }
@@ -101,7 +101,7 @@ impl Record {
     }
 
     /// Declared rudder error of a noise vector, rad.
-    pub fn tied(&self, vector: &NoiseVector) -> Option<f64> {
+    pub fn declared_rudder_error(&self, vector: &NoiseVector) -> Option<f64> {
         self.declared.filter(|_| vector.rudder)
     }
 
@@ -118,7 +118,7 @@ impl Record {
 
     /// Columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a column is
     /// not finite.
-    fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<White> {
+    fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<WhitenedColumns> {
         let mut motion = MotionColumns::default();
         self.track.fill(inverse_time, &mut motion);
         let MotionColumns { homogeneous, rudder, constant, rates } = &motion;
@@ -130,11 +130,11 @@ impl Record {
             self.schedule.stacked(constant, &rates.constant),
             self.schedule.stacked(&self.track.heading, &self.track.rates),
         ];
-        White::new(nuisance, columns, whitener(&self.schedule, noise, [0.0; 2]))
+        WhitenedColumns::new(nuisance, columns, whitener(&self.schedule, noise, [0.0; 2]))
     }
 
     /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
-    fn by_time(&self, white: &White, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
+    fn by_time(&self, white: &WhitenedColumns, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
         let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
         self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
         let mut column = self.schedule.stacked(&by_heading, &by_rate);
@@ -165,7 +165,7 @@ pub(super) fn project_off(unit: &[f64], column: &mut [f64]) -> f64 {
     share
 }
 
-impl White {
+impl WhitenedColumns {
     fn new(mut nuisance: Vec<Vec<f64>>, mut projected: [Vec<f64>; 3], filter: Whitener) -> Option<Self> {
         let (first, jumps) = nuisance.split_at_mut(2);
         let [heading, yaw_rate] = first else { return None };
@@ -234,7 +234,7 @@ struct Weight {
 
 impl Weight {
     /// Weight of a record; `all` is the number of readings of all records.
-    fn new(record: &Record, vector: &NoiseVector, white: &White, all: usize) -> Self {
+    fn new(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Self {
         let readings = record.len() as f64;
         let fitted = record.nuisance_count() as f64 + SHARED as f64 * readings / all as f64;
         let [rudder, constant, measured] = &white.projected;
@@ -242,7 +242,7 @@ impl Weight {
             products: gram([rudder, constant, measured]),
             readings,
             freedom: readings - fitted,
-            tied: record.tied(vector).map(|sd| sd / vector.log[RUDDER].exp()),
+            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER].exp()),
         }
     }
 
@@ -302,7 +302,7 @@ impl RecordAtPoint {
         record: &Record,
         inverse_time: f64,
         [gain, offset]: [f64; 2],
-        white: White,
+        white: WhitenedColumns,
         weight: &Weight,
         variance: f64,
     ) -> Option<Self> {
@@ -328,9 +328,11 @@ pub(super) fn readings(records: &[Record]) -> usize {
 pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let columns =
         |(record, vector): (&Record, &NoiseVector)| record.white(inverse_time, &vector.parameters(inverse_time));
-    let columns = records.iter().zip(vectors).map(columns).collect::<Option<Vec<White>>>()?;
+    let columns = records.iter().zip(vectors).map(columns).collect::<Option<Vec<WhitenedColumns>>>()?;
     let all = readings(records);
-    let weight = |((record, vector), white): ((&Record, &NoiseVector), &White)| Weight::new(record, vector, white, all);
+    let weight = |((record, vector), white): ((&Record, &NoiseVector), &WhitenedColumns)| {
+        Weight::new(record, vector, white, all)
+    };
     let weights: Vec<Weight> = records.iter().zip(vectors).zip(&columns).map(weight).collect();
     let (steering, variances) = weigh(&weights)?;
     let steering: [f64; 2] = steering.into();

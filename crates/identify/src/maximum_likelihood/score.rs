@@ -80,7 +80,7 @@ impl Linearised {
         let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);
         let (all, a, steering) = (readings(records), point.inverse_time, [point.gain, point.offset]);
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
-        let is_tied = record.tied(vector).is_some();
+        let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
         let by_ship = if vector.moment != MomentKind::None || vector.rudder {
             let by = DIFFERENCE * (a.abs() + record.track.duration().recip());

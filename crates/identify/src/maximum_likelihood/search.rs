@@ -118,7 +118,7 @@ impl Search<'_> {
     }
 
     /// Starts of several sizes for the moment of a kind.
-    pub fn levels(&self, inverse_time: f64, vectors: &[NoiseVector], moment: MomentKind) -> Vec<Start> {
+    pub fn level_starts(&self, inverse_time: f64, vectors: &[NoiseVector], moment: MomentKind) -> Vec<Start> {
         let level = |by: f64| {
             self.start(inverse_time, vectors, |vector, ranges| {
                 // The effect of a moment shows within a quarter of a record.
@@ -130,7 +130,7 @@ impl Search<'_> {
     }
 
     /// Starts for gusts: short gusts, which act like a white moment, and long gusts, which act like a walk.
-    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<Start> {
+    pub fn gust_starts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<Start> {
         let mut starts = Vec::new();
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
             let Some(point) = point else { continue };
@@ -148,7 +148,7 @@ impl Search<'_> {
     }
 
     /// Starts for an entry of all noise vectors: a few values over its range.
-    pub fn spread(&self, inverse_time: f64, vectors: &[NoiseVector], entry: usize) -> Vec<Start> {
+    pub fn entry_starts(&self, inverse_time: f64, vectors: &[NoiseVector], entry: usize) -> Vec<Start> {
         let start = |share: f64| {
             self.start(inverse_time, vectors, |vector, ranges| {
                 let [low, high] = ranges.range(vector, entry);

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::filter::{Filters, NormalEquations, Point};
+use super::filter::{Filters, InstrumentalEquations, Point};
 use super::record::Record;
 use crate::robust;
 
@@ -30,7 +30,7 @@ impl Residuals {
     /// Residuals and covariance from every record, filtered with the final estimate.
     ///
     /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
-    pub fn new(records: &[Record], point: &Point, blocks: &[NormalEquations]) -> Option<Self> {
+    pub fn new(records: &[Record], point: &Point, blocks: &[InstrumentalEquations]) -> Option<Self> {
         let count: usize = records.iter().map(|record| record.observed).sum();
         let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;
         if degrees_of_freedom <= 0.0 {

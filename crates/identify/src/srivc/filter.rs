@@ -125,7 +125,7 @@ impl Filters {
 
 /// Columns on the left of the normal equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Left {
+pub(super) enum LeftColumns {
     /// Regressors: least squares.
     Regressors,
     /// Noise-free instruments.
@@ -133,7 +133,7 @@ pub(super) enum Left {
 }
 
 /// Normal equations of one record, Zᵀ[−lp ψ, F δ, F 1/s, 1, φ₁] θ = Zᵀψ, with the last two unknowns eliminated.
-pub(super) struct NormalEquations {
+pub(super) struct InstrumentalEquations {
     /// Z̃ᵀZ̃ of the shared unknowns, Z̃ being Z projected off 1 and φ₁.
     pub instruments: Matrix3<f64>,
     /// Z̃ᵀX of the shared unknowns.
@@ -148,15 +148,15 @@ pub(super) struct NormalEquations {
     inner_target: Vector2<f64>,
 }
 
-impl NormalEquations {
+impl InstrumentalEquations {
     /// One pass over `record` with the filters of `shared`; `None` if 1 and φ₁ are parallel, as after an overflow.
-    pub fn new(record: &Record, shared: Shared, start: State, left: Left) -> Option<Self> {
+    pub fn new(record: &Record, shared: Shared, start: State, left: LeftColumns) -> Option<Self> {
         let mut gram = SMatrix::<f64, 5, 5>::zeros();
         let mut cross = SMatrix::<f64, 5, 2>::zeros();
         Filters::run(record, shared, start, |row, filters| {
             let z = match left {
-                Left::Regressors => filters.regressors(),
-                Left::Instruments => filters.instruments(),
+                LeftColumns::Regressors => filters.regressors(),
+                LeftColumns::Instruments => filters.instruments(),
             };
             for column in 0..5 {
                 gram.column_mut(column).axpy(z[column], &z, 1.0);

@@ -40,7 +40,7 @@ use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_iterations, require};
 use covariance::Residuals;
-use filter::{Left, NormalEquations, Point, Shared};
+use filter::{InstrumentalEquations, LeftColumns, Point, Shared};
 use record::Record;
 
 /// Minimum number of headings of a trial: twice its unknowns.
@@ -92,7 +92,7 @@ pub struct Srivc {
 struct Solution {
     point: Point,
     condition: f64,
-    blocks: Vec<NormalEquations>,
+    blocks: Vec<InstrumentalEquations>,
 }
 
 impl Identifier for Srivc {
@@ -134,7 +134,8 @@ impl Identifier for Srivc {
         let count = residuals.count as f64;
         let robust_covariance = covariance(&residuals.robust);
         let white = covariance(&residuals.white);
-        let (uncertainty, warning) = crate::robust::select(white, &robust_covariance, residuals.lag1, residuals.count);
+        let (uncertainty, warning) =
+            crate::robust::reported_covariance(white, &robust_covariance, residuals.lag1, residuals.count);
         let mut warnings = Vec::from_iter(warning);
         if inverse_time < 0.0 {
             warnings.push(WarningCode::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
@@ -163,7 +164,7 @@ impl Srivc {
     fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
         let zero =
             Point { shared: Shared { a: 0.0, b: 0.0, bias: 0.0 }, starts: vec![State::default(); records.len()] };
-        self.solve(records, &zero, Left::Regressors)
+        self.solve(records, &zero, LeftColumns::Regressors)
     }
 
     /// Iterates to the fixed point; also returns the number of iterations.
@@ -177,7 +178,7 @@ impl Srivc {
         let (mut share, mut before, mut oscillates): (f64, f64, bool) = (1.0, 0.0, false);
         for iteration in 1..=self.settings.max_iterations {
             let last = solution.point;
-            solution = self.solve(records, &last, Left::Instruments)?;
+            solution = self.solve(records, &last, LeftColumns::Instruments)?;
             let now = solution.point.shared;
             let change = now.a - last.shared.a;
             oscillates |= change * before < -0.5 * before * before;
@@ -200,16 +201,16 @@ impl Srivc {
     }
 
     /// Solution of the common normal equations after one pass over all records.
-    fn solve(&self, records: &[Record], at: &Point, left: Left) -> Result<Solution, IdentifyError> {
+    fn solve(&self, records: &[Record], at: &Point, left: LeftColumns) -> Result<Solution, IdentifyError> {
         let limit = self.settings.condition_limit;
         let singular = |condition| IdentifyError::Singular { condition, limit };
-        let blocks: Option<Vec<NormalEquations>> = records
+        let blocks: Option<Vec<InstrumentalEquations>> = records
             .iter()
             .zip(&at.starts)
-            .map(|(record, &start)| NormalEquations::new(record, at.shared, start, left))
+            .map(|(record, &start)| InstrumentalEquations::new(record, at.shared, start, left))
             .collect();
         let blocks = blocks.ok_or_else(|| singular(f64::INFINITY))?;
-        let sum = |part: fn(&NormalEquations) -> Matrix3<f64>| blocks.iter().map(part).sum::<Matrix3<f64>>();
+        let sum = |part: fn(&InstrumentalEquations) -> Matrix3<f64>| blocks.iter().map(part).sum::<Matrix3<f64>>();
         let gram = sum(|block| block.instruments);
         let scale = Vector3::from_fn(|i, _| 1.0 / gram[(i, i)].sqrt());
         let scaled = |matrix: Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);

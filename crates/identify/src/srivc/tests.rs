@@ -95,7 +95,8 @@ impl Spread {
         for seed in 0..REPEATS {
             let noisy = heading.iter().zip(noise(seed)).map(|(psi, e)| psi + from_deg(case.noise_deg) * e).collect();
             let trial = record("noisy", time.clone(), noisy, rudder.clone());
-            let least_squares = srivc().solve(&[Record::new(&trial)], &true_filter, Left::Regressors).expect("steered");
+            let least_squares =
+                srivc().solve(&[Record::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
             let Shared { a, b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
             let robust = estimate.robust.as_ref().expect("a robust covariance").indices(&estimate.response);

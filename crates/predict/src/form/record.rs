@@ -8,7 +8,7 @@ use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
-use crate::imo::{CIRCLE, CIRCLE_RUDDER, FormManoeuvre, TEN, TOLERANCE, TWENTY};
+use crate::imo::{CIRCLE_RUDDER, FormManoeuvre, TOLERANCE, TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
 use crate::turn::{self, HeldTurn};
 
 /// Maximum yaw rate of a straight approach, relative to the maximum yaw rate of the record.
@@ -84,8 +84,8 @@ fn side(sign: f64) -> &'static str {
 fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
     let is_pair = |angle: f64| zigzag.pair.is_some_and(|pair| pair.is_deg(angle, angle));
     let manoeuvre = match (is_pair(10.0), is_pair(20.0)) {
-        (true, _) => TEN,
-        (_, true) => TWENTY,
+        (true, _) => ZIG_ZAG_10_10,
+        (_, true) => ZIG_ZAG_20_20,
         _ => {
             let pair = zigzag.pair.map_or_else(|| String::from("no regular pair of angles"), |pair| pair.to_string());
             return Err(format!("a zig-zag of {pair}, which is not part of the form"));
@@ -109,11 +109,12 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
         }
     }
     let names: &[&'static str] = match manoeuvre {
-        TEN => &["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"],
+        ZIG_ZAG_10_10 => &["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"],
         _ => &["first_overshoot_deg"],
     };
     let show = |name: &&'static str| Some((*name, helm_replay::shown(trial, zigzag, name, None, trial.particulars())?));
-    let stands_in = manoeuvre == TEN && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
+    let stands_in =
+        manoeuvre == ZIG_ZAG_10_10 && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
     let remarks = [
         (!is_seen).then_some("the record begins with the first execute, so its approach is not recorded"),
         stands_in.then_some(
@@ -156,5 +157,5 @@ fn circle(trial: &Trial) -> Classified {
     let remark = figures
         .is_empty()
         .then(|| String::from("a turning circle without a track: it shows neither advance nor diameter"));
-    Ok(((CIRCLE, side(turn.side)), figures, remark))
+    Ok(((TURNING_CIRCLE_35, side(turn.side)), figures, remark))
 }

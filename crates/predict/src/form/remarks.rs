@@ -7,7 +7,7 @@ use ship::Particulars;
 use trial::{Conditions, Loading, imo};
 
 use super::record::TestedManoeuvre;
-use crate::imo::{CIRCLE, TEN, TWENTY};
+use crate::imo::{TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
 use crate::replay::file_of;
 
 /// Remarks, in order of relevance.
@@ -35,7 +35,7 @@ pub(crate) fn remarks(
         ));
     }
     remarks.extend(tested.iter().filter_map(of_current));
-    for manoeuvre in [TEN, TWENTY, CIRCLE] {
+    for manoeuvre in [ZIG_ZAG_10_10, ZIG_ZAG_20_20, TURNING_CIRCLE_35] {
         for side in ["port", "starboard"] {
             if tested.iter().filter(|tested| tested.is(manoeuvre, side)).count() > 1 {
                 remarks.push(format!(
@@ -49,7 +49,8 @@ pub(crate) fn remarks(
 
 /// Manoeuvres that were not tested, or to a single side only.
 fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
-    let names = [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")];
+    let names =
+        [(ZIG_ZAG_10_10, "10/10 zig-zag"), (ZIG_ZAG_20_20, "20/20 zig-zag"), (TURNING_CIRCLE_35, "turning circle")];
     let missing = |(manoeuvre, name): (&'static str, &str)| {
         let done = ["port", "starboard"].map(|side| tested.iter().any(|test| test.is(manoeuvre, side)).then_some(side));
         match done {
@@ -71,7 +72,7 @@ fn of_current(tested: &TestedManoeuvre) -> Option<String> {
             "{file}: a current of {:.2} m/s that sets to {:.0}° was removed from the track",
             current.speed_m_s, current.set_deg
         )),
-        None => tested.what.filter(|(manoeuvre, _)| *manoeuvre == CIRCLE).map(|_| {
+        None => tested.what.filter(|(manoeuvre, _)| *manoeuvre == TURNING_CIRCLE_35).map(|_| {
             format!(
                 "{file}: the turn is shorter than the 720° that reveal a current, so its effect on the track is unknown"
             )

@@ -2,7 +2,9 @@
 //!
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
-use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
+use super::effect::{
+    Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+};
 use crate::angle::DEGREE;
 use estimation::number::Real;
 
@@ -31,9 +33,9 @@ impl Effect for Backlash {
         }
     }
 
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let ([mean, sd, largest], g) = (Self::prior(records), Self::HALF_WIDTH);
-        Some(Proposal::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
+        Some(CandidateEffect::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
     fn targets(&self) -> Targets {
@@ -60,7 +62,7 @@ impl<R: Real> Action<R> for Backlash {
         rate.fill(R::from(0.0));
     }
 
-    fn settle(&self, p: &[R], z: &mut [R], before: R) {
+    fn update_memory(&self, p: &[R], z: &mut [R], before: R) {
         z[0] = self.rudder(p, z, before);
     }
 }

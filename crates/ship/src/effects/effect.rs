@@ -6,7 +6,7 @@ use std::sync::Arc;
 use estimation::number::Real;
 
 use super::file_number::{FileNumber, FileRole};
-use crate::dynamics::{Measured, Regressor};
+use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
 
@@ -101,19 +101,19 @@ pub struct OperatingPoint<'a, R = f64> {
     /// b = K/T at approach speed, 1/s².
     pub gain: R,
     /// Measured channels.
-    pub measured: &'a Measured,
+    pub measured: &'a MeasuredChannels,
 }
 
 /// Factors on a = 1/T and b = K/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale<R = f64> {
+pub struct BaseFactors<R = f64> {
     /// Factor on a.
     pub damping: R,
     /// Factor on b.
     pub gain: R,
 }
 
-impl<R: Real> Scale<R> {
+impl<R: Real> BaseFactors<R> {
     /// Factors equal to one.
     pub fn none() -> Self {
         Self { damping: R::from(1.0), gain: R::from(1.0) }
@@ -208,7 +208,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Candidate effect with its priors in these records; `None` if they do not identify it, e.g. without its channel.
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal>;
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect>;
 
     /// Quantities on which the effect acts.
     fn targets(&self) -> Targets;
@@ -296,11 +296,11 @@ pub trait Action<R: Real> {
     fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, _rate: &mut [R]) {}
 
     /// Update of memory that follows no differential equation, once a step.
-    fn settle(&self, _p: &[R], _z: &mut [R], _before: R) {}
+    fn update_memory(&self, _p: &[R], _z: &mut [R], _before: R) {}
 
     /// Factors on damping and gain.
-    fn scale(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>) -> Scale<R> {
-        Scale::none()
+    fn base_factors(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>) -> BaseFactors<R> {
+        BaseFactors::none()
     }
 
     /// Addition to the yaw acceleration, rad/s².
@@ -413,14 +413,14 @@ impl Prior {
 
 /// Candidate effect with its constants from the records, and its priors.
 #[derive(Debug, Clone)]
-pub struct Proposal {
+pub struct CandidateEffect {
     /// Effect.
     pub effect: Arc<dyn Effect>,
     /// Prior of every parameter.
     pub priors: Vec<Prior>,
 }
 
-impl Proposal {
+impl CandidateEffect {
     /// Effect with its priors.
     pub fn new(effect: impl Effect + 'static, priors: impl Into<Vec<Prior>>) -> Self {
         Self { effect: Arc::new(effect), priors: priors.into() }

@@ -24,8 +24,8 @@ mod wave_yaw;
 
 pub use backlash::Backlash;
 pub use effect::{
-    Action, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Scale,
-    SwayCoupling, Targets,
+    Action, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
+    RecordScales, SwayCoupling, Targets,
 };
 pub use file_number::{FileNumber, FileRole};
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
@@ -58,7 +58,7 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
 ///
 /// A constant with a positive neutral value must be positive: an approach speed (m/s), a propeller rate (1/s), a length
 /// (m), an edge (s).
-pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+pub fn find(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
     let listed: Vec<Arc<dyn Effect>> = all().into_iter().filter(|effect| effect.id() == id).collect();
     let effect = match listed.is_empty() {
         true => Formula::named(id, form).ok()?,
@@ -82,12 +82,10 @@ mod tests {
     fn every_effect_is_found_by_what_is_written_of_it() {
         for effect in all() {
             let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
-            let again = named(effect.id(), effect.form(), &constants).expect("all are known");
+            let again = find(effect.id(), effect.form(), &constants).expect("all are known");
             let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
             assert_eq!((again.id(), again.form(), read_back), (effect.id(), effect.form(), constants));
         }
-        assert!(
-            named("second_order", "", &[1.0]).is_none() && named("speed_loss", "measured speed", &[-1.0]).is_none()
-        );
+        assert!(find("second_order", "", &[1.0]).is_none() && find("speed_loss", "measured speed", &[-1.0]).is_none());
     }
 }

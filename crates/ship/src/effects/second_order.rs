@@ -2,7 +2,9 @@
 //!
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
-use super::effect::{Action, Description, Effect, Parameter, Prior, Proposal, RecordScales, SwayCoupling, Targets};
+use super::effect::{
+    Action, CandidateEffect, Description, Effect, Parameter, Prior, RecordScales, SwayCoupling, Targets,
+};
 use estimation::number::Real;
 
 /// Second-order response T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -29,12 +31,12 @@ impl Effect for SecondOrder {
     }
 
     /// Priors of T₂ and of T₃ − T₂, which is the amplitude: T₂U/L of hulls is 0.1 to 0.5 and T₃U/L 0.3 to 1.
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let time = records.time;
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
         let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
         let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
-        Some(Proposal::new(*self, [second, Prior { beside: Some(0), ..lead }]))
+        Some(CandidateEffect::new(*self, [second, Prior { beside: Some(0), ..lead }]))
     }
 
     fn targets(&self) -> Targets {

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Scale, Targets,
+    Action, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
 };
 use super::file_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
@@ -110,7 +110,7 @@ impl Effect for SpeedLoss {
 
     /// Priors from hulls: loss c_u U/L of 0 ± 1, recovery time T_u U/L of 7 ± 4; with a measured speed, free-stream
     /// share e of 0.5 ± 0.25.
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let time = records.time;
         let propeller = |mean| match records.propeller {
             Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
@@ -123,19 +123,19 @@ impl Effect for SpeedLoss {
                 let recovery = Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
                     .within([time, 2.0 * records.duration.max(time)]);
                 let loss = Prior::normal(&MODELLED[0], 0.0, 1.0 * time);
-                Some(Proposal::new(*self, [loss, recovery.shape(), Prior::fixed(Self::FREE_STREAM[1])]))
+                Some(CandidateEffect::new(*self, [loss, recovery.shape(), Prior::fixed(Self::FREE_STREAM[1])]))
             }
             Self::Measured { .. } => None,
             Self::Inflow { .. } => {
                 let inflow =
                     Self::Inflow { approach_speed: records.speed?, approach_rate: records.propeller.unwrap_or(1.0) };
                 let speed = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
-                Some(Proposal::new(inflow, [speed[0], speed[1], propeller(0.5)]))
+                Some(CandidateEffect::new(inflow, [speed[0], speed[1], propeller(0.5)]))
             }
             Self::Propeller { .. } if records.speed.is_some() => None,
             Self::Propeller { .. } => {
                 let prior = Prior::normal(&PROPELLER[0], Self::FREE_STREAM[1], 1.0);
-                Some(Proposal::new(Self::Propeller { approach_rate: records.propeller? }, [prior]))
+                Some(CandidateEffect::new(Self::Propeller { approach_rate: records.propeller? }, [prior]))
             }
         }
     }
@@ -183,34 +183,34 @@ impl<R: Real> Action<R> for SpeedLoss {
         }
     }
 
-    fn scale(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> Scale<R> {
+    fn base_factors(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> BaseFactors<R> {
         match self {
             Self::Modelled => {
                 let q = z[0].at_least(MIN_SPEED_RATIO);
                 // The free-stream exponent is not fitted and requires no power function.
                 let gain = if p[2] == R::from(Self::FREE_STREAM[1]) { q * q } else { q.powf(p[2]) };
-                Scale { damping: q, gain }
+                BaseFactors { damping: q, gain }
             }
             Self::Measured { approach_speed } => match now.measured.speed {
                 Some(speed) => {
                     let q = R::from((speed / approach_speed).max(MIN_SPEED_RATIO));
-                    Scale { damping: q.powf(p[0]), gain: q.powf(p[1]) }
+                    BaseFactors { damping: q.powf(p[0]), gain: q.powf(p[1]) }
                 }
-                None => Scale::none(),
+                None => BaseFactors::none(),
             },
             Self::Inflow { approach_speed, approach_rate } => {
                 let change = |measured: Option<f64>, base: f64| measured.map_or(0.0, |value| value / base - 1.0);
                 let (q, n) =
                     (change(now.measured.speed, *approach_speed), change(now.measured.propeller, *approach_rate));
                 let flow = (p[1] * q + p[2] * n + 1.0).at_least(MIN_SPEED_RATIO);
-                Scale { damping: (p[0] * q + 1.0).at_least(MIN_SPEED_RATIO), gain: flow * flow }
+                BaseFactors { damping: (p[0] * q + 1.0).at_least(MIN_SPEED_RATIO), gain: flow * flow }
             }
             Self::Propeller { approach_rate } => match now.measured.propeller {
                 Some(rate) => {
                     let q = R::from((rate / approach_rate).max(MIN_SPEED_RATIO));
-                    Scale { damping: R::from(1.0), gain: q.powf(p[0]) }
+                    BaseFactors { damping: R::from(1.0), gain: q.powf(p[0]) }
                 }
-                None => Scale::none(),
+                None => BaseFactors::none(),
             },
         }
     }

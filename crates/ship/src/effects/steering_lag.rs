@@ -1,6 +1,8 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
-use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
+use super::effect::{
+    Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+};
 use estimation::number::Real;
 
 /// Lag of the acting rudder behind the recorded rudder.
@@ -32,18 +34,18 @@ impl Effect for SteeringLag {
         Description { id: "steering_lag", form, equation, parameters }
     }
 
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let RecordScales { time, spacing, .. } = *records;
         let sd = 0.1 * time + 0.2 * spacing;
         Some(match self {
             Self::DeadTime => {
                 let longest = (4.0 * sd).min(DEAD_TIME[0].highest);
-                Proposal::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
+                CandidateEffect::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
                 // Records with a coarser sampling interval do not resolve the lag of a ship.
                 let shortest = Some(MIN_LAG_S.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
-                Proposal::new(
+                CandidateEffect::new(
                     *self,
                     [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
                 )
@@ -117,9 +119,9 @@ mod tests {
             span: [0.0, 1e5],
         };
         for effect in [SteeringLag::DeadTime, SteeringLag::FirstOrder] {
-            assert!(effect.proposal(&records(1.0)).is_some());
+            assert!(effect.candidate(&records(1.0)).is_some());
             let is_dead_time = effect == SteeringLag::DeadTime;
-            assert_eq!(effect.proposal(&records(1000.0)).is_some(), is_dead_time);
+            assert_eq!(effect.candidate(&records(1000.0)).is_some(), is_dead_time);
         }
     }
 }

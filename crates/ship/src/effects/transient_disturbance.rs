@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::effect::{Action, Description, Effect, OperatingPoint, Parameter, Prior, Proposal, RecordScales, Targets};
+use super::effect::{
+    Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
 use crate::angle::DEGREE;
 use crate::particulars::Dimension;
@@ -75,19 +77,19 @@ impl Effect for TransientDisturbance {
         true
     }
 
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let RecordScales { spacing, span: [start, end], .. } = *records;
         let length = end - start;
         let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
             let instant = Prior::uniform([start + END_MARGIN_SHARE * length, end - END_MARGIN_SHARE * length]);
-            return Some(Proposal::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
+            return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
         }
         // A squall begins and ends within the record.
         let margin = MAX_DURATION_SHARE * 0.25 * length;
         let duration = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * length];
         let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(duration)];
-        Some(Proposal::new(*self, [moment, place[0], place[1]]))
+        Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }
 
     fn targets(&self) -> Targets {

@@ -2,7 +2,7 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{Action, Description, Effect, Parameter, Proposal, RecordScales, Targets};
+use super::effect::{Action, CandidateEffect, Description, Effect, Parameter, RecordScales, Targets};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
@@ -32,7 +32,7 @@ impl Effect for WaveYaw {
     }
 
     /// `None`: wave yaw is not part of the response; it is identified as part of the noise law.
-    fn proposal(&self, _about: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
         None
     }
 

@@ -44,7 +44,7 @@ impl Response {
     fn excess(&self, yaw_rate: f64, rudder: f64, memory: &mut Memory) -> f64 {
         let Memory { state, rate } = memory;
         let input = Input { rudder, ..Input::default() };
-        self.enter(0.0, yaw_rate, &input, state);
+        self.initialise(0.0, yaw_rate, &input, state);
         let slow = self.coupling.as_ref().map(|(_, place)| *place);
         for place in (2..state.len()).filter(|place| Some(*place) != slow) {
             let step = 1e-4;
@@ -92,7 +92,7 @@ mod tests {
     fn ship(inverse_time: f64, effect: Arc<dyn Effect>, parameters: &[f64]) -> Response {
         let mut values = vec![inverse_time, 6e-3, 0.01];
         values.extend_from_slice(parameters);
-        ResponseModel::new(vec![effect]).with(values)
+        ResponseModel::new(vec![effect]).with_parameters(values)
     }
 
     /// −a r − n r³ + b (δ + δ_r) = 0, re-derived by hand; a < 0 for a course-unstable ship with an unstable loop.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::Tangent;
-use crate::dynamics::Measured;
+use crate::dynamics::MeasuredChannels;
 use crate::effects;
 use crate::first_order::{State, Transition};
 use crate::replay::{RecordedSignals, replay, replay_states};
@@ -40,12 +40,12 @@ fn with_effect(effect: Arc<dyn Effect>, value: impl Fn(&Parameter) -> f64, side:
     let mut parameters = BASE_VALUES.to_vec();
     parameters[2] *= side;
     parameters.extend(effect.parameters().iter().map(|p| if p.odd { side * value(p) } else { value(p) }));
-    ResponseModel::new(vec![effect]).with(parameters)
+    ResponseModel::new(vec![effect]).with_parameters(parameters)
 }
 
 #[test]
 fn the_base_is_the_closed_form() {
-    let response = ResponseModel::first_order().with(BASE_VALUES.to_vec());
+    let response = ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec());
     let signal = rudder(1.0);
     let mut state = State::default();
     for k in 0..signal.times().len() - 1 {
@@ -59,7 +59,7 @@ fn the_base_is_the_closed_form() {
 
 #[test]
 fn a_neutral_effect_is_no_effect() {
-    let base = heading_at_end(&ResponseModel::first_order().with(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
+    let base = heading_at_end(&ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
     for effect in effects::all() {
         let model = with_effect(effect.clone(), |p| p.neutral, 1.0);
         let heading = heading_at_end(&model, &rudder(1.0), 1.0);
@@ -69,7 +69,7 @@ fn a_neutral_effect_is_no_effect() {
 
 #[test]
 fn every_effect_acts_is_finite_and_keeps_its_mirror_symmetry() {
-    let base = heading_at_end(&ResponseModel::first_order().with(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
+    let base = heading_at_end(&ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
     for effect in effects::all() {
         let starboard = heading_at_end(&with_effect(effect.clone(), |p| p.typical, 1.0), &rudder(1.0), 1.0);
         let port = heading_at_end(&with_effect(effect.clone(), |p| p.typical, -1.0), &rudder(-1.0), -1.0);
@@ -92,7 +92,7 @@ fn effects_without_their_channel_are_silent() {
         response.rates(
             0.0,
             &state,
-            &Input { rudder: 0.1, measured: Measured::default(), ..Input::default() },
+            &Input { rudder: 0.1, measured: MeasuredChannels::default(), ..Input::default() },
             &mut rate,
         );
         assert_relative_eq!(rate[1], -BASE_VALUES[0] * 0.01 + BASE_VALUES[1] * 0.11, max_relative = 1e-12);
@@ -101,7 +101,7 @@ fn effects_without_their_channel_are_silent() {
 
 #[test]
 fn an_effect_acts_where_it_says() {
-    let measured = Measured {
+    let measured = MeasuredChannels {
         speed: Some(0.8),
         sway: Some(0.2),
         wind_speed: Some(3.0),
@@ -123,7 +123,7 @@ fn an_effect_acts_where_it_says() {
         let acts = f64::action(effect.as_ref());
         let acted_on = Targets {
             rudder: acts.rudder(&p, &z, 0.2) != 0.2,
-            scale: acts.scale(&p, &z, &now) != Scale::none(),
+            scale: acts.base_factors(&p, &z, &now) != BaseFactors::none(),
             moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
         };
         assert_eq!(acted_on, effect.targets(), "{} ({})", effect.id(), effect.form());
@@ -136,11 +136,11 @@ fn a_replay_carries_its_derivatives() {
     let signal = rudder(1.0);
     let times: Vec<f64> = (0..=100).map(f64::from).collect();
     let end = |model: &ResponseModel, values: &[Tangent]| {
-        let response = model.clone().with(values.to_vec());
+        let response = model.clone().with_parameters(values.to_vec());
         let recorded = RecordedSignals::rudder(&signal);
         let mut state = vec![Tangent::default(); response.dimension()];
         let zero = Tangent::default();
-        response.enter(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
+        response.initialise(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
         replay_states(&response, &recorded, &times, |_, _| 0.25, &mut state, |_, _, _| {});
         state[0]
     };
@@ -184,9 +184,10 @@ fn small_steps_are_taken_where_motion_is_fast() {
         let coarse = headings(&|from, to| pace.shortest(from, to) / 4.0);
         coarse.iter().zip(headings(&|_, _| 1e-3)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
-    let base = error(&ResponseModel::first_order().with(BASE_VALUES.to_vec()));
+    let base = error(&ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec()));
     let values = [BASE_VALUES.as_slice(), &[0.05, 47.3, 1.5]].concat();
-    let squall = error(&ResponseModel::new(vec![Arc::new(effects::TransientDisturbance::Passing)]).with(values));
+    let squall =
+        error(&ResponseModel::new(vec![Arc::new(effects::TransientDisturbance::Passing)]).with_parameters(values));
     assert!(squall < 1.5 * base, "{squall:e} rad, {base:e} rad without the squall");
 }
 
@@ -216,7 +217,7 @@ fn an_effect_is_what_it_says() {
             "{name}"
         );
         let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
-        let other = effects::named(effect.id(), effect.form(), &constants).expect("all are known");
+        let other = effects::find(effect.id(), effect.form(), &constants).expect("all are known");
         let other = turning(&with_effect(other, |p| p.typical, 1.0), 0.0, 0.0);
         assert_eq!((turning(&response, 0.0, 0.0) - other).abs() > 1e-9, !constants.is_empty(), "{name}");
     }
@@ -226,8 +227,13 @@ fn an_effect_is_what_it_says() {
 #[test]
 fn second_order_has_the_declared_transfer_function() {
     let (gain, t1, t2, t3, delta) = (0.1, 20.0, 2.5, 6.2, 0.2);
-    let response =
-        ResponseModel::new(vec![Arc::new(effects::SecondOrder)]).with(vec![1.0 / t1, gain / t1, 0.0, t2, t3]);
+    let response = ResponseModel::new(vec![Arc::new(effects::SecondOrder)]).with_parameters(vec![
+        1.0 / t1,
+        gain / t1,
+        0.0,
+        t2,
+        t3,
+    ]);
     let mut state = vec![0.0; 3];
     response.approach(0.0, 0.0, &mut state);
     let signal = Polyline::constant(delta);

@@ -38,6 +38,6 @@ fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gai
         particulars,
         rudder_rate: Some(10f64.to_radians()),
         largest_rudder: Some(30f64.to_radians()),
-        model: Model::Response(ResponseModel::new(vec![listed("nonlinear_damping", "r³")]).with(parameters)),
+        model: Model::Response(ResponseModel::new(vec![listed("nonlinear_damping", "r³")]).with_parameters(parameters)),
     }
 }

@@ -147,7 +147,7 @@ pub(super) fn second_order_response(
     effects.extend(further);
     let mut parameters = vec![1.0 / T1, K / T1, rudder_bias, T2, T3];
     parameters.extend_from_slice(values);
-    ResponseModel::new(effects).with(parameters)
+    ResponseModel::new(effects).with_parameters(parameters)
 }
 
 #[cfg(test)]

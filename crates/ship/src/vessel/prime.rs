@@ -87,7 +87,7 @@ fn ends_of(key: &str) -> [f64; 2] {
 }
 
 /// Possible physical cause of a departure of a coefficient from its prior mean, for messages; `None` if there is none.
-pub fn meaning(key: &str) -> Option<&'static str> {
+pub fn departure_cause(key: &str) -> Option<&'static str> {
     Some(match key {
         "delta_r" => "a bent rudder, a zero error of the rudder angle, or a bank on one side",
         "b" | "gammaR-starboard" | "gammaR-port" => "a rudder inflow that differs between port and starboard",
@@ -230,13 +230,13 @@ impl HullForm {
     }
 
     /// Hull with these coefficient values; `None` if they are not valid for a ship.
-    pub fn with<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
+    pub fn with_coefficients<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
         let (&windage, values) = values.split_last()?;
         let in_calm = match &self.equations {
             FormEquations::Quadratic => CalmHull::Quadratic(values.try_into().ok()?),
             FormEquations::Cubic => CalmHull::Cubic(values.try_into().ok()?),
             FormEquations::Mmg(about) => {
-                let mut parameters = about.constant::<R>();
+                let mut parameters = about.to_real::<R>();
                 let (bias, free) = values.split_last()?;
                 for (coefficient, value) in self.coefficients.iter().zip(free) {
                     *parameters.named(coefficient.key)? = *value;
@@ -270,7 +270,9 @@ mod tests {
                 let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
                 let name = form.as_str();
                 assert!(form.covariance().clone().cholesky().is_some(), "{name} {ship:?}");
-                let rates = form.with(&means).map(|hull| hull.accelerations([1.0, 0.0, 0.1], 0.3, 1.0, 0.0, [0.0; 3]));
+                let rates = form
+                    .with_coefficients(&means)
+                    .map(|hull| hull.accelerations([1.0, 0.0, 0.1], 0.3, 1.0, 0.0, [0.0; 3]));
                 assert!(name == "mmg" || rates.expect("a ship").iter().all(|rate| rate.is_finite()), "{name} {ship:?}");
             }
         }

@@ -65,7 +65,7 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
 
 impl<R: Real> Replayable<R> for ScaledHull<R> {
     /// Initial state with measured surge and sway, or with surge and sway of the approach.
-    fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+    fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         let sway = input.measured.sway.unwrap_or(0.0);
         let surge = input.measured.speed.map_or(self.speed, |speed| (speed * speed - sway * sway).max(0.0).sqrt());
         state.copy_from_slice(&[heading, yaw_rate, R::from(surge), R::from(sway)]);
@@ -100,7 +100,7 @@ impl ScaledHull {
     ///
     /// Implicit Euler steps of growing length, which become Newton steps (pseudo-transient continuation).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
-        let hull = self.hull.constant::<Dual<3>>();
+        let hull = self.hull.to_real::<Dual<3>>();
         let rate = yaw_rate * self.length / self.speed;
         let mut at = Vector3::new(1.0, 0.0, 0.0);
         let mut step = FIRST_STEP;
@@ -124,7 +124,7 @@ impl ScaledHull {
 
 impl ReplayedShip for ScaledHull {
     fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
-        let hull = self.hull.constant();
+        let hull = self.hull.to_real();
         Box::new(ScaledHull { hull, length: self.length, speed: self.speed, propeller: self.propeller })
     }
 }
@@ -146,7 +146,7 @@ mod tests {
     fn hulls() -> [ScaledHull; 2] {
         let form = &HullForm::candidates(None)[0];
         let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
-        let quadratic = form.with(&means).expect("a ship");
+        let quadratic = form.with_coefficients(&means).expect("a ship");
         let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.at_unit_length(), 1.0).expect("a ship");
         let mmg = PrimeHull { in_calm: CalmHull::Mmg(Box::new(mmg), 0.0), windage: 0.0 };
         [quadratic, mmg].map(scaled)

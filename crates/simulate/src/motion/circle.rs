@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 ///
 /// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. Rows beyond the shortest column are
 /// dropped.
-pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub fn dead_reckoning(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let over_ground = |(heading, [surge, sway]): (&f64, &[f64; 2])| {
         let (sin, cos) = heading.sin_cos();
         [surge * cos - sway * sin, surge * sin + sway * cos]
@@ -27,7 +27,12 @@ pub fn track(time: &[f64], heading: &[f64], velocity: &[[f64; 2]]) -> Vec<[f64; 
 
 /// First crossing of a level after row `first`: the row before, and the share of the interval to the next row; `None`
 /// without a crossing.
-pub(crate) fn reached(value: impl Fn(usize) -> f64, first: usize, rows: usize, level: f64) -> Option<(usize, f64)> {
+pub(crate) fn first_crossing(
+    value: impl Fn(usize) -> f64,
+    first: usize,
+    rows: usize,
+    level: f64,
+) -> Option<(usize, f64)> {
     let row = (first + 1..rows).find(|&row| value(row) >= level)?;
     Some((row - 1, (level - value(row - 1)) / (value(row) - value(row - 1))))
 }
@@ -56,7 +61,7 @@ const STEADY: f64 = TAU;
 const MIN_STEADY_CHANGE: f64 = PI;
 
 /// Characteristics of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),
-/// positions (m, north and east: measured, or of [`track`]; empty if unknown), surge and sway at the same point (m/s),
+/// positions (m, north and east: measured, or of [`dead_reckoning`]; empty if unknown), surge and sway at the same point (m/s),
 /// and yaw rates (rad/s).
 ///
 /// The course of the approach is the heading at the execute; the last heading determines the side of the turn. The
@@ -89,7 +94,7 @@ pub fn turning_circle(
     let (sin, cos) = course.sin_cos();
     // Distance ahead of the execute and to the side of the turn, at a heading change of an angle.
     let way = |angle: f64| {
-        let (origin, (row, share)) = (origin?, reached(change, begin, rows, angle)?);
+        let (origin, (row, share)) = (origin?, first_crossing(change, begin, rows, angle)?);
         let now = at(track, row, share);
         let way = [now[0] - origin[0], now[1] - origin[1]];
         Some([way[0] * cos + way[1] * sin, side * (way[1] * cos - way[0] * sin)])

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
-use super::circle::reached;
+use super::circle::first_crossing;
 
 /// Heading change after which a turn is taken as steady, rad.
 const STEADY: f64 = PI;
@@ -53,7 +53,7 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
     let whole = change(rows - 1);
     // First instant with this heading change: time, north and east.
     let instant = |angle: f64| {
-        let (row, share) = reached(change, 0, rows, angle)?;
+        let (row, share) = first_crossing(change, 0, rows, angle)?;
         let at = |row: usize| [time[row], track[row][0], track[row][1]];
         let (before, after) = (at(row), at(row + 1));
         let crossing: [f64; 3] = std::array::from_fn(|k| before[k] + share * (after[k] - before[k]));

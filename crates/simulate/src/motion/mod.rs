@@ -9,7 +9,7 @@
 //! | the equations and their coefficients | [`PlanarCoefficients`] |
 //! | coefficients with length and speed | [`Planar`] |
 //! | a yaw response with speed and drift | [`PlanarShip`] |
-//! | the track over ground | [`track`] |
+//! | the track over ground | [`dead_reckoning`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
 //! | current from two rounds | [`current`](current()) |
 //!
@@ -24,7 +24,7 @@ mod planar_ship;
 #[cfg(test)]
 mod tests;
 
-pub use circle::{TurningCircleFigures, track, turning_circle};
+pub use circle::{TurningCircleFigures, dead_reckoning, turning_circle};
 pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
 pub use current::{Current, current};
 pub use planar::{MotionError, Planar};

@@ -1,6 +1,6 @@
 //! Yaw response with speed and drift: a ship that can be simulated and has a track.
 
-use ship::{Dynamics, Input, Measured, Motion, Replayable, Response};
+use ship::{Dynamics, Input, MeasuredChannels, Motion, Replayable, Response};
 
 use super::planar::Planar;
 
@@ -22,7 +22,7 @@ impl PlanarShip {
     fn yaw_input(&self, state: &[f64], input: &Input) -> (usize, Input) {
         let yaw_states = self.response.dimension();
         let [u, v] = [state[yaw_states], state[yaw_states + 1]];
-        let measured = Measured { speed: Some(u.hypot(v)), sway: Some(v), ..input.measured };
+        let measured = MeasuredChannels { speed: Some(u.hypot(v)), sway: Some(v), ..input.measured };
         (yaw_states, Input { measured, ..*input })
     }
 }
@@ -37,8 +37,8 @@ impl Dynamics for PlanarShip {
         let yaw_states = self.response.dimension();
         let (yaw, planar) = state.split_at_mut(yaw_states);
         planar.copy_from_slice(&[self.planar.approach_speed, 0.0]);
-        let measured = Measured { speed: Some(planar[0]), sway: Some(0.0), ..Measured::default() };
-        self.response.enter(heading, yaw_rate, &Input { measured, ..Input::default() }, yaw);
+        let measured = MeasuredChannels { speed: Some(planar[0]), sway: Some(0.0), ..MeasuredChannels::default() };
+        self.response.initialise(heading, yaw_rate, &Input { measured, ..Input::default() }, yaw);
     }
 
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
@@ -48,9 +48,9 @@ impl Dynamics for PlanarShip {
         rate[yaw_states..].copy_from_slice(&self.planar.rates(u, v, state[1], input.rudder));
     }
 
-    fn settle(&self, t: f64, state: &mut [f64], input: &Input) {
+    fn update_memory(&self, t: f64, state: &mut [f64], input: &Input) {
         let (yaw_states, seen) = self.yaw_input(state, input);
-        self.response.settle(t, &mut state[..yaw_states], &seen);
+        self.response.update_memory(t, &mut state[..yaw_states], &seen);
     }
 
     fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {

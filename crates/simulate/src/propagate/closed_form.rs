@@ -4,7 +4,7 @@ use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
 use crate::gear::{RudderMotion, RudderPath, Segment};
-use crate::propagate::propagator::{Limits, Propagator, acting, has_diverged};
+use crate::propagate::propagator::{Limits, Propagator, acting_segment, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
@@ -94,7 +94,7 @@ impl Propagator for ClosedForm {
         while self.weather.cell().end <= self.time {
             self.weather.enter_next();
         }
-        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let segment = acting_segment(path, &mut self.cursor, self.time, 0.0);
         let to = until.min(segment.end).min(self.weather.cell().end).min(self.time + self.longest);
         let (u0, slope) = self.steering(segment);
         if slope == 0.0 {
@@ -121,13 +121,13 @@ impl Propagator for ClosedForm {
     }
 
     fn sample(&mut self, path: &RudderPath) -> Sample {
-        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let segment = acting_segment(path, &mut self.cursor, self.time, 0.0);
         let (u0, _) = self.steering(segment);
         self.sample_under(u0)
     }
 
     fn coast(&mut self, path: &RudderPath, limits: &Limits, rows: &mut Sampler) {
-        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let segment = acting_segment(path, &mut self.cursor, self.time, 0.0);
         let still = segment.motion == RudderMotion::Hold && self.weather.cell().end == f64::INFINITY;
         if !still {
             return;

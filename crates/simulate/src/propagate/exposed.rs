@@ -1,6 +1,6 @@
 //! Ship in the weather with a lagging gyrocompass: the terms that depend on heading are part of the right-hand side.
 
-use ship::{Dynamics, Input, Measured, Motion};
+use ship::{Dynamics, Input, MeasuredChannels, Motion};
 
 use crate::disturbance::{Wind, gusting_speed};
 use crate::weather::{Weather, WeatherCell};
@@ -49,7 +49,7 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
         let (Some(wind), Some(ship_speed)) = (self.wind, ship_speed.or(self.approach_speed)) else { return input };
         let speed = gusting_speed(mean, self.weather.cell().gust(t));
         let (speed, from) = wind.relative(speed, ship_speed, state[0]);
-        let measured = Measured { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
+        let measured = MeasuredChannels { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
         Input { measured, ..input }
     }
 }
@@ -74,9 +74,9 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
         }
     }
 
-    fn settle(&self, t: f64, state: &mut [f64], input: &Input) {
+    fn update_memory(&self, t: f64, state: &mut [f64], input: &Input) {
         let acting = self.acting(t, state, input);
-        self.ship.settle(t, &mut state[..self.ship.dimension()], &acting);
+        self.ship.update_memory(t, &mut state[..self.ship.dimension()], &acting);
     }
 
     fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {

@@ -7,7 +7,7 @@ use ship::{Dynamics, Input};
 
 use super::exposed::ShipInWeather;
 use crate::gear::{RudderPath, Segment};
-use crate::propagate::propagator::{Propagator, acting};
+use crate::propagate::propagator::{Propagator, acting_segment};
 use crate::sample::Sample;
 
 /// Integrated motion of any ship.
@@ -52,7 +52,7 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
             self.ship.weather.enter_next();
         }
         let dead_time = self.ship.dead_time();
-        let segment = acting(path, &mut self.cursor, self.time, dead_time);
+        let segment = acting_segment(path, &mut self.cursor, self.time, dead_time);
         until.min(segment.end + dead_time).min(self.ship.weather.cell().end).min(self.time + self.step)
     }
 
@@ -68,12 +68,12 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
         std::mem::swap(&mut self.state, &mut self.candidate);
         self.time = to;
         let segment = &path.segments()[self.cursor];
-        self.ship.settle(to, &mut self.state, &input(segment, self.ship.dead_time(), to));
+        self.ship.update_memory(to, &mut self.state, &input(segment, self.ship.dead_time(), to));
     }
 
     fn sample(&mut self, path: &RudderPath) -> Sample {
         let dead_time = self.ship.dead_time();
-        let segment = acting(path, &mut self.cursor, self.time, dead_time);
+        let segment = acting_segment(path, &mut self.cursor, self.time, dead_time);
         Sample {
             time: self.time,
             motion: self.ship.motion(self.time, &self.state, &input(segment, dead_time, self.time)),

@@ -53,7 +53,7 @@ pub(crate) fn has_diverged(state: State, base: f64) -> bool {
 }
 
 /// Acting segment at time `t` after the dead time, found by moving `cursor` forward.
-pub(crate) fn acting<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
+pub(crate) fn acting_segment<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
     let segments = path.segments();
     // Same sum as the end of a stride, so that a stride never has zero length.
     while segments[*cursor].end + dead_time <= t {

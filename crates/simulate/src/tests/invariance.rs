@@ -94,7 +94,7 @@ fn port_first_is_the_exact_mirror() {
         starboard.gear.lag = 0.5;
         starboard.sensors = spoilt();
         let mut port = starboard.clone();
-        port.manoeuvre = port.manoeuvre.to(Side::Port);
+        port.manoeuvre = port.manoeuvre.with_first_side(Side::Port);
         let (starboard, port) = (starboard.run(&KEY).expect("a zig-zag"), port.run(&KEY).expect("a zig-zag"));
         // Instrument errors are independent of the side.
         let errors = |simulated: &Simulated| {

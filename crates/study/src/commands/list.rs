@@ -189,7 +189,7 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
         Table::new(TableHead::default().texts(["key", "symbol"]).numbers(["mean", "sd"]).texts(["formula", "source"]));
     let digits = |value: f64| report::number::significant(value, 3);
     for AssumedParticular { key, value, sd, formula } in prior.assumed {
-        let symbol = Particular::named(key).map_or("", |particular| particular.symbol);
+        let symbol = Particular::find(key).map_or("", |particular| particular.symbol);
         table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::RATIO_SOURCE]);
     }
     for coefficient in &prior.coefficients {

@@ -68,7 +68,7 @@ pub struct ChannelEntry {
 impl From<&ChannelInspection> for ChannelEntry {
     fn from(ChannelInspection { readings, to_starboard, relation }: &ChannelInspection) -> Self {
         let unit = readings.channel.written_unit();
-        let shown = |value: f64| value / unit.to_si();
+        let shown = |value: f64| value / unit.si_factor();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
         let spoken = |channel: Channel| names::plain(channel.label());
         let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));

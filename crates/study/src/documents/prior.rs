@@ -3,7 +3,7 @@
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::{Warning, WarningCode};
 use report::number::{fixed, significant};
-use ship::vessel::prime::meaning;
+use ship::vessel::prime::departure_cause;
 
 /// Maximum number of coefficients named in a conflict, and their minimum shift in standard deviations.
 const MAX_NAMED: usize = 3;
@@ -45,7 +45,7 @@ fn contradiction(earlier: &EarlierTrials) -> String {
     let Some(nearest) = earlier.hulls.first() else { return format!("--prior {files}: {NOT_NEAR}; {cure}") };
     let moved = nearest.moved.iter().filter(|(_, shift)| shift.abs() >= MIN_SHIFT_SD).take(MAX_NAMED);
     let moved = moved.map(|(key, shift)| {
-        let means = meaning(key).map_or_else(String::new, |means| format!(" ({means})"));
+        let means = departure_cause(key).map_or_else(String::new, |means| format!(" ({means})"));
         format!("{key} by {} standard deviations{means}", fixed(*shift, 1))
     });
     let moved = moved.collect::<Vec<_>>().join(", ");

@@ -1,7 +1,7 @@
 //! Check of model and noise on a record: a normal Q–Q plot of the innovations of its headings with the 95 % band of
 //! chance, and their autocorrelation with the test of whiteness. Moments on the ship are not part of it.
 
-use ::trace::IMPROBABLE;
+use ::trace::SIGNIFICANCE_LEVEL;
 use estimation::residuals::{GappedSeries, autocorrelation, whiteness, whiteness_lags};
 use estimation::statistics::upper_median;
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
@@ -50,8 +50,8 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     sorted.sort_by(f64::total_cmp);
     let series = GappedSeries::new(time, values, spacing);
     let p_value = whiteness(std::slice::from_ref(&series)).p_value;
-    let judged = match p_value < IMPROBABLE {
-        true => format!("innovations are not white, p < {IMPROBABLE}"),
+    let judged = match p_value < SIGNIFICANCE_LEVEL {
+        true => format!("innovations are not white, p < {SIGNIFICANCE_LEVEL}"),
         false => format!("innovations, p = {} if they are white", significant(p_value, 2)),
     };
     let title = format!("{name}: {judged} (Ljung–Box, {} lags)", whiteness_lags(sorted.len()));

@@ -39,7 +39,7 @@ pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<Replaye
             let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
             let Some(measured) = angle(&zigzag) else { continue };
             let limit = criteria.iter().find(|limit| {
-                limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
+                limit.unit == imo::CriterionUnit::Degrees && limit.measured.is_some() && limit.name.contains(word)
             });
             let replayed = replays.each_ref().map(|replay| replay.as_ref().and_then(angle));
             let limit = limit.map(|limit| limit.limit);

@@ -17,7 +17,7 @@ use report::palette::{BEFORE, HEADING, INK, Look, Marker, SOLID};
 use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
-use trial::imo::Unit;
+use trial::imo::CriterionUnit;
 
 use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
@@ -47,7 +47,7 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
             PageFigure::new(format!("{stem}-track"), diameter(replayed), caption, turn(replayed, tracks))
         }));
     }
-    for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
+    for (unit, stem) in [(CriterionUnit::Degrees, "imo-overshoots"), (CriterionUnit::ShipLengths, "imo-lengths")] {
         let criteria = document.imo.iter().filter(|criterion| criterion.unit == unit.symbol());
         let criteria: Vec<&PredictedCriterion> = criteria.collect();
         let rows: Vec<_> = criteria.iter().map(|criterion| limit(criterion)).collect();
@@ -59,7 +59,7 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
                 100.0 * MIN_PROBABILITY
             );
             let caption = "Criteria of IMO MSC.137(76): predicted values and limits.";
-            let unit = if unit == Unit::Degrees { "°" } else { unit.symbol() };
+            let unit = if unit == CriterionUnit::Degrees { "°" } else { unit.symbol() };
             figures.push(PageFigure::new(stem, finding, caption, intervals(unit, rows)));
         }
     }

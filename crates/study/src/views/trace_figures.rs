@@ -6,7 +6,7 @@ use document::names;
 use document::trace::{
     BeforeAfter, Document, EffectEntry, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument,
 };
-use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
+use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 use identify::replay::Replay;
 use report::figures::{
     AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
@@ -254,7 +254,7 @@ fn thinned(x: Vec<f64>, y: Vec<f64>) -> PlotCurve {
 fn power_spectrum(residual: &GappedSeries) -> PlotCurve {
     let count = residual.values.len().max(1) as f64;
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
-    let lines = spectrum(residual);
+    let lines = periodogram(residual);
     let width = 1.0 / (count * residual.spacing);
     let mut groups: Vec<&[SpectralLine]> = Vec::new();
     let mut tail = &lines[..];

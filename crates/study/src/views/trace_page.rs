@@ -11,7 +11,7 @@ use report::number::{MISSING, fixed, significant};
 use report::{Page, PageFigure, PlacedFigures, Table, TableHead};
 use ship::ShortNumber;
 use ship::angle::to_deg;
-use ship::vessel::prime::meaning;
+use ship::vessel::prime::departure_cause;
 use trial::ZigZag;
 
 use super::overshoots::ReplayedOvershoot;
@@ -83,7 +83,7 @@ fn odd(document: &TraceDocument) -> String {
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };
     let farthest = hull.coefficients.iter().max_by(|a, b| a.departure().abs().total_cmp(&b.departure().abs()));
     let departure = farthest.filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).map(|entry| {
-        let means = meaning(&entry.key).map_or_else(String::new, |means| format!(" ({means})"));
+        let means = departure_cause(&entry.key).map_or_else(String::new, |means| format!(" ({means})"));
         format!("{} is {} standard deviations off its prior{means}", entry.symbol, fixed(entry.departure(), 1))
     });
     let departure = departure

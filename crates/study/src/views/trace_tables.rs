@@ -9,7 +9,7 @@ use document::{MomentKind, names};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Table, TableHead};
 use ship::angle::to_deg;
-use ship::vessel::prime::meaning;
+use ship::vessel::prime::departure_cause;
 use trial::Quantity;
 
 /// Quantity in degrees if its unit contains radians, and that unit. Frequencies stay in radians.
@@ -125,7 +125,7 @@ pub fn hulls(document: &TraceDocument) -> Table {
         far.sort_by(|a, b| b.departure().abs().total_cmp(&a.departure().abs()));
         for entry in far {
             let expected = format!("{} ± {}", significant(entry.expected, 2), significant(entry.expected_sd, 2));
-            let meaning = meaning(&entry.key).unwrap_or(MISSING).to_owned();
+            let meaning = departure_cause(&entry.key).unwrap_or(MISSING).to_owned();
             let departure = fixed(entry.departure(), 1);
             table.push([
                 hull.form.clone(),

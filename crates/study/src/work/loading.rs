@@ -81,7 +81,7 @@ impl DescribedLoading {
         self.warn_of_kept(&to, warnings);
         let expected = FormPrior::of_ship(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
         let at_loading = |expected: FormPrior| {
-            let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.law()?);
+            let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.covariance_and_gain()?);
             Some(IdentifiedHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };
         let hull = expected.and_then(at_loading).filter(|hull| drawable_hull::check(hull).is_ok());
@@ -140,7 +140,7 @@ impl DescribedLoading {
     fn out_of_the_water(&self, to: &HullParticulars, error: ParticularsError) -> Failure {
         let parts = [("rudder-height-m", "rudder", "height"), ("propeller-diameter-m", "propeller", "diameter")];
         let part = parts.into_iter().find(|(key, ..)| *key == error.key && error.value > error.range[1]);
-        let size = Particular::named(error.key).and_then(|particular| particular.get(to));
+        let size = Particular::find(error.key).and_then(|particular| particular.get(to));
         let Some(((key, part, measure), size)) = part.zip(size) else { return self.refused(error) };
         let [draught, size, share, most] =
             [self.draught(), size, error.value, error.range[1]].map(|value| ShortNumber::rounded(value, 4));
@@ -180,7 +180,7 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
 fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsError> {
     let mut all = *given;
     for assumed in priors(given)?.assumed {
-        if let Some(particular) = Particular::named(assumed.key) {
+        if let Some(particular) = Particular::find(assumed.key) {
             particular.set(&mut all, assumed.value);
         }
     }

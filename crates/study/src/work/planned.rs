@@ -22,7 +22,8 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
         [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, suffix)| {
-            let zigzag = Manoeuvre::zig_zag(from_deg(rudder), from_deg(heading)).to(first).until_execute(EXECUTES);
+            let zigzag =
+                Manoeuvre::zig_zag(from_deg(rudder), from_deg(heading)).with_first_side(first).until_execute(EXECUTES);
             (format!("{rudder:.0}/{heading:.0} zig-zag{suffix}"), zigzag)
         })
     });

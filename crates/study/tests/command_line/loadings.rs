@@ -47,7 +47,7 @@ fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
 /// A zig-zag of the ship in ballast.
 fn record(angle_deg: f64) -> String {
     let (form, values) = values(&particulars(6.5, 0.7));
-    let hull = form.with(&values).expect("a ship");
+    let hull = form.with_coefficients(&values).expect("a ship");
     let ship = ScaledHull { hull, length: 160.0, speed: 7.7, propeller: None };
     zig_zag_with_speed(Vessel::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
 }

@@ -19,7 +19,7 @@ fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     let Model::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
     parameters.extend(values);
-    ship.model = Model::Response(ResponseModel::new(vec![effect]).with(parameters));
+    ship.model = Model::Response(ResponseModel::new(vec![effect]).with_parameters(parameters));
     ship
 }
 

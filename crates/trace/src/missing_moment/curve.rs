@@ -9,11 +9,11 @@
 //! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
 
 use estimation::column::dot;
-use estimation::minimum::minimum;
+use estimation::minimum::golden_section_minimum;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::smoother::{HeadingColumn, MomentFilter, MomentRows, STATES};
+use super::smoother::{HeadingRows, MomentFilter, MomentRows, STATES};
 use crate::law::MIN_HEADING_SD;
 
 /// Inner knots of the spline, on a range from −1 to 1.
@@ -42,7 +42,7 @@ pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilt
     let length = rows.time[rows.count() - 1] - rows.time[0];
     let unit = 20.0 / (length.powi(5) * gain * gain);
     let [low, high] = LEVELS.map(|level| (level * unit).ln());
-    minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
+    golden_section_minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
 }
 
 /// Deviance −2 log L up to a constant, with σ² at its estimate.
@@ -100,7 +100,7 @@ struct CurveEquations {
 }
 
 impl CurveEquations {
-    fn new(filter: &MomentFilter, splines: &[HeadingColumn]) -> Option<Self> {
+    fn new(filter: &MomentFilter, splines: &[HeadingRows]) -> Option<Self> {
         let columns: Vec<Vec<f64>> = splines.iter().map(|spline| filter.whitened(spline)).collect();
         let matrix = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| dot(&columns[i], &columns[j]));
         let scale = DVector::from_fn(COEFFICIENTS, |i, _| matrix[(i, i)].sqrt().recip());
@@ -143,9 +143,9 @@ impl MomentCurve {
     pub(super) fn new(
         rows: &MomentRows,
         gain: f64,
-        record: &HeadingColumn,
+        record: &HeadingRows,
         x: &[f64],
-        explanations: &[HeadingColumn],
+        explanations: &[HeadingRows],
     ) -> Option<Self> {
         let count = rows.count();
         let basis = SplineBasis::new(x).filter(|_| count >= MIN_ROWS)?;
@@ -153,9 +153,9 @@ impl MomentCurve {
         // The record contains the response to the moment; as an input of the filter it has the opposite sign.
         let spline = |k: usize| {
             let moment: Vec<f64> = values.iter().map(|values| -values[k]).collect();
-            HeadingColumn { heading: vec![0.0; count], forced: rows.pushed(&moment) }
+            HeadingRows { heading: vec![0.0; count], forced: rows.moment_response(&moment) }
         };
-        let splines: Vec<HeadingColumn> = (0..COEFFICIENTS).map(spline).collect();
+        let splines: Vec<HeadingRows> = (0..COEFFICIENTS).map(spline).collect();
         let value = |filter: &MomentFilter| {
             let (_, square) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
             Some(deviance(square, filter, count))
@@ -173,7 +173,7 @@ impl MomentCurve {
             let values = DVector::from_row_slice(values);
             width * (variance * values.dot(&(&normal.inverse * &values))).max(0.0).sqrt()
         };
-        let other = |column: &HeadingColumn| {
+        let other = |column: &HeadingRows| {
             let (coefficients, _) = normal.solve(&filter.whitened(column));
             of_grid.iter().map(|values| along(&coefficients, values)).collect()
         };

@@ -14,7 +14,7 @@ use ship::{FirstOrder, Polyline};
 
 use crate::record::PreparedRecord;
 use curve::{MIN_ROWS, deviance, likeliest, variance};
-use smoother::{HeadingColumn, MomentFilter, MomentRows};
+use smoother::{HeadingRows, MomentFilter, MomentRows};
 
 pub use curve::MomentCurve;
 
@@ -120,7 +120,7 @@ impl MissingMoment {
         let rows = MomentRows::new(*base, time.clone(), variances, sd);
         let first = record.heading[record.observed[0]];
         let heading = record.observed.iter().map(|&row| record.heading[row] - first).collect();
-        let column = HeadingColumn { heading, forced: rows.steered(&record.rudder) };
+        let column = HeadingRows { heading, forced: rows.rudder_response(&record.rudder) };
         let square = |filter: &MomentFilter| filter.whitened(&column).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
         let intensity = likeliest(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
@@ -143,9 +143,9 @@ impl MissingMoment {
             .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
 
         let still = vec![[0.0; 2]; count];
-        let responses: Vec<HeadingColumn> = explanations
+        let responses: Vec<HeadingRows> = explanations
             .iter()
-            .map(|model| HeadingColumn { heading: model.heading.clone(), forced: still.clone() })
+            .map(|model| HeadingRows { heading: model.heading.clone(), forced: still.clone() })
             .collect();
         let varies = spread(&moment) > MIN_VARIANCE * count as f64;
         let mut panels: Vec<Panel> = channels

@@ -21,7 +21,7 @@ pub(super) const STATES: usize = 3;
 /// Headings of all rows (rad), with the responses of heading (rad) and yaw rate (rad/s) to an input in the step before
 /// each row.
 #[derive(Debug, Clone)]
-pub(super) struct HeadingColumn {
+pub(super) struct HeadingRows {
     pub heading: Vec<f64>,
     pub forced: Vec<[f64; 2]>,
 }
@@ -67,7 +67,7 @@ impl MomentRows {
     }
 
     /// Responses to the recorded rudder and δ_r in the step before every row, from rest.
-    pub fn steered(&self, rudder: &Polyline) -> Vec<[f64; 2]> {
+    pub fn rudder_response(&self, rudder: &Polyline) -> Vec<[f64; 2]> {
         let (a, b) = (self.base.inverse_T, self.base.K_over_T);
         let input = |t: f64| b * (rudder.at(t) + self.base.rudder_bias);
         let mut forced = vec![[0.0; 2]];
@@ -87,7 +87,7 @@ impl MomentRows {
     }
 
     /// Responses to a moment (rad of rudder, linear between rows) in the step before every row, from rest.
-    pub fn pushed(&self, moment: &[f64]) -> Vec<[f64; 2]> {
+    pub fn moment_response(&self, moment: &[f64]) -> Vec<[f64; 2]> {
         let steps: Vec<Transition> =
             self.steps.iter().map(|step| Transition::new(self.base.inverse_T, step.0)).collect();
         let step = |row: usize| {
@@ -118,12 +118,12 @@ impl MomentFilter {
     }
 
     /// Innovations over the square root of S.
-    pub fn whitened(&self, column: &HeadingColumn) -> Vec<f64> {
+    pub fn whitened(&self, column: &HeadingRows) -> Vec<f64> {
         self.0.whitened(&column.heading, forced(column))
     }
 
     /// Heading, yaw rate and moment of every row given all rows.
-    pub fn smoothed(&self, column: &HeadingColumn) -> Vec<[f64; STATES]> {
+    pub fn smoothed(&self, column: &HeadingRows) -> Vec<[f64; STATES]> {
         self.0.smoothed(&column.heading, forced(column))
     }
 
@@ -134,7 +134,7 @@ impl MomentFilter {
 }
 
 /// State response to the input of a column in the step before a row.
-fn forced(column: &HeadingColumn) -> impl Fn(usize) -> [f64; STATES] {
+fn forced(column: &HeadingRows) -> impl Fn(usize) -> [f64; STATES] {
     |row| {
         let [heading, rate] = column.forced[row];
         [heading, rate, 0.0]

@@ -23,7 +23,7 @@ fn the_smoother_is_the_conditional_mean() {
         let (sd, intensity) = (0.05, 0.7);
         let rows = MomentRows::new(ship, time.clone(), noise.clone(), sd);
         let heading: Vec<f64> = time.iter().map(|t| (0.21 * t).sin() + 0.02 * t).collect();
-        let column = HeadingColumn { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
+        let column = HeadingRows { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
 
         // Heading at a time after a unit state; integrated over the walk.
         let slope = |t: f64| Transition::new(inverse, t);
@@ -80,9 +80,9 @@ fn a_known_input_acts_between_rows() {
         PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { noise_deg: 0.0, ..TrialPlan::default() }));
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let rows = MomentRows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
-    let steered = rows.steered(&record.rudder);
+    let steered = rows.rudder_response(&record.rudder);
     let rudder: Vec<f64> = at_rows(&record.rudder, &time).iter().map(|delta| delta + BASE[2]).collect();
-    for (steered, pushed) in steered.iter().zip(rows.pushed(&rudder)) {
+    for (steered, pushed) in steered.iter().zip(rows.moment_response(&rudder)) {
         assert_relative_eq!(steered[0], pushed[0], epsilon = 1e-14);
         assert_relative_eq!(steered[1], pushed[1], epsilon = 1e-14);
     }

@@ -15,12 +15,12 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
     if let Some((kind @ CorrelatedNoise::Compass(_), level)) = colour.correlated {
-        let tau = kind.correlation(longest).expect("an error that lasts");
+        let tau = kind.correlation_time(longest).expect("an error that lasts");
         total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
     } else if let Some((kind, level)) = colour.correlated {
         // Heading after a unit impulse of yaw acceleration, after a unit step, and after a decaying step.
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
-        let tau = kind.correlation(longest).unwrap_or(f64::NAN);
+        let tau = kind.correlation_time(longest).unwrap_or(f64::NAN);
         let impulse = |a: f64, t: f64| match kind {
             CorrelatedNoise::White => faded(a, t),
             CorrelatedNoise::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
@@ -32,7 +32,7 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
             CorrelatedNoise::OrnsteinUhlenbeck(_) => white / (tau * tau),
             _ => 20.0 / longest.powi(5),
         };
-        if kind.correlation(longest).is_some() {
+        if kind.correlation_time(longest).is_some() {
             // Stationary gusts.
             let g = DVector::from_fn(n, |i, _| impulse(a, time[i] - time[0]));
             total += &g * g.transpose() * (0.5 * level * intensity * tau);

@@ -9,7 +9,7 @@
 
 use estimation::column::dot;
 
-use crate::linear::{HeadingSensitivities, Linear};
+use crate::linear::{HeadingSensitivities, Linearisation};
 use crate::weights::Weights;
 
 /// Minimum share of the square of a usable column that is linearly independent of the columns before.
@@ -22,7 +22,7 @@ pub type HeadingColumn = Vec<(usize, Vec<f64>)>;
 #[derive(Debug, Clone)]
 pub struct LinearisedStructure {
     /// Residual and sensitivities.
-    pub linear: Linear,
+    pub linear: Linearisation,
     /// Number of integrated unknowns; the coefficients after them are penalised.
     pub integrated: usize,
     /// Prior precision of the integrated unknowns and their offset from the prior mean.

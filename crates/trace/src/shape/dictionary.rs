@@ -54,7 +54,7 @@ impl ShipSignal {
 
 /// Function of one variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Power {
+pub enum SignalFunction {
     /// x.
     Linear,
     /// x².
@@ -69,7 +69,7 @@ pub enum Power {
     SignedSquare,
 }
 
-impl Power {
+impl SignalFunction {
     /// All functions.
     pub const ALL: [Self; 6] =
         [Self::Linear, Self::Square, Self::Cube, Self::Magnitude, Self::Positive, Self::SignedSquare];
@@ -113,7 +113,7 @@ impl Power {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// Power of one signal, or the product of two.
-    Powers(Dependence, (ShipSignal, Power), Option<(ShipSignal, Power)>),
+    Powers(Dependence, (ShipSignal, SignalFunction), Option<(ShipSignal, SignalFunction)>),
     /// Delay: δ(t − τ) − δ.
     Delay(f64),
     /// δ after a first-order lag.
@@ -127,7 +127,7 @@ pub enum Shape {
     /// Hysteresis: δ with the sign of the last change of |δ|.
     Hysteresis,
     /// t or t².
-    Trend(Power),
+    Trend(SignalFunction),
     /// t ψ.
     HeadingTrend,
     /// t δ and t r.
@@ -310,7 +310,7 @@ impl Shape {
             Self::RateSquareMemory(lag) => format!("K and T that vary with r² after a lag of {lag:.0} s"),
             Self::RudderSizeMemory(lag) => format!("K and T that vary with |δ| after a lag of {lag:.0} s"),
             Self::Hysteresis => String::from("K that differs between rudder going out and coming back"),
-            Self::Trend(Power::Linear) => String::from("moment that grows with time"),
+            Self::Trend(SignalFunction::Linear) => String::from("moment that grows with time"),
             Self::Trend(_) => String::from("moment that grows with the square of time"),
             Self::HeadingTrend => String::from("moment with ψ that grows with time"),
             Self::ResponseTrend => String::from("K and T that change with time"),

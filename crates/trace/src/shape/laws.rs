@@ -5,7 +5,7 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::noise::{COMPASS, CorrelatedNoise, GUSTS, NoiseColour};
+use crate::noise::{COMPASS_CORRELATION_SHARES, CorrelatedNoise, GUST_CORRELATION_SHARES, NoiseColour};
 
 /// Periods (s), damping ratio and sizes of the waves.
 const WAVE_PERIODS: [f64; 4] = [5.0, 7.0, 9.0, 12.0];
@@ -36,14 +36,14 @@ impl RandomLaw {
     /// Correlated noise of a size, for a ship of this K/T (1/s²) and a longest record of `longest` seconds.
     pub fn correlated(kind: CorrelatedNoise, size: f64, gain: f64, longest: f64, waves: Option<NarrowBand>) -> Self {
         let moment = (gain * size).powi(2);
-        let level = match (kind, kind.correlation(longest)) {
+        let level = match (kind, kind.correlation_time(longest)) {
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => 2.0 * moment / time / kind.intensity(longest),
             (CorrelatedNoise::White | CorrelatedNoise::Walk, _) => moment / kind.intensity(longest),
             (CorrelatedNoise::SmoothMoment(_), _) => moment,
             _ => size * size,
         };
         let colour = NoiseColour { correlated: Some((kind, level)), waves };
-        Self { colour, freedom: kind.freedom(), size }
+        Self { colour, freedom: kind.parameter_count(), size }
     }
 
     /// `true` if it includes a random moment.
@@ -67,10 +67,10 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
     let mut laws = vec![RandomLaw::white(waves)];
     laws.extend(with_sizes(CorrelatedNoise::White, &mut decades(-1.0, 2.0, 0.5)));
     laws.extend(with_sizes(CorrelatedNoise::Walk, &mut decades(-2.0, 2.0, 0.25)));
-    for number in 0..GUSTS.len() {
+    for number in 0..GUST_CORRELATION_SHARES.len() {
         laws.extend(with_sizes(CorrelatedNoise::OrnsteinUhlenbeck(number), &mut decades(-0.5, 2.0, 0.5)));
     }
-    for number in 0..COMPASS.len() {
+    for number in 0..COMPASS_CORRELATION_SHARES.len() {
         laws.extend(with_sizes(CorrelatedNoise::Compass(number), &mut decades(-1.0, 1.5, 0.5)));
     }
     if waves.is_none() {
@@ -79,7 +79,7 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
                 let frequency = std::f64::consts::TAU / period;
                 let sea = NarrowBand { sd, frequency, damping: WAVE_DAMPING };
                 let colour = NoiseColour { correlated: None, waves: Some(sea) };
-                RandomLaw { colour, freedom: colour.freedom(), size: sd }
+                RandomLaw { colour, freedom: colour.parameter_count(), size: sd }
             }));
         }
     }

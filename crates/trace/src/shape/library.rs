@@ -2,7 +2,7 @@
 
 use document::trace::Dependence;
 
-use super::dictionary::{Power, Shape, ShipSignal};
+use super::dictionary::{Shape, ShipSignal, SignalFunction};
 
 /// Delays and lags, as multiples of the time unit of a ship.
 const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
@@ -25,7 +25,7 @@ const MIN_ROWS_PER_CYCLE: f64 = 6.0;
 /// `unit` is the time unit of the lags, all in s.
 pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
     let mut all: Vec<(Shape, usize)> = state_shapes(unit).into_iter().map(|shape| (shape, 1)).collect();
-    all.extend([Shape::Trend(Power::Linear), Shape::Trend(Power::Square)].map(|shape| (shape, 1)));
+    all.extend([Shape::Trend(SignalFunction::Linear), Shape::Trend(SignalFunction::Square)].map(|shape| (shape, 1)));
     all.extend([Shape::HeadingTrend, Shape::ResponseTrend].map(|shape| (shape, 1)));
     for k in 2..INSTANTS - 1 {
         let at = duration * k as f64 / INSTANTS as f64;
@@ -70,22 +70,23 @@ fn state_shapes(unit: f64) -> Vec<Shape> {
     for signal in [ShipSignal::Heading, ShipSignal::Way, ShipSignal::YawRate, ShipSignal::Rudder] {
         // Linear terms in r and δ are the base.
         let is_base = matches!(signal, ShipSignal::YawRate | ShipSignal::Rudder);
-        let powers = Power::ALL.into_iter().filter(|power| !is_base || *power != Power::Linear);
+        let powers = SignalFunction::ALL.into_iter().filter(|power| !is_base || *power != SignalFunction::Linear);
         all.extend(powers.map(|power| Shape::Powers(signal.dependence(), (signal, power), None)));
     }
-    let product =
-        |dependence, signal, power, other| Shape::Powers(dependence, (signal, power), Some((other, Power::Linear)));
+    let product = |dependence, signal, power, other| {
+        Shape::Powers(dependence, (signal, power), Some((other, SignalFunction::Linear)))
+    };
     let (heading, way) = (Dependence::Heading, Dependence::Way);
     all.extend([
-        product(Dependence::YawRate, ShipSignal::YawRate, Power::Linear, ShipSignal::Rudder),
-        product(Dependence::Rudder, ShipSignal::YawRate, Power::Magnitude, ShipSignal::Rudder),
-        product(heading, ShipSignal::Heading, Power::Linear, ShipSignal::Rudder),
-        product(heading, ShipSignal::Heading, Power::Linear, ShipSignal::YawRate),
-        product(heading, ShipSignal::Heading, Power::Square, ShipSignal::YawRate),
-        product(heading, ShipSignal::Heading, Power::Square, ShipSignal::Rudder),
-        product(way, ShipSignal::Way, Power::Linear, ShipSignal::YawRate),
-        product(way, ShipSignal::Way, Power::Linear, ShipSignal::Rudder),
-        product(way, ShipSignal::Way, Power::Linear, ShipSignal::Heading),
+        product(Dependence::YawRate, ShipSignal::YawRate, SignalFunction::Linear, ShipSignal::Rudder),
+        product(Dependence::Rudder, ShipSignal::YawRate, SignalFunction::Magnitude, ShipSignal::Rudder),
+        product(heading, ShipSignal::Heading, SignalFunction::Linear, ShipSignal::Rudder),
+        product(heading, ShipSignal::Heading, SignalFunction::Linear, ShipSignal::YawRate),
+        product(heading, ShipSignal::Heading, SignalFunction::Square, ShipSignal::YawRate),
+        product(heading, ShipSignal::Heading, SignalFunction::Square, ShipSignal::Rudder),
+        product(way, ShipSignal::Way, SignalFunction::Linear, ShipSignal::YawRate),
+        product(way, ShipSignal::Way, SignalFunction::Linear, ShipSignal::Rudder),
+        product(way, ShipSignal::Way, SignalFunction::Linear, ShipSignal::Heading),
     ]);
     all.extend(DELAYS.map(|lag| Shape::Delay(lag * unit)));
     for lag in MEMORIES.map(|lag| lag * unit) {

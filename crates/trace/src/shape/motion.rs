@@ -55,7 +55,7 @@ impl<'a> PredictedMotion<'a> {
         let response = structure.response(Some(number), theta);
         let recorded = record.recorded(&response);
         let mut state = vec![0.0; response.dimension()];
-        response.enter(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
+        response.initialise(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
         let (mut heading, mut rate) = (Vec::new(), Vec::new());
         let step = step(&response, record.spacing, STEPS);
         replay_states(&response, &recorded, &record.time, step, &mut state, |_, state, _| {

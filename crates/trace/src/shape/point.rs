@@ -115,7 +115,7 @@ impl<'a> StructurePoint<'a> {
     /// is largest.
     fn min_variance(&self) -> f64 {
         // With a typical gain for this length and speed, so that it is equal for every structure.
-        let floors = law::floors(self.problem, self.problem.time.powi(-2));
+        let floors = law::min_variances(self.problem, self.problem.time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 

@@ -11,7 +11,7 @@ use super::dictionary::Shape;
 use super::laws::{RandomLaw, screening};
 use super::library::shapes;
 use super::motion::PredictedMotion;
-use crate::linear::{HeadingSensitivities, Linear};
+use crate::linear::{HeadingSensitivities, Linearisation};
 use crate::weights::Weights;
 
 /// Number of classes of shapes, for the penalty of the choice among them.
@@ -327,7 +327,7 @@ pub fn coefficients(shapes: &[Arc<Candidate>], step: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Residual sum of squares (rad²) of a structure with shapes appended, after a step of all unknowns.
-pub fn residual_square(linear: &Linear, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
+pub fn residual_square(linear: &Linearisation, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
     let columns: Vec<&HeadingColumn> = shapes.iter().flat_map(|shape| &shape.columns).collect();
     let square = |(number, block): (usize, &HeadingSensitivities)| {
         let mut residual = block.residual.clone();

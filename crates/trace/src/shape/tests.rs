@@ -11,14 +11,14 @@ use ship::effects::{Effect, Formula};
 use trial::Trial;
 
 use super::criterion::{LinearisedStructure, WhitenedStructure};
-use super::dictionary::{Power, ShipSignal};
+use super::dictionary::{ShipSignal, SignalFunction};
 use super::library::shapes;
 use super::*;
 use crate::base::Base;
 use crate::candidates::ship_time;
-use crate::fit::Effort;
+use crate::fit::StoppingRule;
 use crate::full::start;
-use crate::linear::{HeadingSensitivities, Linear};
+use crate::linear::{HeadingSensitivities, Linearisation};
 use crate::model::Structure;
 use crate::noise::RecordNoise;
 use crate::record::PreparedRecord;
@@ -52,7 +52,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
     let law = NoiseLaw::white(trials.len(), base.mean_square());
     let structure = Structure::base(trials.len(), time);
     let theta = start(&structure, &response, std::iter::empty());
-    let fit = problem.fit(&structure, theta, base.initial(), &problem.weights(&law), Effort::FINE);
+    let fit = problem.fit(&structure, theta, base.initial(), &problem.weights(&law), StoppingRule::FINE);
     analysis(&problem, &fit, &law).expect("an analysis")
 }
 
@@ -133,7 +133,7 @@ fn criteria_are_those_of_dense_matrices() {
     let block =
         HeadingSensitivities { residual: residual.clone(), columns: (0..).zip(columns[..3].to_vec()).collect() };
     let structure = LinearisedStructure {
-        linear: Linear { blocks: vec![block], unknowns: 3 },
+        linear: Linearisation { blocks: vec![block], unknowns: 3 },
         integrated: 2,
         prior: vec![(0.0, 0.0); 2],
         sizes: vec![0.7],
@@ -210,7 +210,7 @@ fn shapes_can_be_moved_and_typed() {
             assert!(back.is_some_and(|back| text(&back) == text(shape)), "{shape:?}");
         }
     }
-    let tug = Shape::Powers(Dependence::Heading, (ShipSignal::Heading, Power::Positive), None);
+    let tug = Shape::Powers(Dependence::Heading, (ShipSignal::Heading, SignalFunction::Positive), None);
     assert_eq!(tug.formula().as_deref(), Some("c * max(psi, 0)"));
     assert_eq!(Shape::Pulse(91.0, 24.0).description([0.0, 300.0]), "moment from 91 to 115 s");
     assert_eq!(Shape::Pulse(91.0, 2.0).moved(1, -1.0, [300.0, 1.0]), None);

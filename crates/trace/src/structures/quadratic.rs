@@ -1,7 +1,7 @@
 //! Quadratic (Laplace) approximation of the posterior of the full model, and the log weights of all subsets of its
 //! terms.
 
-use estimation::levenberg_marquardt::Normal;
+use estimation::levenberg_marquardt::NormalEquations;
 use estimation::subsets::{MAX_TERMS, RemovableTerm, condition_neutral, conditional_mean, subset_log_weights};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -38,7 +38,7 @@ pub(super) struct QuadraticPosterior {
 
 impl QuadraticPosterior {
     /// Approximation about a point of the full structure; `None` if the precision is singular.
-    pub fn new(normal: &Normal, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
+    pub fn new(normal: &NormalEquations, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
         let unknowns = structure.unknowns();
         let count = normal.gradient.len();
         let mut at = DVector::zeros(count);

@@ -1,10 +1,10 @@
 //! Bounds of a manoeuvre in a log: from the first execute, or the steady approach before it, to the last row before the
 //! rudder leaves its last hold or the propeller stops.
 
-use super::course::middle;
+use super::course::thinned_median;
 use super::detection::{Approach, DetectedManoeuvre, Quality, STEADY_SPEED};
 use super::pattern::{Pattern, Prepared};
-use super::rudder::{Hold, usual};
+use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
@@ -92,7 +92,7 @@ fn spread(pattern: &Pattern) -> f64 {
 fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
     let (first, last) = (pattern.first(), pattern.last());
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
-    let stopped = STOPPED_SHARE * usual(propeller.iter().map(|n| n.abs()));
+    let stopped = STOPPED_SHARE * finite_median(propeller.iter().map(|n| n.abs()));
     let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
     // A single row without revolutions is a fault of the channel; the last row has no next row.
     (0..propeller.len())
@@ -177,7 +177,7 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> O
         row -= 1;
     }
     let clear = row_before(time, row, 0.3 * look_back);
-    let before = middle(&angle[clear.saturating_sub(MEDIAN_ROWS)..=clear])?;
+    let before = thinned_median(&angle[clear.saturating_sub(MEDIAN_ROWS)..=clear])?;
     let start = time[half] - (angle[half] - before) / rate;
     let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
     let first = time.partition_point(|&t| t < start).min(laid);
@@ -233,7 +233,7 @@ fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: u
         Manoeuvre::TurningCircle { .. } => record.rudder.neutral,
         _ => 0.5 * (highest + lowest),
     };
-    let level = middle(&angle[start - (start - earliest).div_ceil(4)..start])?;
+    let level = thinned_median(&angle[start - (start - earliest).div_ceil(4)..start])?;
     if (level - amidships).abs() > AMIDSHIPS * largest {
         return None;
     }

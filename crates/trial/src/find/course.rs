@@ -8,14 +8,14 @@ const MAX_MEDIAN_ROWS: usize = 64;
 
 /// Rows with a heading.
 #[derive(Debug)]
-pub(crate) struct Course {
+pub(crate) struct HeadingReadings {
     /// Times, s.
     pub time: Vec<f64>,
     /// Headings, rad.
     pub heading: Vec<f64>,
 }
 
-impl Course {
+impl HeadingReadings {
     pub fn of(time: &[f64], heading: &[f64]) -> Self {
         let read = time.iter().zip(heading).filter(|(_, psi)| psi.is_finite());
         let (time, heading) = read.map(|(&t, &psi)| (t, psi)).unzip();
@@ -31,7 +31,7 @@ impl Course {
         let first = self.time.partition_point(|&t| t < time - half_width);
         let last = self.time.partition_point(|&t| t <= time + half_width);
         if last > first {
-            return middle(&self.heading[first..last]);
+            return thinned_median(&self.heading[first..last]);
         }
         let neighbours = [first.checked_sub(1), Some(first)];
         let [before, after] = neighbours
@@ -60,7 +60,7 @@ impl Course {
 }
 
 /// Median of at most [`MAX_MEDIAN_ROWS`] values, evenly selected.
-pub(crate) fn middle(values: &[f64]) -> Option<f64> {
+pub(crate) fn thinned_median(values: &[f64]) -> Option<f64> {
     median(&mut thinned(values))
 }
 

@@ -114,7 +114,7 @@ impl DetectedManoeuvre {
     /// "spiral", "straight".
     pub fn name(&self) -> String {
         let Some(manoeuvre) = &self.manoeuvre else { return String::from("straight") };
-        let rudder = conventional(manoeuvre.rudder(), 0.08, 0.08);
+        let rudder = conventional(manoeuvre.max_rudder(), 0.08, 0.08);
         match manoeuvre {
             Manoeuvre::ZigZag { heading, .. } => format!("zig-zag {rudder}/{}", conventional(*heading, 0.05, 0.25)),
             Manoeuvre::TurningCircle { side, .. } => format!("turning circle {rudder} to {side}"),
@@ -125,7 +125,7 @@ impl DetectedManoeuvre {
     /// Nominal rudder and change of heading, rad, positive to starboard; those of a zig-zag have no sign.
     pub fn angles(&self) -> [Option<f64>; 2] {
         let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
-        let (rudder, sign) = (manoeuvre.rudder(), manoeuvre.side().sign());
+        let (rudder, sign) = (manoeuvre.max_rudder(), manoeuvre.first_side().sign());
         match manoeuvre {
             Manoeuvre::ZigZag { heading, .. } => [Some(rudder), Some(*heading)],
             Manoeuvre::TurningCircle { heading_change, .. } => {

@@ -23,7 +23,7 @@ mod tests;
 mod turns;
 mod zigzags;
 
-use course::Course;
+use course::HeadingReadings;
 use pattern::{Pattern, Prepared};
 use rudder::{Hold, RudderHolds};
 
@@ -38,7 +38,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
-    let course = Course::of(log.time, log.heading);
+    let course = HeadingReadings::of(log.time, log.heading);
     let rudder = RudderHolds::of(log.time, log.rudder);
     let record = Prepared { log, rudder: &rudder, course: &course };
     let mut patterns = spirals::spirals(&record);

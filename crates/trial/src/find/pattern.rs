@@ -1,6 +1,6 @@
 //! Input of a search: the channels of a log, the quantities derived from them, and the patterns of holds.
 
-use super::course::Course;
+use super::course::HeadingReadings;
 use super::rudder::{Hold, RudderHolds};
 use crate::manoeuvre::Manoeuvre;
 
@@ -38,7 +38,7 @@ impl Signals<'_> {
 pub(crate) struct Prepared<'a> {
     pub log: &'a Signals<'a>,
     pub rudder: &'a RudderHolds,
-    pub course: &'a Course,
+    pub course: &'a HeadingReadings,
 }
 
 /// Detected manoeuvre without the bounds of the part.

@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::course::{middle, thinned};
+use super::course::{thinned, thinned_median};
 use estimation::statistics::median;
 
 /// Minimum half-width of the band of a hold, rad: orders and feedback agree to about half a degree.
@@ -90,13 +90,14 @@ impl RudderHolds {
     /// Holds of a rudder (rad) over time (s); empty for a log of less than three rows.
     pub fn of(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
-        let step = usual(time.windows(2).map(|pair| pair[1] - pair[0]));
+        let step = finite_median(time.windows(2).map(|pair| pair[1] - pair[0]));
         // Second differences respond to noise and not to steady movement; for white noise their variance is six times
         // as large.
-        let noise = 1.4826 / 6.0_f64.sqrt() * usual(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
+        let noise =
+            1.4826 / 6.0_f64.sqrt() * finite_median(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
         let quantum = smallest_step(rudder);
         let floor = (3.0 * noise).max(1.1 * quantum).clamp(MIN_BAND, MAX_BAND);
-        let median = usual(angle.iter().copied());
+        let median = finite_median(angle.iter().copied());
         let neutral = if median.abs() <= MAX_NEUTRAL { median } else { 0.0 };
         let mut rudder = Self { angle, noise, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
         rudder.holds = rudder.cut(time);
@@ -167,7 +168,7 @@ impl RudderHolds {
         if (mean(early) - mean(late)).abs() > 0.5 * band {
             return None;
         }
-        let level = middle(&self.angle[first..=last])?;
+        let level = thinned_median(&self.angle[first..=last])?;
         let (early, late) = (self.settled(early, band)?, self.settled(late, band)?);
         let begin = (first..=last).find(|&row| early.contains(&self.angle[row]))?;
         let end = (begin..=last).rev().find(|&row| late.contains(&self.angle[row]))?;
@@ -182,7 +183,7 @@ impl RudderHolds {
 
     /// Range of the settled rudder: values beyond it belong to a movement.
     fn settled(&self, values: &[f64], band: f64) -> Option<RangeInclusive<f64>> {
-        let level = middle(values)?;
+        let level = thinned_median(values)?;
         let mut off: Vec<f64> = thinned(values).iter().map(|x| (x - level).abs()).collect();
         off.sort_unstable_by(f64::total_cmp);
         let scatter = 1.3 * off[(off.len() - 1) * 9 / 10];
@@ -210,7 +211,7 @@ fn without_spikes(values: &[f64]) -> Vec<f64> {
 }
 
 /// Median of the finite values; 0 for none.
-pub(crate) fn usual(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn finite_median(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 

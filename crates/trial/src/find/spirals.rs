@@ -4,7 +4,7 @@
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 use super::pattern::{Pattern, Prepared};
-use super::rudder::{Hold, usual};
+use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 
 /// Minimum number of holds of a sweep from side to side, and of a partial sweep before or after it.
@@ -52,7 +52,7 @@ pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
         let mut holds = group[0].to_vec();
         group[1..].iter().for_each(|sweep| holds.extend(&sweep[1..]));
         let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
-        let scale = usual(holds.iter().map(Hold::duration));
+        let scale = finite_median(holds.iter().map(Hold::duration));
         let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
         patterns.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
@@ -93,7 +93,7 @@ fn is_from_side_to_side(sweep: &[Hold]) -> bool {
 
 /// `true` if the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.
 fn is_answered(record: &Prepared, sweep: &[Hold]) -> bool {
-    let usual = usual(sweep.iter().map(Hold::duration));
+    let usual = finite_median(sweep.iter().map(Hold::duration));
     if sweep.iter().any(|hold| hold.duration() < MIN_HOLD_SHARE * usual) {
         return false;
     }

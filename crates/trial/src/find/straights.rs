@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::detection::{DetectedManoeuvre, Quality};
 use super::pattern::{Pattern, Prepared};
-use super::rudder::usual;
+use super::rudder::finite_median;
 
 /// Maximum range of headings on a course, rad: an autopilot keeps ±1°, in waves ±2°.
 const MAX_HEADING_RANGE: f64 = 5.0_f64.to_radians();
@@ -30,13 +30,13 @@ const AT_REST_SHARE: f64 = 0.2;
 pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<DetectedManoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
-    let scale = usual(patterns.iter().map(|pattern| pattern.scale));
+    let scale = finite_median(patterns.iter().map(|pattern| pattern.scale));
     let shortest = if scale > 0.0 { MIN_SCALES * scale } else { MIN_DURATION_SHARE * (end - begin) };
     // Recorded speed and revolutions, each with its minimum for a ship under way.
     let channels = [record.log.speed, record.log.propeller].into_iter().flatten();
     let under_way: Vec<(&[f64], f64)> = channels
         .filter(|values| values.len() == time.len())
-        .map(|values| (values, AT_REST_SHARE * usual(values.iter().map(|x| x.abs()))))
+        .map(|values| (values, AT_REST_SHARE * finite_median(values.iter().map(|x| x.abs()))))
         .collect();
     let is_straight = |row: usize| {
         let moves = |(values, least): &(&[f64], f64)| values[row].is_nan() || values[row].abs() >= *least;

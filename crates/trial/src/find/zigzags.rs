@@ -4,9 +4,9 @@
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 use super::bounds::first_execute;
-use super::course::middle;
+use super::course::thinned_median;
 use super::pattern::{Pattern, Prepared};
-use super::rudder::{Hold, usual};
+use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::Side;
 use estimation::statistics::median;
@@ -216,12 +216,12 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
         return None;
     }
     // Half the difference of the sides, which is independent of a neutral rudder off zero.
-    let level = |first: usize| usual(holds.iter().skip(first).step_by(2).map(|hold| hold.level));
+    let level = |first: usize| finite_median(holds.iter().skip(first).step_by(2).map(|hold| hold.level));
     let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
-    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).to(Side::of(holds[0].level));
-    let scale = usual(holds[..holds.len() - 1].iter().map(Hold::duration));
+    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).with_first_side(Side::of(holds[0].level));
+    let scale = finite_median(holds[..holds.len() - 1].iter().map(Hold::duration));
     (clear && rudder >= MIN_RUDDER && (MIN_HEADING..=MAX_HEADING).contains(&heading)).then(|| Pattern {
         manoeuvre,
         holds: holds.to_vec(),
@@ -240,7 +240,7 @@ fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, 
     let time = APPROACH_SHARE * holds[0].duration();
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
     let [a, b] = [holds[0].level, holds[1].level];
-    let rudder = middle(&record.rudder.angle[rows[0]..rows[1]]);
+    let rudder = thinned_median(&record.rudder.angle[rows[0]..rows[1]]);
     let heading = record.course.near(from - time, 0.1 * time, 0.5 * time);
     rudder.is_none_or(|rudder| (rudder - 0.5 * (a + b)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (a - b).abs())
         && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
@@ -265,5 +265,5 @@ fn deviation(holds: &[Hold], headings: &[Option<f64>]) -> Option<f64> {
     let [port, starboard] = sides;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let base = 0.5 * (mean(&port) + mean(&starboard));
-    Some(usual(port.iter().chain(&starboard).map(|psi| (psi - base).abs())))
+    Some(finite_median(port.iter().chain(&starboard).map(|psi| (psi - base).abs())))
 }

@@ -20,7 +20,7 @@ const MAX_REPEATED_SHARE: f64 = 0.5;
 ///
 /// If two smooth signals alternate, the deviation of a reading from the straight line between its neighbours changes
 /// its sign at every reading.
-pub(super) fn alternation(time: &[f64], values: &[f64]) -> Option<f64> {
+pub(super) fn sensor_disagreement(time: &[f64], values: &[f64]) -> Option<f64> {
     let (mut deviations, mut beside_repeated) = (Vec::new(), 0.0);
     for ([before, at, after], deviation) in readings::deviations(time, values) {
         let repeats = values[before] == values[at] || values[at] == values[after];
@@ -53,14 +53,14 @@ mod tests {
             time.iter().enumerate().map(|(row, &t)| value(row, t)).collect()
         };
         let late = values(&|row, t| signal(if row % 2 == 0 { t } else { t - 5.0 }));
-        let apart = alternation(&time, &late).expect("two sensors");
+        let apart = sensor_disagreement(&time, &late).expect("two sensors");
         assert!((0.02..0.1).contains(&apart), "{apart}");
         let offset = values(&|row, t| signal(t) + if row % 2 == 0 { 0.0 } else { 0.035 });
-        assert!(alternation(&time, &offset).is_some());
+        assert!(sensor_disagreement(&time, &offset).is_some());
         let noise = |row: usize| 0.02 * ((row as f64 * 12.9898).sin() * 43758.5453).fract();
-        assert_eq!(alternation(&time, &values(&|row, t| signal(t) + noise(row))), None);
-        assert_eq!(alternation(&time, &values(&|_, t| (signal(t) / 0.02).round() * 0.02)), None);
+        assert_eq!(sensor_disagreement(&time, &values(&|row, t| signal(t) + noise(row))), None);
+        assert_eq!(sensor_disagreement(&time, &values(&|_, t| (signal(t) / 0.02).round() * 0.02)), None);
         // Values held for every other row, as in a channel written on change.
-        assert_eq!(alternation(&time, &values(&|row, _| 0.02 * (row / 2) as f64)), None);
+        assert_eq!(sensor_disagreement(&time, &values(&|row, _| 0.02 * (row / 2) as f64)), None);
     }
 }

@@ -68,7 +68,7 @@ pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
 ///
 /// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `rudder_on_heading`, or without a recorded yaw
 /// rate.
-pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<PartialSlope> {
+pub(super) fn heading_on_yaw_rate(trial: &Trial) -> Option<PartialSlope> {
     if trial.heading_from_yaw_rate() {
         return None;
     }

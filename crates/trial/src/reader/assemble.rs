@@ -8,7 +8,7 @@ use document::{Warning, WarningCode};
 use super::error::Problem;
 use super::source::Series;
 use crate::channel::Channel;
-use crate::cleaning::draw_line;
+use crate::cleaning::interpolate_rows;
 use crate::record::Columns;
 use crate::wording::counted;
 use estimation::statistics::upper_median;
@@ -26,7 +26,7 @@ const TIME_TOLERANCE: f64 = 1e-6;
 const OBSERVED: [Channel; 4] = [Channel::Heading, Channel::Rudder, Channel::RudderOrder, Channel::YawRate];
 
 /// Columns of channels with different sampling instants.
-pub(super) fn columns(series: &[Series]) -> Columns {
+pub(super) fn merge_series(series: &[Series]) -> Columns {
     let is_observed = |series: &&Series| OBSERVED.contains(&series.channel);
     let mut time: Vec<f64> = series.iter().filter(is_observed).flat_map(|series| series.time.iter().copied()).collect();
     time.sort_unstable_by(f64::total_cmp);
@@ -83,7 +83,7 @@ fn usual_interval(time: &[f64]) -> Option<f64> {
 }
 
 /// Readings of the channels of a table, without its unknown columns.
-pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
+pub(super) fn split_columns(columns: Columns, offset: f64) -> Vec<Series> {
     let Columns { time, channels, .. } = columns;
     let readings = |(channel, values): (Channel, Vec<f64>)| {
         let (time, values) = time
@@ -130,7 +130,7 @@ pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     for pair in read.windows(2) {
         let (from, to) = (pair[0], pair[1]);
         if time[to] - time[from] <= longest {
-            draw_line(time, rudder, from, to);
+            interpolate_rows(time, rudder, from, to);
             filled += to - from - 1;
         }
     }
@@ -200,7 +200,7 @@ mod tests {
         let heading = series_of(Channel::Heading, 0.0, 0.5, 21, |t| t);
         let rudder = series_of(Channel::Rudder, 0.2, 1.0, 10, |t| 2.0 * t);
         let speed = series_of(Channel::Speed, -1.0, 2.0, 8, |t| 3.0 * t);
-        let mut columns = columns(&[heading, rudder, speed]);
+        let mut columns = merge_series(&[heading, rudder, speed]);
         assert_eq!(columns.time[..4], [0.0, 0.2, 0.5, 1.0]);
         let text = interpolate_rudder(&mut columns).expect("rows were filled").text;
         assert!(text.contains("is interpolated between its readings"), "{text}");
@@ -222,7 +222,7 @@ mod tests {
         let mut rudder = series_of(Channel::Rudder, 0.0, 1.0, 100, |t| t);
         rudder.time.drain(40..50);
         rudder.values.drain(40..50);
-        let mut columns = columns(&[heading, rudder]);
+        let mut columns = merge_series(&[heading, rudder]);
         let text = interpolate_rudder(&mut columns).expect("rows were left out").text;
         assert!(text.starts_with("10 rows without rudder angle left out"), "{text}");
         assert_eq!(columns.time.len(), 90);

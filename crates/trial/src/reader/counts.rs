@@ -6,7 +6,7 @@ use ship::angle::DEGREE;
 
 use super::error::Problem;
 use super::layout::{Content, RawColumn};
-use super::units::{EPOCH, ZIG_ZAG};
+use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
 use crate::cleaning::{IMPOSSIBLE_RUDDER, MAX_IMPOSSIBLE_SHARE};
 use crate::plausibility::{extremes, range, reversals};
@@ -99,7 +99,10 @@ fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     let wraps = TENTHS_WRAP.contains(&heading.largest_step);
     // A single wrong reading may step as far, but does not move the heading.
     match ratio {
-        Some(ratio) => (wraps && ratio > MIN_TENTHS_RATIO) || (ZIG_ZAG[1]..10.0 * ZIG_ZAG[1]).contains(&ratio),
+        Some(ratio) => {
+            (wraps && ratio > MIN_TENTHS_RATIO)
+                || (ZIG_ZAG_RANGE_RATIO[1]..10.0 * ZIG_ZAG_RANGE_RATIO[1]).contains(&ratio)
+        }
         None => wraps,
     }
 }
@@ -132,8 +135,9 @@ pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
 
 /// Refuses a time in milliseconds or microseconds since 1970 under a name in seconds.
 pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
-    let unit =
-        [(1e-3, "ms"), (1e-6, "us")].into_iter().find(|(factor, _)| (EPOCH[0]..EPOCH[1]).contains(&(first * factor)));
+    let unit = [(1e-3, "ms"), (1e-6, "us")]
+        .into_iter()
+        .find(|(factor, _)| (POSIX_TIME_RANGE_S[0]..POSIX_TIME_RANGE_S[1]).contains(&(first * factor)));
     match unit {
         Some((_, unit)) => Err(Problem::EpochUnit { line, column: column.to_owned(), first, unit }),
         None => Ok(()),

@@ -6,10 +6,10 @@ use std::io::Read;
 use super::error::Problem;
 use super::limits::{is_comment, no_rows};
 use super::lines::Lines;
-use crate::cells::{Cell, Separator, cell, recognise, unquoted};
+use crate::cells::{Cell, Separator, cell, detect_separator, unquoted};
 use crate::channel::Unit;
 use crate::names;
-use crate::sidecar::{Sidecar, Which};
+use crate::sidecar::{ColumnReference, Sidecar};
 use crate::wording::shortened;
 
 /// Maximum number of lines before the header: some programs state the ship and the trial there.
@@ -84,7 +84,8 @@ pub(super) fn find<R: Read>(
     let count_names = |cells: &[&str]| cells.iter().filter(|name| has_meaning(name, sidecar)).count();
     let has_names = |line: &str, separator: Separator| count_names(&split(line, separator)) >= 2;
     // Two names are sufficient: with blanks, `Time UTC` between tabs would count as two.
-    let separator_of = |line: &str| declared.unwrap_or_else(|| recognise(line, |cells| count_names(cells).min(2)));
+    let separator_of =
+        |line: &str| declared.unwrap_or_else(|| detect_separator(line, |cells| count_names(cells).min(2)));
     let names_of = |line: &str, separator| split(line, separator).into_iter().map(unquoted).collect();
     let without_units =
         |line, names, separator| Head { names, units: Vec::new(), line, separator, rows: Vec::new(), skipped: 0 };
@@ -101,7 +102,7 @@ pub(super) fn find<R: Read>(
         (without_units(comment_line, names_of(&comment, name_separator), declared.unwrap_or(separator)), 0)
     } else {
         let first_separator = separator_of(text);
-        let by_index = sidecar.columns.iter().any(|column| matches!(column.which, Which::Index(_)));
+        let by_index = sidecar.columns.iter().any(|column| matches!(column.which, ColumnReference::Index(_)));
         let later = || {
             let candidates = begin.iter().enumerate().skip(1).take(MAX_PREAMBLE_LINES);
             let mut separated = candidates.map(|(index, (_, text))| (index, text, separator_of(text)));
@@ -140,7 +141,7 @@ pub(super) fn separator_of_numbers(line: &str) -> Option<Separator> {
 
 /// `true` for a name with a meaning, or a name described in the sidecar.
 fn has_meaning(name: &str, sidecar: &Sidecar) -> bool {
-    let is_described = || sidecar.columns.iter().any(|column| column.which == Which::Name(name.to_owned()));
+    let is_described = || sidecar.columns.iter().any(|column| column.which == ColumnReference::Name(name.to_owned()));
     names::meaning(name).is_some() || is_described()
 }
 

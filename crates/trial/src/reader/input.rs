@@ -93,7 +93,7 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
         let hash = on_disk.unwrap_or_else(|| Hash::of(&all));
-        return Ok(Content::Table(Text { bytes: kind.text(all)?, on_disk: Some(hash), is_generated: true }));
+        return Ok(Content::Table(Text { bytes: kind.read_as_text(all)?, on_disk: Some(hash), is_generated: true }));
     }
     match first.as_slice() {
         [0xd0, 0xcf, 0x11, 0xe0, ..] => refused("an old spreadsheet (XLS)", AS_CSV),

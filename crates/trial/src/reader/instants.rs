@@ -7,7 +7,7 @@ use estimation::statistics::upper_median;
 ///
 /// `time` (s) does not decrease. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
 /// first and the last stamp may be incomplete: their rows fill the end and the beginning of their width.
-pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
+pub(super) fn spread_shared_stamps(time: &mut [f64]) -> Option<usize> {
     let mut begins: Vec<usize> = (0..time.len()).filter(|&row| row == 0 || time[row] != time[row - 1]).collect();
     if begins.len() == time.len() || begins.len() < 3 {
         return None;
@@ -32,16 +32,16 @@ pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::spread;
+    use super::spread_shared_stamps;
 
     #[test]
     fn rows_of_one_second_are_spread_over_it() {
         let mut time = [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 5.0, 5.0, 5.0, 5.0, 6.0];
-        assert_eq!(spread(&mut time), Some(4));
+        assert_eq!(spread_shared_stamps(&mut time), Some(4));
         assert_eq!(time, [0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 5.0, 5.25, 5.5, 5.75, 6.0]);
         let mut single = [0.0, 1.0, 2.0, 3.5];
-        assert_eq!(spread(&mut single), None);
-        assert_eq!(spread(&mut []), None);
-        assert_eq!(spread(&mut [1.0; 9]), None);
+        assert_eq!(spread_shared_stamps(&mut single), None);
+        assert_eq!(spread_shared_stamps(&mut []), None);
+        assert_eq!(spread_shared_stamps(&mut [1.0; 9]), None);
     }
 }

@@ -12,7 +12,7 @@ use crate::cells::cell;
 use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
 use crate::names::{ColumnMeaning, contract, meaning, with_unit};
-use crate::sidecar::{Sidecar, SidecarProblem, Which};
+use crate::sidecar::{ColumnReference, Sidecar, SidecarProblem};
 use crate::wording::shortened;
 
 /// Content of a column.
@@ -199,18 +199,18 @@ impl Layout {
             let fault = |problem| Err(ReadError::from(sidecar.error(described.line, problem)));
             let table = table.to_path_buf();
             let index = match &described.which {
-                Which::Index(index) if *index < seen.len() => *index,
-                Which::Index(index) => {
+                ColumnReference::Index(index) if *index < seen.len() => *index,
+                ColumnReference::Index(index) => {
                     return fault(SidecarProblem::IndexBeyond { index: index + 1, table, columns: seen.len() });
                 }
-                Which::Name(name) => match self.columns.iter().position(|column| column.name == *name) {
+                ColumnReference::Name(name) => match self.columns.iter().position(|column| column.name == *name) {
                     Some(index) => index,
                     None => {
                         let (name, header) = (name.clone(), self.names());
                         return fault(SidecarProblem::NameNotFound { name, table, header });
                     }
                 },
-                Which::Formula(formula) => {
+                ColumnReference::Formula(formula) => {
                     let index = |name: &String| {
                         let index = self.columns[..self.cells].iter().position(|column| column.name == *name);
                         index.ok_or_else(|| name.clone())
@@ -269,7 +269,7 @@ impl Layout {
                 )));
                 continue;
             }
-            let factor = unit.unwrap_or(channel.written_unit()).to_si();
+            let factor = unit.unwrap_or(channel.written_unit()).si_factor();
             let content = |scale: f64| Content::Channel(channel, scale * factor);
             self.settle(index, rank, unit, content);
         }
@@ -343,7 +343,7 @@ impl Layout {
                     self.columns[date].content = Content::Date;
                 }
             }
-            None => self.settle(index, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::to_si))),
+            None => self.settle(index, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::si_factor))),
         }
         Ok(())
     }

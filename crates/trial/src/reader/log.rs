@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use document::{Warning, WarningCode};
 use ship::Particulars;
 
-use super::assemble::{check, columns, complete, interpolate_rudder, series, without_duplicates};
+use super::assemble::{check, complete, interpolate_rudder, merge_series, split_columns, without_duplicates};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
@@ -112,7 +112,7 @@ impl Log {
             return series;
         }
         let named = |read: Series| (Series { source: self.column_name(read.channel), ..read }, 0.0);
-        series(self.columns.clone(), 0.0).into_iter().map(named).collect()
+        split_columns(self.columns.clone(), 0.0).into_iter().map(named).collect()
     }
 
     pub(super) fn fault(&self, problem: impl Into<Problem>) -> ReadError {
@@ -141,14 +141,14 @@ impl Log {
         self.warnings.extend(joined.warnings.into_iter().map(with_file));
         let shifted = |reading: RejectedReading| RejectedReading { time: reading.time + offset, ..reading };
         self.rejected.extend(joined.rejected.into_iter().map(shifted));
-        let mut all = series(std::mem::take(&mut self.columns), 0.0);
-        all.extend(series(joined.columns, offset));
+        let mut all = split_columns(std::mem::take(&mut self.columns), 0.0);
+        all.extend(split_columns(joined.columns, offset));
         let (all, dropped) = without_duplicates(all);
         self.warnings.extend(dropped.into_iter().map(|channel| {
             let text = format!("the {} is also in an earlier file, from which it is taken", channel.label());
             with_file(WarningCode::Instrument.warning(text))
         }));
-        self.columns = columns(&all);
+        self.columns = merge_series(&all);
         self.names.extend(joined.names);
         self.sha256 = joined_hash(&self.sha256, &joined.sha256);
         self.rows += joined.rows;
@@ -210,7 +210,7 @@ impl Log {
 
     /// `true` if the sidecar declares a part.
     pub fn has_declared_part(&self) -> bool {
-        let part = self.sidecar.part();
+        let part = self.sidecar.used_interval();
         part.start().is_finite() || part.end().is_finite()
     }
 
@@ -320,13 +320,13 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
         }
         let mut single = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if sidecar.is_checked() {
-            log.warnings.extend(rudder::hold(&mut single));
+            log.warnings.extend(rudder::repeat_held_rudder(&mut single));
             log.warnings.extend(cleaning::clean(&mut single, &mut log.rejected));
         }
         Series { channel, values: single.channels.remove(&channel).unwrap_or_default(), time: single.time, source }
     });
     let cleaned: Vec<Series> = cleaned.collect();
-    let (mut columns, part) = (columns(&cleaned), sidecar.part());
+    let (mut columns, part) = (merge_series(&cleaned), sidecar.used_interval());
     let keep: Vec<bool> = columns.time.iter().map(|t| part.contains(t)).collect();
     columns.retain(&keep);
     log.readings = Readings::Series(cleaned.into_iter().map(|series| (series.within(&part), 0.0)).collect());

@@ -87,7 +87,7 @@ impl<'a> Rows<'a> {
         Self {
             separator,
             sidecar,
-            part: sidecar.part(),
+            part: sidecar.used_interval(),
             every: sidecar.part.every.unwrap_or(1),
             time_place,
             date_place: layout.date(),

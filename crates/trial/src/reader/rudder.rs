@@ -25,7 +25,7 @@ const MAX_HELD_READINGS: f64 = 1000.0;
 ///
 /// In a rudder written on change no reading repeats the previous one, and over a long rest the rudder moves no
 /// further than between two rows of a movement.
-pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
+pub(super) fn repeat_held_rudder(columns: &mut Columns) -> Option<Warning> {
     let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|x| columns.channels.contains_key(x))?;
     let values = &columns.channels[&channel];
     let read: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
@@ -46,7 +46,7 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
     if least == 0.0 || 20 * small > changes.len() || !is_held {
         return None;
     }
-    let mut all = assemble::series(std::mem::take(columns), 0.0);
+    let mut all = assemble::split_columns(std::mem::take(columns), 0.0);
     for series in all.iter_mut().filter(|series| series.channel == channel) {
         let mut held = Series { time: Vec::new(), values: Vec::new(), ..series.clone() };
         for (index, (&time, &value)) in series.time.iter().zip(&series.values).enumerate() {
@@ -62,7 +62,7 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
         }
         *series = held;
     }
-    *columns = assemble::columns(&all);
+    *columns = assemble::merge_series(&all);
     Some(WarningCode::FaultyReadings.warning(format!(
         "the {} is written on change: its empty cells are read as the last value; changes below {:.2}°, too small to be \
          written, are missing",
@@ -73,11 +73,11 @@ pub(super) fn hold(columns: &mut Columns) -> Option<Warning> {
 
 /// Columns with every reading of the rudder `late` seconds earlier; rows are the instants of all readings.
 pub(super) fn earlier(columns: Columns, late: f64) -> Columns {
-    let mut all = assemble::series(columns, 0.0);
+    let mut all = assemble::split_columns(columns, 0.0);
     for rudder in all.iter_mut().filter(|series| matches!(series.channel, Channel::Rudder | Channel::RudderOrder)) {
         rudder.time.iter_mut().for_each(|time| *time -= late);
     }
-    assemble::columns(&all)
+    assemble::merge_series(&all)
 }
 
 /// Computes the rudder angle from an order that the gear follows at a rate, deg/s; `false` without an order.

@@ -10,11 +10,11 @@ use super::counts;
 use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
-use super::instants::spread;
+use super::instants::spread_shared_stamps;
 use super::layout::{Content, Layout, RawColumn};
 use super::limits::no_rows;
 use super::lines::Lines;
-use super::position::plane;
+use super::position::plane_positions;
 use super::rows::Rows;
 use super::rudder;
 use super::source::Log;
@@ -59,7 +59,7 @@ pub(super) fn read(
     let mut log = rows.finish(head.skipped).map_err(fault)?;
     log.sha256 = lines.sha256();
     if sidecar.is_checked() {
-        log.warnings.extend(rudder::hold(&mut log.columns));
+        log.warnings.extend(rudder::repeat_held_rudder(&mut log.columns));
         log.warnings.extend(cleaning::clean(&mut log.columns, &mut log.rejected));
     }
     Ok(log)
@@ -106,14 +106,15 @@ impl Rows<'_> {
                 _ => unknown.push((name, values)),
             }
         }
-        let positions = latitude.zip(longitude).and_then(|(latitude, longitude)| plane(&latitude, &longitude));
+        let positions =
+            latitude.zip(longitude).and_then(|(latitude, longitude)| plane_positions(&latitude, &longitude));
         for (channel, values) in positions.into_iter().flatten() {
             channels.entry(channel).or_insert(values);
         }
         let clock = self.stamps.as_ref().and_then(Stamps::clock);
         let columns = Columns { time: self.time, channels, unknown };
         let mut log = Log { columns, clock, rows: self.counts.rows, names, ..Log::default() };
-        let decided = units::settle(&mut log, open, open_time, line)?;
+        let decided = units::infer_units(&mut log, open, open_time, line)?;
         if skipped > 0 {
             let text = format!("{} before the header skipped", counted(skipped, "line"));
             log.warnings.push(WarningCode::Notation.warning(text));
@@ -138,7 +139,7 @@ impl Rows<'_> {
 
     /// Spreads rows that share a stamp, and thins the rows; with a warning of shared stamps.
     fn spread_stamps(&mut self) -> Option<Warning> {
-        let usual = if self.whole_seconds { spread(&mut self.time) } else { None };
+        let usual = if self.whole_seconds { spread_shared_stamps(&mut self.time) } else { None };
         let thin = |values: &mut Vec<f64>| {
             *values = std::mem::take(values).into_iter().step_by(self.every).collect();
         };

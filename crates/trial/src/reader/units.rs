@@ -21,7 +21,7 @@ const MIN_RUDDER_DEG: f64 = 1.6;
 
 /// Bounds of the ratio of the range of heading to that of rudder in a zig-zag: a factor of 56 apart, less than the
 /// 57.3 between degrees and radians.
-pub(super) const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
+pub(super) const ZIG_ZAG_RANGE_RATIO: [f64; 2] = [0.25, 14.0];
 
 /// Bounds of the same ratio for a rudder laid to a single side: course changes and turning circles.
 const TURN: [f64; 2] = [1.0, 500.0];
@@ -33,7 +33,7 @@ const MAX_HEADING_RAD: f64 = 38.0;
 const MIN_RUDDER_RATE: f64 = 3.5e-3;
 
 /// Seconds since 1970 of the years 1990 to 2100.
-pub(super) const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
+pub(super) const POSIX_TIME_RANGE_S: [f64; 2] = [6.3e8, 4.1e9];
 
 /// Days since 1899-12-30, as counted by spreadsheets, of the years 2000 to 2100.
 const SERIAL_DAY: [f64; 2] = [36_526.0, 73_415.0];
@@ -56,7 +56,7 @@ pub(super) struct UnitlessColumn {
 /// Determines the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
 ///
 /// Fails if heading, rudder, a yaw rate used for the heading, or time could have two units.
-pub(super) fn settle(
+pub(super) fn infer_units(
     log: &mut Log,
     mut open: Vec<UnitlessColumn>,
     open_time: Option<String>,
@@ -128,7 +128,7 @@ fn without_unit(UnitlessColumn { channel, name, .. }: &UnitlessColumn) -> Warnin
 
 /// Converts a channel that was read in the unit of written files.
 fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
-    let factor = unit.to_si() / channel.written_unit().to_si();
+    let factor = unit.si_factor() / channel.written_unit().si_factor();
     if factor != 1.0
         && let Some(values) = channels.get_mut(&channel)
     {
@@ -138,7 +138,7 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
 
 /// Unit of a heading that was read as degrees; a heading in radians is unwrapped at 2π.
 fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
-    let degree = Unit::Degree.to_si();
+    let degree = Unit::Degree.si_factor();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
     let values = channels.get_mut(&Channel::Heading)?;
     if open.largest <= std::f64::consts::TAU + 0.01 && wraps_at_two_pi_degrees(values) {
@@ -157,7 +157,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     }
     let rudder = rudder?;
     let ratio = range(values) / range(&rudder);
-    let [least, largest] = if reversals(&rudder) >= 2 { ZIG_ZAG } else { TURN };
+    let [least, largest] = if reversals(&rudder) >= 2 { ZIG_ZAG_RANGE_RATIO } else { TURN };
     let fits = |ratio: f64| (least..=largest).contains(&ratio);
     match (fits(ratio), fits(ratio / degree)) {
         (true, false) => Some(Unit::Degree),
@@ -186,7 +186,7 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     // The sign of the rate is checked with the record.
     let ratio = (product / square).abs();
     let near = |unit: &&Unit| {
-        let factor = unit.to_si() / Unit::DegreePerSecond.to_si();
+        let factor = unit.si_factor() / Unit::DegreePerSecond.si_factor();
         (0.7..1.4).contains(&(ratio / factor))
     };
     Channel::YawRate.units().iter().find(near).copied()
@@ -199,7 +199,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     let distance: f64 = changes(time, north).zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
     let duration: f64 = changes(time, north).map(|(_, time)| time).sum();
     let ratio = distance / duration / (values.iter().sum::<f64>() / values.len() as f64);
-    Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.to_si()))).copied()
+    Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.si_factor()))).copied()
 }
 
 /// Determines the unit of a time without one: a count since 1970 or 1899, or seconds if ships can turn at such rates.
@@ -208,7 +208,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let times = &mut log.columns.time;
     let first = times[0];
     for (factor, unit) in [(1.0, "seconds"), (1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds")] {
-        if (EPOCH[0]..EPOCH[1]).contains(&(first * factor)) {
+        if (POSIX_TIME_RANGE_S[0]..POSIX_TIME_RANGE_S[1]).contains(&(first * factor)) {
             times.iter_mut().for_each(|time| *time = (*time - first) * factor);
             log.clock = Some(clock(first * factor, 0));
             return Ok(format!("`{name}` is read as {unit} since 1970-01-01, UTC; time 0 is the first row"));

@@ -7,10 +7,12 @@ use document::Quantity;
 use ship::angle::{from_deg, to_deg};
 
 use super::executes::{Movement, RudderMovements};
-use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError, period};
+use super::findings::{
+    BaseCourse, BaseCourseSource, Execute, NominalAngles, Overshoot, Side, ZigZag, ZigZagError, period,
+};
 use super::heading::Heading;
 use super::holds::{self, Hold};
-use super::local::Local;
+use super::local::LocalPolynomial;
 use crate::channel::Channel;
 use crate::plausibility::range;
 use crate::record::Trial;
@@ -190,7 +192,7 @@ fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
 /// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` if the standard deviation of
 /// the rate exceeds `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
-    let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
+    let fit = LocalPolynomial::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
     (fit.slope_gain(time) * heading.noise.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
 }
 
@@ -214,7 +216,7 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
 ///
 /// Headings are relative to the middle course: it is less noisy than the first heading of a record, and valid if
 /// the approach was not on the course of the trial.
-fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
+fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<NominalAngles> {
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();
     let angle = median(&mut angles)?;
@@ -224,7 +226,7 @@ fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Opti
     let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));
     let heading = from_deg(holds::conventional_deg(angle, 0.05, 0.25, slack)?);
     let held = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
-    Some(Pair { rudder: from_deg(holds::conventional_deg(to_deg(held), 0.08, 0.08, 0.0)?), heading })
+    Some(NominalAngles { rudder: from_deg(holds::conventional_deg(to_deg(held), 0.08, 0.08, 0.0)?), heading })
 }
 
 fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &Heading) -> Vec<Overshoot> {

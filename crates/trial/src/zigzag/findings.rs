@@ -70,21 +70,21 @@ impl fmt::Display for Side {
 
 /// Nominal rudder and heading angle δ/ψ of a zig-zag, rad; shown in whole degrees, as in 10/20 (rudder 10, heading 20).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct NominalAngles {
     /// Rudder angle δ, rad.
     pub rudder: f64,
     /// Change of heading at which the rudder is reversed ψ, rad.
     pub heading: f64,
 }
 
-impl Pair {
+impl NominalAngles {
     /// `true` for the pair δ/ψ in degrees.
     pub fn is_deg(&self, delta_deg: f64, psi_deg: f64) -> bool {
         (to_deg(self.rudder) - delta_deg).abs() < 1e-6 && (to_deg(self.heading) - psi_deg).abs() < 1e-6
     }
 }
 
-impl fmt::Display for Pair {
+impl fmt::Display for NominalAngles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:.0}/{:.0}", to_deg(self.rudder), to_deg(self.heading))
     }
@@ -160,7 +160,7 @@ pub struct Overshoot {
 pub struct ZigZag {
     /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` if those headings differ by more
     /// than half their size.
-    pub pair: Option<Pair>,
+    pub pair: Option<NominalAngles>,
     /// Side of the first execute; `None` if the record begins within the trial.
     pub side: Option<Side>,
     /// Base course of the trial.

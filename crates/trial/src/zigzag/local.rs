@@ -12,7 +12,7 @@ use document::Quantity;
 ///
 /// y(t) = Σ cₖ xᵏ, x = (t − centre)/half_width, k = 0..N−1.
 #[derive(Debug, Clone)]
-pub(super) struct Local<const N: usize> {
+pub(super) struct LocalPolynomial<const N: usize> {
     pub centre: f64,
     pub half_width: f64,
     /// Number of samples in the window.
@@ -23,11 +23,11 @@ pub(super) struct Local<const N: usize> {
 }
 
 /// Local parabola.
-pub(super) type Parabola = Local<3>;
+pub(super) type Parabola = LocalPolynomial<3>;
 /// Local cubic.
-pub(super) type Cubic = Local<4>;
+pub(super) type Cubic = LocalPolynomial<4>;
 
-impl<const N: usize> Local<N> {
+impl<const N: usize> LocalPolynomial<N> {
     /// Fit to the samples within `half_width` of `centre`; NaN values are skipped.
     ///
     /// `None` if the window contains fewer than `N` values or they do not determine the polynomial. `time` must
@@ -199,7 +199,7 @@ mod tests {
     #[test]
     fn gains_are_those_of_the_textbook() {
         let time: Vec<f64> = (-500..=500).map(|k| 0.01 * f64::from(k)).collect();
-        let fit = Local::<2>::fit(&time, &vec![1.0; 1001], 0.0, 5.0).expect("enough samples");
+        let fit = LocalPolynomial::<2>::fit(&time, &vec![1.0; 1001], 0.0, 5.0).expect("enough samples");
         assert_relative_eq!(fit.value_gain(0.0), 1001.0_f64.sqrt().recip(), max_relative = 1e-6);
         assert_relative_eq!(fit.slope_gain(0.0), (3.0_f64 / 1001.0).sqrt() / 5.0, max_relative = 2e-3);
     }

@@ -18,6 +18,6 @@ mod tests;
 
 pub(crate) use executes::quantum;
 pub use findings::{
-    BaseCourse, BaseCourseSource, Execute, MAX_APPROACH_RATE_SHARE, Overshoot, Pair, Side, ZigZag, ZigZagError,
+    BaseCourse, BaseCourseSource, Execute, MAX_APPROACH_RATE_SHARE, NominalAngles, Overshoot, Side, ZigZag, ZigZagError,
 };
 pub use heading::noise_sd;

@@ -13,7 +13,7 @@ const BASE: [f64; 3] = [0.06, 0.006, 0.01];
 
 fn banked(line: &str, constants: Vec<f64>) -> Response {
     let formula = Formula::read(line).expect("a formula");
-    ResponseModel::new(vec![formula]).with([BASE.to_vec(), constants].concat())
+    ResponseModel::new(vec![formula]).with_parameters([BASE.to_vec(), constants].concat())
 }
 
 /// States of a replay of a zig-zag-like rudder every quarter of a second, from an initial heading, with a falling
@@ -25,7 +25,7 @@ fn states(ship: &Response, side: f64, heading: f64, has_speed: bool) -> Vec<[f64
     let recorded = RecordedSignals { speed: has_speed.then_some(&speed), ..RecordedSignals::rudder(&rudder) };
     let times: Vec<f64> = (0..=400).map(|row| 0.25 * f64::from(row)).collect();
     let mut state = vec![0.0; 4];
-    ship.enter(heading, 0.0, &recorded.input(0.0, 0.0), &mut state);
+    ship.initialise(heading, 0.0, &recorded.input(0.0, 0.0), &mut state);
     let mut all = Vec::new();
     replay_states(
         ship,
@@ -64,7 +64,7 @@ fn the_way_is_the_sum_of_the_speed_aside() {
 #[test]
 fn only_the_course_at_the_start_matters() {
     let ship = banked("bank = c * y", vec![-3e-4]);
-    let mirrored = ship.model().clone().with(vec![BASE[0], BASE[1], -BASE[2], -3e-4]);
+    let mirrored = ship.model().clone().with_parameters(vec![BASE[0], BASE[1], -BASE[2], -3e-4]);
     let (all, turned) = (states(&ship, 1.0, 0.0, true), states(&ship, 1.0, 2.0, true));
     for ((straight, turned), mirrored) in all.iter().zip(turned).zip(states(&mirrored, -1.0, 0.0, true)) {
         assert!((turned[0] - straight[0] - 2.0).abs() < 1e-12 && (turned[2] - straight[2]).abs() < 1e-9);
@@ -87,10 +87,10 @@ fn a_way_carries_its_derivatives() {
     for line in ["bank = c * y", "bank = c * y * psi^2"] {
         let model = banked(line, vec![-3e-3]).model().clone();
         let end = |values: [Tangent; 6]| {
-            let ship = model.clone().with(values[..4].to_vec());
+            let ship = model.clone().with_parameters(values[..4].to_vec());
             let mut state = vec![Tangent::default(); 4];
             let recorded = RecordedSignals::rudder(&rudder);
-            ship.enter(values[4], values[5], &recorded.input(0.0, Tangent::default()), &mut state);
+            ship.initialise(values[4], values[5], &recorded.input(0.0, Tangent::default()), &mut state);
             replay_states(&ship, &recorded, &[0.0, 100.0], |_, _| 0.25, &mut state, |_, _, _| {});
             state[0]
         };
@@ -113,12 +113,12 @@ fn a_way_carries_its_derivatives() {
 fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {
         let formula = Formula::read("bank = c * y").expect("a formula");
-        let Proposal { effect, priors } =
-            formula.proposal(&RecordScales { speed, ..manoeuvres() }).expect("any record will do");
+        let CandidateEffect { effect, priors } =
+            formula.candidate(&RecordScales { speed, ..manoeuvres() }).expect("any record will do");
         let constants: Vec<f64> = effect.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!(constants, way);
         assert!((priors[0].sd * way[0] / 6e-3 - 1.0).abs() < 0.2, "{priors:?}");
-        let ship = ResponseModel::new(vec![effect]).with([BASE.as_slice(), &[0.0]].concat());
+        let ship = ResponseModel::new(vec![effect]).with_parameters([BASE.as_slice(), &[0.0]].concat());
         let [measured, none] = [true, false].map(|has_speed| states(&ship, 1.0, 0.0, has_speed)[400][2]);
         assert_eq!(measured == none, speed.is_none());
     }

@@ -16,8 +16,8 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Action, Description, Effect, OperatingPoint, Prior, Proposal, RecordScales, Targets};
-use crate::dynamics::{Measured, Regressor};
+use super::effect::{Action, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales, Targets};
+use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
@@ -213,7 +213,7 @@ impl Formula {
     }
 
     /// Speed that drives the lateral way, m/s.
-    fn way_speed(&self, measured: &Measured) -> f64 {
+    fn way_speed(&self, measured: &MeasuredChannels) -> f64 {
         let [.., speed, is_always] = self.of_record;
         measured.speed.filter(|_| is_always == 0.0).unwrap_or(speed)
     }
@@ -224,7 +224,7 @@ impl Effect for Formula {
         self.description
     }
 
-    fn proposal(&self, records: &RecordScales) -> Option<Proposal> {
+    fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let has = |channel| match channel {
             Regressor::Speed => records.speed.is_some(),
             Regressor::Sway => records.sway.is_some(),
@@ -246,7 +246,7 @@ impl Effect for Formula {
                 parameters.map(|p| Prior::normal(p, mean, sd).within([p.lowest, p.highest.min(largest)])).collect()
             }
         };
-        Some(Proposal::new(effect, priors))
+        Some(CandidateEffect::new(effect, priors))
     }
 
     fn targets(&self) -> Targets {

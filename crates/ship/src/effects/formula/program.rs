@@ -3,7 +3,7 @@
 
 use estimation::number::Real;
 
-use crate::dynamics::{Measured, Regressor};
+use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
@@ -103,7 +103,7 @@ impl FormulaSignal {
         z: &[R],
         &[approach_speed, start, length, ..]: &OfRecord,
     ) -> R {
-        let Measured { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
+        let MeasuredChannels { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
         let value = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
         let constant = |channel: Option<f64>| R::from(value(channel));
         match self {

@@ -1,6 +1,6 @@
 use super::points::SignalPoint;
 use super::*;
-use crate::dynamics::Measured;
+use crate::dynamics::MeasuredChannels;
 use crate::effects::effect::Parameter;
 use crate::effects::list::{LIST, ListedEffect};
 
@@ -96,7 +96,7 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
 
 #[test]
 fn priors_follow_from_the_records_or_from_what_is_said() {
-    let proposal = |line: &str| Formula::read(line).expect("a formula").proposal(&manoeuvres());
+    let proposal = |line: &str| Formula::read(line).expect("a formula").candidate(&manoeuvres());
     let priors = proposal("cross = c * r * abs(v)").expect("speed and sway are there").priors;
     // A moment of 0.07 rad at r = 0.015 rad/s and v 1 m/s.
     assert!((5.0..50.0).contains(&priors[0].sd) && priors[0].mean == 0.0 && !priors[0].is_shape, "{priors:?}");
@@ -149,19 +149,19 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
         ("bank = c * y", vec![7.0, 0.0]),
     ] {
         let formula = Formula::read(line).expect("a formula");
-        let again = crate::effects::named(formula.id(), formula.form(), &constants).expect("it is known");
+        let again = crate::effects::find(formula.id(), formula.form(), &constants).expect("it is known");
         let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!((again.id(), again.form(), read_back), (formula.id(), formula.form(), constants));
     }
     for (form, constants) in [("c * rp", vec![]), ("c * rp", vec![-1.0]), ("c * r", vec![1.0]), ("c * dleta", vec![])] {
-        assert!(crate::effects::named("own", form, &constants).is_none(), "{form}");
+        assert!(crate::effects::find("own", form, &constants).is_none(), "{form}");
     }
-    assert!(crate::effects::named("moment_drift", "c * r", &[]).is_none(), "a name of the list");
+    assert!(crate::effects::find("moment_drift", "c * r", &[]).is_none(), "a name of the list");
 }
 
 #[test]
 fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
-    let measured = Measured { speed: Some(6.0), sway: Some(-0.5), ..Measured::default() };
+    let measured = MeasuredChannels { speed: Some(6.0), sway: Some(-0.5), ..MeasuredChannels::default() };
     let now = OperatingPoint {
         t: 10.0,
         heading: 0.3,
@@ -182,7 +182,7 @@ fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
     ] {
         assert!((acceleration(line, &now) / (0.004 * moment) - 1.0).abs() < 1e-14, "{line}");
     }
-    let measured = Measured::default();
+    let measured = MeasuredChannels::default();
     assert_eq!(
         acceleration("cross = c * r * abs(v)", &OperatingPoint { measured: &measured, ..now }),
         0.0,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::dynamics::Measured;
+use crate::dynamics::MeasuredChannels;
 use crate::effects::effect::{EffectReal, OperatingPoint};
 use crate::number::Tangent;
 use estimation::number::Real;
@@ -58,7 +58,7 @@ fn rows_are_their_equations_to_the_last_bit() {
             let variable = |place: u32, size: f64| {
                 Tangent::variable(size * number(round, place), place as usize, 0.5 + number(round, place + 20).abs())
             };
-            let measured = Measured {
+            let measured = MeasuredChannels {
                 speed: (round % 3 > 0).then(|| 5.0 + number(round, 6)),
                 sway: Some(number(round, 7)),
                 wind_speed: Some(10.0 * number(round, 8).abs()),

@@ -146,7 +146,7 @@ macro_rules! constants {
     ($name:ident: $($field:ident)* $(, $part:ident = $made:expr)*) => {
         impl $name {
             /// Parameters in another number type, without derivatives.
-            pub fn constant<R: Real>(&self) -> $name<R> {
+            pub fn to_real<R: Real>(&self) -> $name<R> {
                 $name { $($field: R::from(self.$field),)* $($part: $made(&self.$part)),* }
             }
         }
@@ -171,15 +171,15 @@ macro_rules! named_constants {
 
 constants!(BySign: positive negative);
 named_constants!(HullDerivatives: mx my Jz R0 Xvv Xvr Xrr Xvvvv Yv Yr Yvvv Yvvr Yvrr Yrrr Nv Nr Nvvv Nvvr Nvrr Nrrr);
-constants!(Propeller: DP wP0 tP xP, wake = Wake::constant, k = |k: &[f64; 3]| k.map(R::from));
-constants!(Rudder: AR eta f_alpha epsilon kappa tR aH xH xR lR, gammaR = BySign::constant);
+constants!(Propeller: DP wP0 tP xP, wake = Wake::to_real, k = |k: &[f64; 3]| k.map(R::from));
+constants!(Rudder: AR eta f_alpha epsilon kappa tR aH xH xR lR, gammaR = BySign::to_real);
 constants!(Parameters: Lpp d volume xG kzz,
-    hull = HullDerivatives::constant, propeller = Propeller::constant, rudder = Rudder::constant);
+    hull = HullDerivatives::to_real, propeller = Propeller::to_real, rudder = Rudder::to_real);
 
 impl Wake {
-    fn constant<R: Real>(&self) -> Wake<R> {
+    fn to_real<R: Real>(&self) -> Wake<R> {
         match self {
-            Self::Exponential { C1, C2 } => Wake::Exponential { C1: R::from(*C1), C2: C2.constant() },
+            Self::Exponential { C1, C2 } => Wake::Exponential { C1: R::from(*C1), C2: C2.to_real() },
             Self::Gaussian => Wake::Gaussian,
         }
     }

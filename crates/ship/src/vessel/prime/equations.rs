@@ -147,12 +147,12 @@ fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f
 
 impl PrimeHull {
     /// Hull in another number type, with constant coefficients.
-    pub fn constant<R: Real>(&self) -> PrimeHull<R> {
+    pub fn to_real<R: Real>(&self) -> PrimeHull<R> {
         let in_calm = match &self.in_calm {
             CalmHull::Quadratic(p) => CalmHull::Quadratic(p.map(R::from)),
             CalmHull::Cubic(p) => CalmHull::Cubic(p.map(R::from)),
             CalmHull::Mmg(hull, bias) => {
-                let again = Mmg::at_speed(hull.parameters().constant(), 1.0).expect("valid coefficients");
+                let again = Mmg::at_speed(hull.parameters().to_real(), 1.0).expect("valid coefficients");
                 CalmHull::Mmg(Box::new(again), R::from(*bias))
             }
         };

@@ -96,14 +96,14 @@ impl HullDimensions {
 
     /// Advance ratio of the straight approach, from the revolutions, else from the balance of thrust and
     /// [`RESISTANCE`].
-    pub(super) fn advance(&self) -> f64 {
+    pub(super) fn advance_ratio(&self) -> f64 {
         let by_revolutions = |n: f64| self.U * (1.0 - self.wake()) / (n * self.DP);
         self.n.map_or_else(|| (self.thrust_at_one() / RESISTANCE).sqrt(), by_revolutions)
     }
 
     /// Resistance coefficient R0', from the revolutions, else [`RESISTANCE`].
     fn resistance(&self) -> f64 {
-        self.n.map_or(RESISTANCE, |_| self.thrust_at_one() / self.advance().powi(2))
+        self.n.map_or(RESISTANCE, |_| self.thrust_at_one() / self.advance_ratio().powi(2))
     }
 
     /// Aspect ratio of the rudder, Λ = H_R²/A_R.
@@ -199,7 +199,7 @@ pub(super) const FORMULAS: &[CoefficientFormula] = &[
     row("C2-port", "C_2, β_P < 0", |_| 1.1, Absolute(0.25), "1.1", KVLCC2),
     row("tP", "t_P", |_| DEDUCTION, Absolute(0.04), ".22", PUBLISHED),
     row("xP", "x_P'", |_| -0.48, Absolute(0.02), "−.48", KVLCC2),
-    row("k0", "k_0", |f| SERVICE_THRUST - THRUST_SLOPE * f.advance(), Share(0.15), ".18 + .38 J", PUBLISHED),
+    row("k0", "k_0", |f| SERVICE_THRUST - THRUST_SLOPE * f.advance_ratio(), Share(0.15), ".18 + .38 J", PUBLISHED),
     row("k1", "k_1", |_| THRUST_SLOPE, Share(0.2), "−.38", PUBLISHED),
     row("k2", "k_2", |_| 0.0, Absolute(0.1), "0", PUBLISHED),
     row("f_alpha", "f_α", |f| 6.13 * f.aspect() / (2.25 + f.aspect()), Share(0.12), "6.13 Λ/(2.25 + Λ)", FUJII),

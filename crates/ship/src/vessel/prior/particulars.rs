@@ -56,7 +56,7 @@ pub struct Particular {
 
 impl Particular {
     /// Particular with this key; `None` if there is none.
-    pub fn named(key: &str) -> Option<&'static Self> {
+    pub fn find(key: &str) -> Option<&'static Self> {
         PARTICULARS.iter().find(|particular| particular.key == key)
     }
 
@@ -306,7 +306,7 @@ impl HullParticulars {
         }
         let cure = "give revolutions per second, and the diameter and the speed of the same scale";
         let what = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
-        within("propeller-rps", what.into(), form.advance(), ADVANCE_RANGE, "1", cure)
+        within("propeller-rps", what.into(), form.advance_ratio(), ADVANCE_RANGE, "1", cure)
     }
 }
 

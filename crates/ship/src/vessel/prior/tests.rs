@@ -224,7 +224,7 @@ fn every_particular_is_found_by_its_key() {
     for particular in PARTICULARS {
         let mut particulars = HullParticulars::default();
         assert_eq!(particular.get(&particulars), None, "{}", particular.key);
-        Particular::named(particular.key).expect("its own key").set(&mut particulars, 0.75);
+        Particular::find(particular.key).expect("its own key").set(&mut particulars, 0.75);
         assert_eq!(particular.get(&particulars), Some(0.75), "{}", particular.key);
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 
-use crate::motion::{TurningCircleFigures, track, turning_circle};
+use crate::motion::{TurningCircleFigures, dead_reckoning, turning_circle};
 
 const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;
@@ -17,7 +17,7 @@ fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
     let time: Vec<f64> = (0..=rows).map(|row| f64::from(row) * turned / RATE / f64::from(rows)).collect();
     let heading: Vec<f64> = time.iter().map(|t| course + side * RATE * t).collect();
     let velocity = vec![[SURGE, side * SWAY]; time.len()];
-    let path = track(&time, &heading, &velocity);
+    let path = dead_reckoning(&time, &heading, &velocity);
     turning_circle([&time, &heading, &vec![side * RATE; time.len()]], [&path, &velocity], 0.0)
 }
 
@@ -58,5 +58,5 @@ fn a_series_that_is_no_turn_has_no_figures() {
     assert_eq!(of(&time, 9.0), none);
     assert_eq!(of(&[0.0; 3], 0.0), none);
     assert_eq!(of(&time, f64::NAN), none);
-    assert!(track(&[], &[], &[]).is_empty());
+    assert!(dead_reckoning(&[], &[], &[]).is_empty());
 }

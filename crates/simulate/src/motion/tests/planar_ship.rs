@@ -58,7 +58,7 @@ fn a_response_sees_the_speed_of_its_ship() {
     let rudder = rudder(1.0, 35.0, 400.0, 1, 200.0);
     let model = ResponseModel::new(vec![Arc::new(SpeedLoss::Measured { approach_speed: SPEED })]);
     let steered = |exponents: [f64; 2]| {
-        let response = model.clone().with(vec![0.1, 0.015, 0.0, exponents[0], exponents[1]]);
+        let response = model.clone().with_parameters(vec![0.1, 0.015, 0.0, exponents[0], exponents[1]]);
         let ship = PlanarShip { response, planar: planar() };
         let mut state = vec![f64::NAN; ship.dimension()];
         ship.approach(0.0, 0.0, &mut state);
@@ -86,7 +86,7 @@ fn states_steps_and_memory_of_the_response_are_passed_on() {
     // With dead time and play of the rudder but no effect that requires the speed, the response alone turns
     // identically.
     let model = ResponseModel::new(vec![Arc::new(SteeringLag::DeadTime), Arc::new(Backlash)]);
-    let response = model.with(vec![0.1, 0.015, 0.01, 1.3, 0.05]);
+    let response = model.with_parameters(vec![0.1, 0.015, 0.01, 1.3, 0.05]);
     let ship = PlanarShip { response: response.clone(), planar: planar() };
     assert_eq!((ship.dimension(), ship.dead_time()), (response.dimension() + 2, 1.3));
     assert!(ship.largest_step() <= response.largest_step());

@@ -126,7 +126,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
 }
 
 /// Table of a file as text: the variables of equal length with the most known names, or else the most numbers.
-pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::meaning(name)? {
         ColumnMeaning::Channel(channel, _) => Some(ColumnMeaning::Channel(channel, None)),
@@ -160,12 +160,12 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         .collect();
     let line = move |line: usize| {
         let mut text = String::new();
-        text::line(&mut text, columns.len(), |text, place| {
+        text::write_line(&mut text, columns.len(), |text, place| {
             let (number, column) = columns[place];
             let variable = &variables[number];
             match line {
-                0 if variable.columns == 1 => text::cell(text, &variable.name),
-                0 => text::cell(text, &format!("{}_{}", variable.name, column + 1)),
+                0 if variable.columns == 1 => text::write_cell(text, &variable.name),
+                0 => text::write_cell(text, &format!("{}_{}", variable.name, column + 1)),
                 line => variable.write(text, column * variable.rows + line - 1),
             }
         });

@@ -42,23 +42,23 @@ impl Kind {
     /// Table of a file of this kind as text: names in the first line, a tab between two cells.
     ///
     /// Fails if the file is damaged, uses an unsupported compression, or contains no table.
-    pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+    pub fn read_as_text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         match self {
             #[cfg(feature = "parquet")]
-            Self::Parquet => parquet::text(bytes),
+            Self::Parquet => parquet::read_as_text(bytes),
             #[cfg(not(feature = "parquet"))]
             Self::Parquet => Err(Problem::Format {
                 format: "a Parquet file",
                 cure: "export it as CSV, or use a build with the feature `parquet`",
             }),
             #[cfg(feature = "spreadsheets")]
-            Self::Spreadsheet => spreadsheet::text(bytes),
+            Self::Spreadsheet => spreadsheet::read_as_text(bytes),
             #[cfg(not(feature = "spreadsheets"))]
             Self::Spreadsheet => Err(Problem::Format {
                 format: "a spreadsheet or an archive (ZIP)",
                 cure: "export it as CSV, or use a build with the feature `spreadsheets`",
             }),
-            Self::Matlab => matlab::text(bytes),
+            Self::Matlab => matlab::read_as_text(bytes),
         }
     }
 }

@@ -142,7 +142,7 @@ fn failed(error: ParquetError) -> Problem {
 }
 
 /// Table of a file as text.
-pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let mut rows = checked(|| Rows::open(bytes))?;
     Ok(Box::new(Written::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
 }
@@ -193,7 +193,7 @@ impl Rows {
     fn chunk(&mut self) -> Result<Option<String>, Problem> {
         let mut text = String::new();
         if !std::mem::replace(&mut self.headed, true) {
-            text::line(&mut text, self.columns.len(), |text, at| text::cell(text, &self.columns[at].name));
+            text::write_line(&mut text, self.columns.len(), |text, at| text::write_cell(text, &self.columns[at].name));
             return Ok(Some(text));
         }
         while self.left == 0 {
@@ -213,7 +213,7 @@ impl Rows {
         }
         self.left -= length;
         for row in 0..length {
-            text::line(&mut text, self.columns.len(), |text, at| text.push_str(self.columns[at].cells.get(row)));
+            text::write_line(&mut text, self.columns.len(), |text, at| text.push_str(self.columns[at].cells.get(row)));
         }
         Ok(Some(text))
     }
@@ -229,7 +229,7 @@ impl Column {
                 read(reader, length, cells, |text, &value| text.push(if value { '1' } else { '0' }))
             }
             ColumnReader::Int32ColumnReader(reader) => read(reader, length, cells, |text, &value| match meaning {
-                Meaning::Unsigned => text::whole(text, value as u32),
+                Meaning::Unsigned => text::write_integer(text, value as u32),
                 _ => integer(text, i64::from(value), meaning),
             }),
             ColumnReader::Int64ColumnReader(reader) => {
@@ -237,10 +237,10 @@ impl Column {
             }
             ColumnReader::Int96ColumnReader(reader) => read(reader, length, cells, julian),
             ColumnReader::FloatColumnReader(reader) => {
-                read(reader, length, cells, |text, &value| text::single(text, value))
+                read(reader, length, cells, |text, &value| text::write_single(text, value))
             }
             ColumnReader::DoubleColumnReader(reader) => {
-                read(reader, length, cells, |text, &value| text::number(text, value))
+                read(reader, length, cells, |text, &value| text::write_number(text, value))
             }
             ColumnReader::ByteArrayColumnReader(reader) => {
                 read(reader, length, cells, |text, value| bytes(text, value.data(), meaning))
@@ -258,22 +258,22 @@ fn julian(text: &mut String, stamp: &Int96) {
     let [low, high, day] = *stamp.data() else { return };
     let nanoseconds = (u64::from(high) << 32 | u64::from(low)) as i64;
     let seconds = (i64::from(day as i32) - 2_440_588) * 86_400 + nanoseconds.div_euclid(1_000_000_000);
-    text::stamp(text, seconds, nanoseconds.rem_euclid(1_000_000_000), false);
+    text::write_stamp(text, seconds, nanoseconds.rem_euclid(1_000_000_000), false);
 }
 
 fn integer(text: &mut String, value: i64, meaning: Meaning) {
     match meaning {
-        Meaning::Unsigned => text::whole(text, value as u64),
-        Meaning::Decimal(decimals) => text::decimal(text, value.into(), decimals),
-        Meaning::Day => text::day(text, value),
+        Meaning::Unsigned => text::write_integer(text, value as u64),
+        Meaning::Decimal(decimals) => text::write_decimal(text, value.into(), decimals),
+        Meaning::Day => text::write_date(text, value),
         Meaning::TimeOfDay(per_second) => {
-            text::time_of_day(text, value.saturating_mul(1_000_000_000 / per_second));
+            text::write_time_of_day(text, value.saturating_mul(1_000_000_000 / per_second));
         }
         Meaning::Stamp { per_second, utc } => {
             let part = value.rem_euclid(per_second) * (1_000_000_000 / per_second);
-            text::stamp(text, value.div_euclid(per_second), part, utc);
+            text::write_stamp(text, value.div_euclid(per_second), part, utc);
         }
-        Meaning::Plain | Meaning::Half => text::whole(text, value),
+        Meaning::Plain | Meaning::Half => text::write_integer(text, value),
     }
 }
 
@@ -284,11 +284,11 @@ fn bytes(text: &mut String, bytes: &[u8], meaning: Meaning) {
             // Big-endian two's complement.
             let sign = if first & 0x80 == 0 { 0 } else { -1 };
             let value = bytes.iter().fold(sign, |value: i128, &byte| value << 8 | i128::from(byte));
-            text::decimal(text, value, decimals);
+            text::write_decimal(text, value, decimals);
         }
-        (Meaning::Half, &[low, high]) => text::single(text, f16::from_le_bytes([low, high]).to_f32()),
+        (Meaning::Half, &[low, high]) => text::write_single(text, f16::from_le_bytes([low, high]).to_f32()),
         (Meaning::Half, _) => {}
-        _ => text::cell(text, &String::from_utf8_lossy(bytes)),
+        _ => text::write_cell(text, &String::from_utf8_lossy(bytes)),
     }
 }
 

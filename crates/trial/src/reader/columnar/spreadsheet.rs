@@ -37,7 +37,7 @@ fn damaged(damage: impl ToString) -> Problem {
 }
 
 /// Table of a file as text.
-pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {
         let done = guarded(|| decode(bytes, &send));
@@ -158,16 +158,16 @@ fn write_row(text: &mut String, cells: &[(u32, DataRef)], head: &Head, is_1904: 
         let mut put = |content: &str| match content.strip_prefix('#') {
             Some(remark) if *column == 0 => {
                 text.push('#');
-                text::cell(text, remark);
+                text::write_cell(text, remark);
             }
-            _ => text::cell(text, content),
+            _ => text::write_cell(text, content),
         };
         match value {
             DataRef::String(content) => put(content),
             DataRef::SharedString(content) => put(content),
             DataRef::DateTimeIso(content) | DataRef::DurationIso(content) => put(content),
-            DataRef::Int(value) => text::whole(text, *value),
-            DataRef::Float(value) => text::number(text, *value),
+            DataRef::Int(value) => text::write_integer(text, *value),
+            DataRef::Float(value) => text::write_number(text, *value),
             DataRef::Bool(value) => text.push(if *value { '1' } else { '0' }),
             DataRef::DateTime(value) => {
                 let timed = head.timed.contains(column);
@@ -190,13 +190,13 @@ fn stamp(text: &mut String, days: f64, is_1904: bool, timed: bool, is_duration: 
     let ticks = (days * TICKS_PER_DAY as f64).round() as i64;
     let nanoseconds = |ticks: i64| ticks * (1_000_000_000 / TICKS);
     if is_duration || (0.0..1.0).contains(&days) {
-        return text::time_of_day(text, nanoseconds(ticks.clamp(-TICKS_PER_DAY, 1000 * TICKS_PER_DAY)));
+        return text::write_time_of_day(text, nanoseconds(ticks.clamp(-TICKS_PER_DAY, 1000 * TICKS_PER_DAY)));
     }
     // Excel counts 29 February 1900, which did not exist, as day 60.
     let early = i64::from(!is_1904 && days < 60.0);
     let day = ticks.div_euclid(TICKS_PER_DAY) + DAY_0[usize::from(is_1904)] + early;
     match ticks.rem_euclid(TICKS_PER_DAY) {
-        0 if !timed => text::day(text, day),
-        ticks => text::stamp(text, day * 86_400 + ticks / TICKS, nanoseconds(ticks % TICKS), false),
+        0 if !timed => text::write_date(text, day),
+        ticks => text::write_stamp(text, day * 86_400 + ticks / TICKS, nanoseconds(ticks % TICKS), false),
     }
 }

@@ -2,7 +2,7 @@
 //! column name.
 
 use super::message::{Message, RankedReading};
-use crate::cells::{Separator, cell, recognise};
+use crate::cells::{Separator, cell, detect_separator};
 use crate::channel::Channel;
 use crate::names::{ColumnMeaning, meaning};
 
@@ -39,7 +39,7 @@ impl LongTable {
     pub fn of(header: &str) -> Option<Self> {
         let is_name = |cell: &str, column: usize| COLUMNS[column].contains(&cell.to_lowercase().as_str());
         let count_names = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|k| is_name(cell, k))).count();
-        let separator = recognise(header, count_names);
+        let separator = detect_separator(header, count_names);
         let mut ranges = Vec::new();
         separator.split(header, &mut ranges);
         let index = |column: usize| ranges.iter().position(|range| is_name(&header[range.clone()], column));
@@ -64,8 +64,8 @@ fn reading(path: &str, value: f64) -> Option<RankedReading> {
     let signal_k =
         PATHS.iter().find(|(suffix, ..)| small.ends_with(suffix)).map(|(_, channel, class)| (*channel, *class, value));
     signal_k.or_else(|| match meaning(path)? {
-        ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.to_si())),
-        ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.to_si())),
+        ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.si_factor())),
+        ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.si_factor())),
         _ => None,
     })
 }

@@ -8,9 +8,9 @@ use ship::angle::to_deg;
 
 use super::epochs::rounded;
 use super::log::NmeaInstrument;
-use super::sentence::{Slot, turned};
+use super::sentence::{NmeaQuantity, wrapped_to_circle};
 use crate::channel::Channel;
-use crate::reader::position::plane;
+use crate::reader::position::plane_positions;
 use crate::reader::source::Series;
 use crate::wording::counted;
 
@@ -65,9 +65,9 @@ impl<'a> Choice<'a> {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
-        choice.single("rudder order", Slot::RudderOrder, Channel::RudderOrder, |_| true);
-        choice.single("yaw rate", Slot::YawRate, Channel::YawRate, |_| true);
-        choice.single("roll angle", Slot::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
+        choice.single("rudder order", NmeaQuantity::RudderOrder, Channel::RudderOrder, |_| true);
+        choice.single("yaw rate", NmeaQuantity::YawRate, Channel::YawRate, |_| true);
+        choice.single("roll angle", NmeaQuantity::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
         choice.speed();
         choice.surge_and_sway();
         choice.position();
@@ -77,7 +77,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Candidates for some quantities, each with the class of its quantity.
-    fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&NmeaInstrument) -> bool) -> Vec<Offer<'a>> {
+    fn offers(&self, slots: &[(NmeaQuantity, usize)], wanted: impl Fn(&NmeaInstrument) -> bool) -> Vec<Offer<'a>> {
         let mut offers = Vec::new();
         for &(slot, class) in slots {
             for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, x)| wanted(x)) {
@@ -154,7 +154,7 @@ impl<'a> Choice<'a> {
     }
 
     /// Adds a channel that is a column of an instrument.
-    fn single(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&NmeaInstrument) -> bool) {
+    fn single(&mut self, what: &str, slot: NmeaQuantity, channel: Channel, wanted: impl Fn(&NmeaInstrument) -> bool) {
         let offers = self.offers(&[(slot, 0)], wanted);
         if let Some(chosen) = self.pick(what, offers, false) {
             self.push_column(channel, chosen);
@@ -164,9 +164,9 @@ impl<'a> Choice<'a> {
     /// Adds the heading: true before magnetic; a magnetic heading with variation counts as true.
     fn heading(&mut self) {
         let variation =
-            |offer: &Offer<'a>| offer.instrument.column(Slot::Variation).map(|column| offer.sibling(column));
+            |offer: &Offer<'a>| offer.instrument.column(NmeaQuantity::Variation).map(|column| offer.sibling(column));
         let variation = |offer: &Offer<'a>| variation(offer).filter(|variation| variation.readings > 0);
-        let mut offers = self.offers(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
+        let mut offers = self.offers(&[(NmeaQuantity::HeadingTrue, 0), (NmeaQuantity::HeadingMagnetic, 1)], |_| true);
         for offer in offers.iter_mut().filter(|offer| offer.class == 1) {
             offer.class = usize::from(variation(offer).is_none());
         }
@@ -184,15 +184,15 @@ impl<'a> Choice<'a> {
             if variation.is_finite() {
                 held = *variation;
             }
-            turned(heading + held)
+            wrapped_to_circle(heading + held)
         });
         self.push(Channel::Heading, chosen, values);
     }
 
     /// Adds the rudder: a single rudder, or the mean of two that agree.
     fn rudder(&mut self) {
-        let mut offers = self.offers(&[(Slot::RudderStarboard, 0), (Slot::RudderPort, 0)], |_| true);
-        offers.extend(self.offers(&[(Slot::Transducer, 1)], |instrument| instrument.part[0] == b'R'));
+        let mut offers = self.offers(&[(NmeaQuantity::RudderStarboard, 0), (NmeaQuantity::RudderPort, 0)], |_| true);
+        offers.extend(self.offers(&[(NmeaQuantity::Transducer, 1)], |instrument| instrument.part[0] == b'R'));
         let Some(chosen) = self.pick("rudder angle", offers, false) else { return };
         if !chosen.instrument.sends(b"RSA") {
             return self.push_column(Channel::Rudder, chosen);
@@ -228,7 +228,12 @@ impl<'a> Choice<'a> {
 
     /// Adds the speed: through the water before over ground.
     fn speed(&mut self) {
-        let slots = [(Slot::SpeedWater, 0), (Slot::SurgeWater, 0), (Slot::SpeedGround, 1), (Slot::SurgeGround, 1)];
+        let slots = [
+            (NmeaQuantity::SpeedWater, 0),
+            (NmeaQuantity::SurgeWater, 0),
+            (NmeaQuantity::SpeedGround, 1),
+            (NmeaQuantity::SurgeGround, 1),
+        ];
         let offers = self.offers(&slots, |_| true);
         let most = offers.iter().map(|offer| offer.readings).max().unwrap_or(0);
         let water = offers.iter().any(|offer| offer.class == 0 && !offer.is_sparse(most));
@@ -245,7 +250,7 @@ impl<'a> Choice<'a> {
 
     /// Adds surge and sway of the same instrument and reference.
     fn surge_and_sway(&mut self) {
-        let offers = self.offers(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
+        let offers = self.offers(&[(NmeaQuantity::SurgeWater, 0), (NmeaQuantity::SurgeGround, 1)], |_| true);
         let Some(surge) = self.pick("surge velocity", offers, false) else { return };
         if surge.class == 1 {
             self.warn(WarningCode::OtherReference, format!("surge and sway of {} are over ground", surge.name()));
@@ -259,10 +264,10 @@ impl<'a> Choice<'a> {
     }
 
     fn position(&mut self) {
-        let offers = self.offers(&[(Slot::Latitude, 0)], |_| true);
+        let offers = self.offers(&[(NmeaQuantity::Latitude, 0)], |_| true);
         let Some(chosen) = self.pick("position", offers, false) else { return };
         for (channel, values) in
-            plane(chosen.values(), chosen.sibling(chosen.column + 1).values()).into_iter().flatten()
+            plane_positions(chosen.values(), chosen.sibling(chosen.column + 1).values()).into_iter().flatten()
         {
             self.push(channel, chosen, values);
         }
@@ -270,7 +275,7 @@ impl<'a> Choice<'a> {
 
     /// Adds the propeller rate: shafts before engines, the mean of several shafts.
     fn propeller(&mut self) {
-        let mut offers = self.offers(&[(Slot::Revolutions, 0)], |_| true);
+        let mut offers = self.offers(&[(NmeaQuantity::Revolutions, 0)], |_| true);
         let group = |offer: &Offer| (offer.instrument.address, offer.instrument.source, offer.instrument.part[0]);
         let mut leaders: Vec<Offer> = Vec::new();
         for offer in &mut offers {
@@ -306,13 +311,13 @@ impl<'a> Choice<'a> {
 
     fn wind(&mut self) {
         let reference = |letter: u8| move |mwv: &NmeaInstrument| mwv.sends(b"MWV") && mwv.part[0] == letter;
-        let relative = self.offers(&[(Slot::WindFrom, 0)], reference(b'R'));
+        let relative = self.offers(&[(NmeaQuantity::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
             self.push_column(Channel::WindRelativeSpeed, chosen.sibling(0));
             self.push_column(Channel::WindRelativeFrom, chosen);
         }
-        let mut real = self.offers(&[(Slot::WindFrom, 0)], |instrument| instrument.sends(b"MWD"));
-        real.extend(self.offers(&[(Slot::WindFrom, 1)], reference(b'T')));
+        let mut real = self.offers(&[(NmeaQuantity::WindFrom, 0)], |instrument| instrument.sends(b"MWD"));
+        real.extend(self.offers(&[(NmeaQuantity::WindFrom, 1)], reference(b'T')));
         let Some(chosen) = self.pick("true wind", real, false) else { return };
         self.push_column(Channel::WindTrueSpeed, chosen.sibling(0));
         if chosen.instrument.sends(b"MWD") {
@@ -325,7 +330,7 @@ impl<'a> Choice<'a> {
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
         let readings = chosen.instrument.at.iter().zip(chosen.values());
-        let values: Vec<f64> = readings.map(|(&time, from)| turned(from + near.at(time))).collect();
+        let values: Vec<f64> = readings.map(|(&time, from)| wrapped_to_circle(from + near.at(time))).collect();
         self.push(Channel::WindTrueFrom, chosen, values);
         let text = "gives the direction of the true wind from the bow; the heading is added to it";
         self.warn(WarningCode::Instrument, format!("{from_bow} {text}"));

@@ -6,7 +6,7 @@ use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 
 use super::log::{NmeaInstrument, NmeaLog};
-use super::sentence::Slot;
+use super::sentence::NmeaQuantity;
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
 use crate::wording::counted;
@@ -90,7 +90,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 ///
 /// Fails without at least two different times, and if they decrease for more than one sentence.
 pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
-    let times = |clock: &NmeaInstrument| clock.column(Slot::Second).map_or(0, |column| clock.readings(column));
+    let times = |clock: &NmeaInstrument| clock.column(NmeaQuantity::Second).map_or(0, |column| clock.readings(column));
     let rank = |clock: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|code| clock.sends(code));
     let clocks = log.instruments.iter().filter(|instrument| times(instrument) > 0);
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
@@ -145,8 +145,9 @@ struct Epoch {
 
 /// Strictly increasing times of an instrument, the clock at time 0, and the number of omitted times.
 fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
-    let second = &instrument.columns[instrument.column(Slot::Second).expect("only instruments with times are asked")];
-    let days = instrument.column(Slot::Day).map(|column| &instrument.columns[column]);
+    let second =
+        &instrument.columns[instrument.column(NmeaQuantity::Second).expect("only instruments with times are asked")];
+    let days = instrument.column(NmeaQuantity::Day).map(|column| &instrument.columns[column]);
     // Dates are used only if every time has one.
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
     let mut stamps = Stamps::default();
@@ -188,7 +189,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
 
 /// Day at time 0, from the first date of an instrument; `second` is the second of the day at time 0.
 fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Option<i64> {
-    let (seconds, days) = (instrument.column(Slot::Second)?, instrument.column(Slot::Day)?);
+    let (seconds, days) = (instrument.column(NmeaQuantity::Second)?, instrument.column(NmeaQuantity::Day)?);
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
     let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.at[row]).saturating_sub(1);

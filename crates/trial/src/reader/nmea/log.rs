@@ -2,7 +2,7 @@
 //! instruments are chosen at the end of the log.
 
 use super::frame::{Fields, Frame, Line, frame};
-use super::sentence::{MAX_SLOTS, Row, Slot, XDR, sentence, transducers};
+use super::sentence::{MAX_SLOTS, NmeaQuantity, Row, XDR, sentence, transducers};
 use super::stamp::Leading;
 use crate::clock::Stamps;
 use crate::reader::error::Problem;
@@ -17,7 +17,7 @@ pub(super) struct NmeaInstrument {
     /// Talker and sentence.
     pub address: [u8; 5],
     /// Quantities of the sentence.
-    slots: &'static [Slot],
+    slots: &'static [NmeaQuantity],
     /// Mark as in [`Row::part`].
     pub part: [u8; 2],
     /// Number of the source as in [`Leading`].
@@ -39,7 +39,7 @@ impl NmeaInstrument {
     }
 
     /// Column of a quantity.
-    pub fn column(&self, slot: Slot) -> Option<usize> {
+    pub fn column(&self, slot: NmeaQuantity) -> Option<usize> {
         self.slots.iter().position(|&quantity| quantity == slot)
     }
 
@@ -161,7 +161,7 @@ impl NmeaLog {
     ///
     /// `false` for a sentence without checksum from an instrument that writes checksums: its end is lost, possibly with
     /// a digit.
-    fn add(&mut self, slots: &'static [Slot], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
+    fn add(&mut self, slots: &'static [NmeaQuantity], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
         let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);
         let number = match self.keys.iter().position(|&earlier| earlier == key) {

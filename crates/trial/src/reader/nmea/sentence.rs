@@ -13,7 +13,7 @@ use crate::clock::{days, full_year, second_of_day};
 
 /// Quantity of a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slot {
+pub(super) enum NmeaQuantity {
     /// True heading, rad, [0, 2π).
     HeadingTrue,
     /// Magnetic heading, rad, [0, 2π).
@@ -62,10 +62,10 @@ pub(super) enum Slot {
 pub(super) const MAX_SLOTS: usize = 5;
 
 /// Supported sentence: its formatter, its quantities in the order of [`Row::values`], and its decoder.
-type Sentence = (&'static [u8; 3], &'static [Slot], fn(&mut Row, &Fields));
+type Sentence = (&'static [u8; 3], &'static [NmeaQuantity], fn(&mut Row, &Fields));
 
 const SENTENCES: [Sentence; 19] = {
-    use Slot::*;
+    use NmeaQuantity::*;
     [
         (b"HDT", &[HeadingTrue], |row, fields| row.take_heading(fields, b"T")),
         (b"HDM", &[HeadingMagnetic], |row, fields| row.take_heading(fields, b"M")),
@@ -211,7 +211,7 @@ impl Row {
     /// Stores an angle of [0°, 360°].
     fn take_direction(&mut self, slot: usize, number: Number) {
         self.take(slot, number, HEADING, DEGREE);
-        self.values[slot] = turned(self.values[slot]);
+        self.values[slot] = wrapped_to_circle(self.values[slot]);
     }
 
     /// Stores latitude and longitude from four fields; both or neither.
@@ -248,7 +248,7 @@ impl Row {
 }
 
 /// Angle reduced to [0, 2π).
-pub(super) fn turned(angle: f64) -> f64 {
+pub(super) fn wrapped_to_circle(angle: f64) -> f64 {
     let within = angle.rem_euclid(TAU);
     // A small negative angle rounds up to the full turn.
     if within >= TAU { 0.0 } else { within }
@@ -284,8 +284,8 @@ fn read_hdg(row: &mut Row, fields: &Fields) {
     };
     row.take(0, fields.number(1), HEADING, DEGREE);
     match signed(2) {
-        Ok(deviation) if deviation.is_finite() => row.values[0] = turned(row.values[0] + deviation),
-        Ok(_) => row.values[0] = turned(row.values[0]),
+        Ok(deviation) if deviation.is_finite() => row.values[0] = wrapped_to_circle(row.values[0] + deviation),
+        Ok(_) => row.values[0] = wrapped_to_circle(row.values[0]),
         Err(()) => (row.values[0], row.invalid[0]) = (f64::NAN, true),
     }
     match signed(4) {

@@ -116,13 +116,13 @@ impl Variable {
         }
         let all = u64::from_le_bytes(bytes);
         match self.kind {
-            1 => text::whole(text, all as i8),
-            3 => text::whole(text, all as i16),
-            5 => text::whole(text, all as i32),
-            12 => text::whole(text, all as i64),
-            7 => text::single(text, f32::from_bits(all as u32)),
-            9 => text::number(text, f64::from_bits(all)),
-            _ => text::whole(text, all),
+            1 => text::write_integer(text, all as i8),
+            3 => text::write_integer(text, all as i16),
+            5 => text::write_integer(text, all as i32),
+            12 => text::write_integer(text, all as i64),
+            7 => text::write_single(text, f32::from_bits(all as u32)),
+            9 => text::write_number(text, f64::from_bits(all)),
+            _ => text::write_integer(text, all),
         }
     }
 }

@@ -132,7 +132,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
     ];
     let mut text = String::new();
     let kind = crate::reader::columnar::Kind::of(&small.concat()).expect("a MATLAB file");
-    kind.text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
+    kind.read_as_text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
     assert_eq!(text, "a\tb\tc\n-1\t0.1\t3\n1\t\t255\n");
     let small = small.concat();
     for index in 0..small.len() {
@@ -170,7 +170,11 @@ fn matrices_and_numbers_of_every_kind_are_columns() {
     ]
     .concat();
     let mut text = String::new();
-    crate::reader::columnar::Kind::Matlab.text(file).expect("a table").read_to_string(&mut text).expect("UTF-8");
+    crate::reader::columnar::Kind::Matlab
+        .read_as_text(file)
+        .expect("a table")
+        .read_to_string(&mut text)
+        .expect("UTF-8");
     assert_eq!(text, "a_1\ta_2\ta_3\tb\tc\td\n1.5\t3.0\t5.0\t3\t-1\t0.1\n\t4.0\t6.0\t255\t1\t\n");
 }
 

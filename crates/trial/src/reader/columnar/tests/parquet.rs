@@ -77,7 +77,11 @@ pub fn plain(time: &[f64], heading: &[f64], rudder: &[f64]) -> Vec<u8> {
 /// The text of a file.
 fn text(bytes: Vec<u8>) -> String {
     let mut text = String::new();
-    crate::reader::columnar::Kind::Parquet.text(bytes).expect("a file").read_to_string(&mut text).expect("UTF-8");
+    crate::reader::columnar::Kind::Parquet
+        .read_as_text(bytes)
+        .expect("a file")
+        .read_to_string(&mut text)
+        .expect("UTF-8");
     text
 }
 

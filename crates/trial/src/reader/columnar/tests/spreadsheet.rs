@@ -89,7 +89,11 @@ fn sheet(header: [&str; 3], first: usize, count: usize, time: impl Fn(f64) -> St
 
 fn text(bytes: Vec<u8>) -> String {
     let mut text = String::new();
-    crate::reader::columnar::Kind::Spreadsheet.text(bytes).expect("a book").read_to_string(&mut text).expect("UTF-8");
+    crate::reader::columnar::Kind::Spreadsheet
+        .read_as_text(bytes)
+        .expect("a book")
+        .read_to_string(&mut text)
+        .expect("UTF-8");
     text
 }
 
