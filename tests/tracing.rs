@@ -160,7 +160,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
         wind_speed: wind.as_ref(),
         wind_from: from.as_ref(),
         propeller: propeller.as_ref(),
-        ..ship::replay::RecordedSignals::rudder(helm.rudder_signal())
+        ..ship::replay::RecordedSignals::from_rudder(helm.rudder_signal())
     };
     let response = ship(vec![(effect, values)]);
     let mut state = vec![0.0; response.dimension()];
@@ -223,7 +223,7 @@ fn measured_channels_are_used_where_they_help() {
         assert!(named.contains(&(id, form)), "{id} ({form}): named {named:?}");
         // Without its column the effect cannot be named in this form.
         let all: Vec<Channel> = channels.iter().map(|(channel, _)| *channel).collect();
-        let blind = analysed(&[trial.without(&all)], &[]);
+        let blind = analysed(&[trial.without_channels(&all)], &[]);
         assert!(blind.document.effects.iter().all(|effect| effect.form != form), "{id} ({form})");
     }
 }
@@ -231,7 +231,7 @@ fn measured_channels_are_used_where_they_help() {
 /// A bank by the lateral way is named with its formula and its coefficient, with a measured speed and without.
 #[test]
 fn a_bank_by_the_lateral_way_is_named() {
-    let bank = effects::formula("bank = c * y").expect("a formula");
+    let bank = effects::parse_formula("bank = c * y").expect("a formula");
     let speed: Signal = (Channel::Speed, |t| 8.0 - 0.004 * t);
     let steered = run(&steered(Vessel::from_response(ship(vec![(bank.clone(), vec![-4e-3])])), 10.0), 4);
     for (trial, truth) in [(steered, -4e-3), (with_channel(bank.clone(), vec![-5e-4], &[speed]), -5e-4)] {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use estimation::statistics::wilson;
+use estimation::statistics::wilson_interval;
 use report::number::significant;
 use serde::Deserialize;
 
@@ -114,7 +114,7 @@ impl Number {
             groups.into_values().filter(|(_, weight)| *weight > 0.0).map(mean).unzip();
         let sum: f64 = values.iter().zip(&weights).map(|(value, weight)| value * weight).sum();
         let of: f64 = weights.iter().sum();
-        let interval = || wilson(sum / of / 100.0, of, 1.959_964).map(|end| 100.0 * end);
+        let interval = || wilson_interval(sum / of / 100.0, of, 1.959_964).map(|end| 100.0 * end);
         match (self.take, values.len()) {
             (_, 0) => Err(format!("{table}: no row for {:?}", self.column)),
             (Take::Only, 1) => Ok(values[0]),

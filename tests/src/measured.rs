@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use trial::channel::column;
+use trial::channel::parse_column_name;
 use trial::{Columns, Trial};
 
 /// Measured record `relative` ("kvlcc2_hsva/zigzag_20_10_s.csv"), from the folder named by the environment variable
@@ -40,7 +40,7 @@ pub fn columns(file: &str) -> Option<Columns> {
     let values = |place: usize| rows.iter().map(move |row| row[place].parse::<f64>().unwrap_or(f64::NAN));
     let mut columns = Columns::default();
     for (place, name) in names.iter().enumerate() {
-        match column(name) {
+        match parse_column_name(name) {
             _ if name == "t_s" => columns.time = values(place).collect(),
             Some((channel, unit)) => {
                 columns.channels.insert(channel, values(place).map(|value| value * unit.si_factor()).collect());

@@ -41,7 +41,7 @@ fn replayed<R: EffectReal>(effect: Arc<dyn Effect>, rudder: &Polyline) -> R {
     let values = [1.0 / T, K / T, 0.0, 60.0];
     let response = ResponseModel::new(vec![effect]).with_parameters(values.map(R::from).to_vec());
     let mut state = vec![R::default(); response.dimension()];
-    let recorded = RecordedSignals::rudder(rudder);
+    let recorded = RecordedSignals::from_rudder(rudder);
     replay_states(&response, &recorded, rudder.times(), |_, _| 0.25, &mut state, |_, _, _| {});
     state[0]
 }

@@ -10,7 +10,7 @@ use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::names;
 use document::trace::LocatedEntry;
-use identify::replay::pooled;
+use identify::replay::pooled_response_rms;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
@@ -224,7 +224,7 @@ impl TrialInput<'_> {
 
     /// Row of a first-order estimate.
     pub fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
-        let error = |trials: &[Trial]| pooled(trials, &estimate.response).map(to_deg);
+        let error = |trials: &[Trial]| pooled_response_rms(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
         StudyRow {
             heading_rmse_deg: error(self.trials),

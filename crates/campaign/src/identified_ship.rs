@@ -70,7 +70,8 @@ impl<'a> RecordFacts<'a> {
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
         let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
-        self.checks = after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.check()?))).collect();
+        self.checks =
+            after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.prior_check()?))).collect();
         let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {

@@ -6,19 +6,19 @@ use crate::failure::Failure;
 
 /// Receiver of progress, notes and warnings, which may also request a stop.
 pub trait Observer: Sync {
-    /// Start of the trials: at most `most`, of which `done` are stored.
+    /// Called before the first trial: at most `most` trials, of which `done` are stored.
     fn begin(&self, _most: u64, _done: u64) {}
 
-    /// End of one trial.
+    /// Called after every trial.
     fn advance(&self) {}
 
-    /// End of all trials.
+    /// Called after the last trial.
     fn end(&self) {}
 
-    /// Note for the user.
+    /// Receives a note for the user.
     fn note(&self, _line: &str) {}
 
-    /// Warning for the user.
+    /// Receives a warning for the user.
     fn warn(&self, _line: &str) {}
 
     /// `true` to stop between two trials; finished trials are kept.
@@ -31,7 +31,7 @@ pub trait Observer: Sync {
         None
     }
 
-    /// Event: a running trial does not end after a request to stop. All trials before it are stored, so a program may
+    /// Called if a trial does not end after a request to stop. All trials before it are stored, so a program may
     /// exit here with this failure. If the call returns, the run waits for the trial.
     fn give_up(&self, _failure: &Failure) {}
 }

@@ -40,7 +40,7 @@ impl<'a> PredictionCheck<'a> {
                 sensors: Sensors::default(),
                 ..simulation.clone()
             };
-            let passage = SimulatedManoeuvre::of(calm, &other, timescale).ok()?;
+            let passage = SimulatedManoeuvre::from_simulation(calm, &other, timescale).ok()?;
             let all = figures::characteristics(kind, &passage, None);
             let is_counted = |name: &str| !is_in_lengths(name, |lengths| all.contains_key(lengths));
             Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())

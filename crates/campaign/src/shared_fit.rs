@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use ::trace::Analysis;
-use ::trace::comparison::base_result as of_base;
+use ::trace::comparison::replay_base as of_base;
 use ::trace::record::PreparedRecord;
 use ::trace::replay_errors::{HORIZONS, ReplayDepth};
 use document::IdentifiedShip;
@@ -44,7 +44,7 @@ pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
     tasks.chunk_by(share).map(range).collect()
 }
 
-/// Runs the tasks of one unit.
+/// Runs every method on one group of trials that share a fit; one outcome per trial, in order.
 pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Vec<TrialOutcome> {
     match scenario.cells[tasks[0].cell].record_set() {
         Some(set) => run(scenario, set, tasks),
@@ -52,7 +52,7 @@ pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Ve
     }
 }
 
-/// Fit of a method to the records of a unit.
+/// Fit of one method to the fitted records of a group of trials.
 struct RecordFit {
     answer: FitAnswer,
     /// Identified ship for predictions; `None` in a study without predictions, and without a covariance.
@@ -173,7 +173,7 @@ impl SharedTrials<'_> {
                 (input.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
-        let windows = errors.and_then(|errors| errors.within(HORIZONS[1]));
+        let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS[1]));
         let predicted = self.scenario.predictions.as_ref().map(|asked| match (&self.judges[trial], &fit.ship) {
             (Some([judge, _]), Some(ship)) => predicted(ship, judge, asked),
             _ => Box::default(),
@@ -197,7 +197,7 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
         }
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
-            let without: Vec<Trial> = fitted.iter().map(|trial| trial.clone().without(&withheld)).collect();
+            let without: Vec<Trial> = fitted.iter().map(|trial| trial.clone().without_channels(&withheld)).collect();
             let analysis = ::trace::trace(&without, &[], settings?).ok()?;
             Some(traced(&analysis, &without)).filter(sound)
         }),

@@ -126,7 +126,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
 struct FourierCurve<'a> {
     origin: CurveOrigin,
     trial: &'a Trial,
-    curve: identify::fourier::FourierFit,
+    curve: identify::fourier::FourierSeries,
     window: [f64; 2],
 }
 

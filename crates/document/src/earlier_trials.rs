@@ -70,7 +70,7 @@ pub enum Likeness {
 impl Likeness {
     /// Likeness of the ship of earlier trials to another ship.
     pub fn of(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
-        match (ship.differing(earlier).is_empty(), ship.has_length_of(earlier)) {
+        match (ship.differing_keys(earlier).is_empty(), ship.has_length_of(earlier)) {
             (false, _) => Self::OtherHull,
             (true, true) => Self::SameShip,
             (true, false) => Self::OtherScale,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter, SteeringLag};
-use ship::vessel::prime::is_windage;
+use ship::vessel::prime::is_wind_coefficient;
 use ship::{Particulars, ResponseModel};
 
 use crate::error::IdentifiedShipError;
@@ -185,7 +185,8 @@ impl IdentifiedShip {
         calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
             (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
-            if let Some(place) = hull.coefficients.iter().position(|coefficient| is_windage(&coefficient.key)) {
+            if let Some(place) = hull.coefficients.iter().position(|coefficient| is_wind_coefficient(&coefficient.key))
+            {
                 hull.coefficients[place].value = 0.0;
                 hull.covariance.iter_mut().for_each(|row| row[place] = 0.0);
                 hull.covariance[place].fill(0.0);

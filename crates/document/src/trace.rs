@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use estimation::residuals::Whiteness;
+use estimation::residuals::WhitenessTest;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
@@ -384,8 +384,8 @@ impl TraceDocument {
     }
 }
 
-impl From<Whiteness> for WhitenessEntry {
-    fn from(test: Whiteness) -> Self {
+impl From<WhitenessTest> for WhitenessEntry {
+    fn from(test: WhitenessTest) -> Self {
         Self { lag1_autocorrelation: test.lag1, whiteness_p: test.p_value }
     }
 }

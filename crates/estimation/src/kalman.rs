@@ -10,7 +10,7 @@
 mod matrix;
 pub mod smoother;
 
-pub use matrix::{identity, product, sandwich, sum};
+pub use matrix::{congruence, identity, product, sum};
 
 use crate::lanes::{Kernel, run};
 
@@ -40,7 +40,7 @@ impl<const N: usize> Step<N> {
 
     /// Covariance after the step, F P Fᵀ + Q.
     pub fn propagate(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
-        sum(&self.added, &sandwich(&self.transition, covariance))
+        sum(&self.added, &congruence(&self.transition, covariance))
     }
 }
 
@@ -176,7 +176,7 @@ impl<const N: usize> Filter<N> {
     }
 
     /// Sum Σ log S over the readings.
-    pub fn log_variance(&self) -> f64 {
+    pub fn log_determinant(&self) -> f64 {
         let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.ln()).collect();
         self.gain_of.iter().map(|&gain| logs[gain as usize]).sum()
     }
@@ -194,7 +194,7 @@ impl<const N: usize> Filter<N> {
             sensors: self.system.sensors.clone(),
             gains: self.gains.iter().zip(&self.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
             readings: self.system.readings.iter().copied().zip(self.gain_of.iter().copied()).collect(),
-            log_variance: self.log_variance(),
+            log_variance: self.log_determinant(),
         }
     }
 }
@@ -273,7 +273,7 @@ impl Whitener {
     }
 
     /// Predicted states before every reading of a column, given the earlier readings.
-    pub fn predicted(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
+    pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
         let mut x = [[0.0]; MAX_STATES];
         let predict = |(&value, &(Reading { step, sensor }, gain)): (&f64, &(Reading, u32))| {
             if let Some(step) = step {

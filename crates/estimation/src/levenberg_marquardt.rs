@@ -94,7 +94,7 @@ impl NormalEquations {
     }
 
     /// `true` if an unknown lies at a bound and its gradient points outwards.
-    pub fn is_held(&self, unknown: usize, value: f64, [low, high]: [f64; 2]) -> bool {
+    pub fn is_bound_active(&self, unknown: usize, value: f64, [low, high]: [f64; 2]) -> bool {
         (value <= low && self.gradient[unknown] < 0.0) || (value >= high && self.gradient[unknown] > 0.0)
     }
 }
@@ -121,7 +121,7 @@ impl StepWorkspace {
         for k in 0..at.len() {
             let curvature = normal.matrix[(k, k)];
             self.scale[k] = if curvature > 0.0 { curvature.sqrt().recip() } else { 1.0 };
-            self.held[k] = normal.is_held(k, at[k], problem.bounds(k));
+            self.held[k] = normal.is_bound_active(k, at[k], problem.bounds(k));
             self.right[k] = if self.held[k] || curvature <= 0.0 { 0.0 } else { normal.gradient[k] * self.scale[k] };
         }
     }
@@ -252,7 +252,7 @@ mod tests {
         assert_relative_eq!(minimum.at, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
         let minimum = minimise(&mut Valley { max_x: 0.5 }, start(), &RULES);
         assert_relative_eq!(minimum.at, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
-        assert!(minimum.normal.is_held(0, minimum.at[0], [-2.0, 0.5]));
+        assert!(minimum.normal.is_bound_active(0, minimum.at[0], [-2.0, 0.5]));
     }
 
     #[test]

@@ -84,7 +84,7 @@ impl NormalPair {
 ///
 /// P(b/a < k) = P(b − k a < 0), and b − k a is normal in every model (Fieller 1954). No interval is given if the 95 %
 /// interval of the denominator contains zero.
-pub fn ratio(pairs: &[NormalPair]) -> MixtureSummary {
+pub fn ratio_summary(pairs: &[NormalPair]) -> MixtureSummary {
     let best = pairs.iter().max_by(|left, right| left.weight.total_cmp(&right.weight));
     let Some(best) = best else { return (f64::NAN, None) };
     let value = best.numerator.0 / best.denominator.0;
@@ -130,12 +130,12 @@ mod tests {
     #[test]
     fn a_ratio_has_an_interval_away_from_zero() {
         let pair = |a: f64| NormalPair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };
-        let (value, error) = ratio(&[pair(1.0)]);
+        let (value, error) = ratio_summary(&[pair(1.0)]);
         let sd = (4e-6 + 0.25e-6_f64).sqrt();
         let (_, [low, high]) = error.expect("a = 1 ± 0.001");
         assert!((value - 0.5).abs() < 1e-12 && ((high - low) / (2.0 * 1.96 * sd) - 1.0).abs() < 1e-2);
-        assert_eq!(ratio(&[pair(0.001)]).1, None);
-        let (_, negative) = ratio(&[pair(-1.0)]).1.expect("a = −1 ± 0.001");
+        assert_eq!(ratio_summary(&[pair(0.001)]).1, None);
+        let (_, negative) = ratio_summary(&[pair(-1.0)]).1.expect("a = −1 ± 0.001");
         assert!((negative[0] + high).abs() < 1e-6 && (negative[1] + low).abs() < 1e-6);
     }
 }

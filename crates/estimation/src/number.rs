@@ -32,10 +32,10 @@ pub trait Real:
     fn value(self) -> f64;
 
     /// Function of this number, from its value and its derivative (chain rule).
-    fn chained(self, value: f64, slope: f64) -> Self;
+    fn lift_unary(self, value: f64, slope: f64) -> Self;
 
     /// Function of two numbers, from its value and its total differential `by(dx, dy)`.
-    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self;
+    fn lift_binary(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self;
 
     /// Power of a positive number.
     fn powf(self, exponent: Self) -> Self;
@@ -44,7 +44,7 @@ pub trait Real:
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value().sin_cos();
-        (self.chained(sin, cos), self.chained(cos, -sin))
+        (self.lift_unary(sin, cos), self.lift_unary(cos, -sin))
     }
 
     /// Angle of the point (x, y), with this number as y.
@@ -52,7 +52,7 @@ pub trait Real:
     fn atan2(self, x: Self) -> Self {
         let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
         let (by_y, by_x) = (x.value() / square, -self.value() / square);
-        self.joined(x, self.value().atan2(x.value()), |dy, dx| by_y * dy + by_x * dx)
+        self.lift_binary(x, self.value().atan2(x.value()), |dy, dx| by_y * dy + by_x * dx)
     }
 
     /// Root √(x² + y²), which must not be zero.
@@ -60,34 +60,34 @@ pub trait Real:
     fn hypot(self, other: Self) -> Self {
         let root = self.value().hypot(other.value());
         let (by_x, by_y) = (self.value() / root, other.value() / root);
-        self.joined(other, root, |x, y| by_x * x + by_y * y)
+        self.lift_binary(other, root, |x, y| by_x * x + by_y * y)
     }
 
     /// Hyperbolic tangent.
     #[inline]
     fn tanh(self) -> Self {
         let tanh = self.value().tanh();
-        self.chained(tanh, 1.0 - tanh * tanh)
+        self.lift_unary(tanh, 1.0 - tanh * tanh)
     }
 
     /// Exponential.
     #[inline]
     fn exp(self) -> Self {
         let exp = self.value().exp();
-        self.chained(exp, exp)
+        self.lift_unary(exp, exp)
     }
 
     /// Natural logarithm of a positive number.
     #[inline]
     fn ln(self) -> Self {
-        self.chained(self.value().ln(), self.value().recip())
+        self.lift_unary(self.value().ln(), self.value().recip())
     }
 
     /// Square root of a positive number.
     #[inline]
     fn sqrt(self) -> Self {
         let root = self.value().sqrt();
-        self.chained(root, 0.5 / root)
+        self.lift_unary(root, 0.5 / root)
     }
 
     /// Integer power.
@@ -96,7 +96,7 @@ pub trait Real:
         if exponent == 0 {
             return Self::from(1.0);
         }
-        self.chained(self.value().powi(exponent), f64::from(exponent) * self.value().powi(exponent - 1))
+        self.lift_unary(self.value().powi(exponent), f64::from(exponent) * self.value().powi(exponent - 1))
     }
 
     /// Magnitude.
@@ -110,7 +110,7 @@ pub trait Real:
     }
 
     /// Number clamped to [least, most].
-    fn between(self, least: Self, most: Self) -> Self {
+    fn clamped(self, least: Self, most: Self) -> Self {
         if self.value() < least.value() {
             least
         } else if self.value() > most.value() {
@@ -128,12 +128,12 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn chained(self, value: f64, _slope: f64) -> Self {
+    fn lift_unary(self, value: f64, _slope: f64) -> Self {
         value
     }
 
     #[inline(always)]
-    fn joined(self, _other: Self, value: f64, _by: impl Fn(f64, f64) -> f64) -> Self {
+    fn lift_binary(self, _other: Self, value: f64, _by: impl Fn(f64, f64) -> f64) -> Self {
         value
     }
 
@@ -184,7 +184,7 @@ impl<const N: usize> Neg for Dual<N> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        self.chained(-self.value, -1.0)
+        self.lift_unary(-self.value, -1.0)
     }
 }
 
@@ -193,7 +193,7 @@ impl<const N: usize> Add for Dual<N> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.joined(other, self.value + other.value, |x, y| x + y)
+        self.lift_binary(other, self.value + other.value, |x, y| x + y)
     }
 }
 
@@ -202,7 +202,7 @@ impl<const N: usize> Sub for Dual<N> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.joined(other, self.value - other.value, |x, y| x - y)
+        self.lift_binary(other, self.value - other.value, |x, y| x - y)
     }
 }
 
@@ -212,7 +212,7 @@ impl<const N: usize> Mul for Dual<N> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.joined(other, self.value * other.value, |x, y| other.value * x + self.value * y)
+        self.lift_binary(other, self.value * other.value, |x, y| other.value * x + self.value * y)
     }
 }
 
@@ -223,7 +223,7 @@ impl<const N: usize> Div for Dual<N> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let (quotient, inverse) = (self.value / other.value, other.value.recip());
-        self.joined(other, quotient, |x, y| (x - quotient * y) * inverse)
+        self.lift_binary(other, quotient, |x, y| (x - quotient * y) * inverse)
     }
 }
 
@@ -250,7 +250,7 @@ impl<const N: usize> Mul<f64> for Dual<N> {
 
     #[inline(always)]
     fn mul(self, other: f64) -> Self {
-        self.chained(self.value * other, other)
+        self.lift_unary(self.value * other, other)
     }
 }
 
@@ -259,7 +259,7 @@ impl<const N: usize> Div<f64> for Dual<N> {
 
     #[inline(always)]
     fn div(self, other: f64) -> Self {
-        self.chained(self.value / other, other.recip())
+        self.lift_unary(self.value / other, other.recip())
     }
 }
 
@@ -270,12 +270,12 @@ impl<const N: usize> Real for Dual<N> {
     }
 
     #[inline(always)]
-    fn chained(self, value: f64, slope: f64) -> Self {
+    fn lift_unary(self, value: f64, slope: f64) -> Self {
         Self { value, by: self.by.map(|d| slope * d) }
     }
 
     #[inline(always)]
-    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
+    fn lift_binary(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
         Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
     }
 
@@ -284,7 +284,7 @@ impl<const N: usize> Real for Dual<N> {
         let by_base = exponent.value * power / self.value;
         // A logarithm costs as much as the power; a constant exponent requires none.
         let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
-        self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
+        self.lift_binary(exponent, power, |x, y| by_base * x + by_exponent * y)
     }
 }
 
@@ -299,7 +299,7 @@ mod tests {
         let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0 + (x * x + 0.1).sqrt().ln() * (y * 0.3).exp();
         power / (cos + 2.0) - (sin - y).tanh()
             + (x * y).atan2(y - x) * x.hypot(y)
-            + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
+            + (-x).abs() * x.at_least(0.4).clamped(R::from(0.1), y + 5.0)
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl GappedSeries {
 
 /// Result of the whiteness test of Ljung and Box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Whiteness {
+pub struct WhitenessTest {
     /// Lag-1 autocorrelation, pooled over records.
     pub lag1: f64,
     /// p-value: probability of autocorrelations at least as large in white noise, pooled over records.
@@ -67,7 +67,7 @@ pub fn whiteness_lags(count: usize) -> usize {
 ///
 /// Q = n (n + 2) Σ ρ²/(n − k) (Ljung and Box 1978); with missing values every ρ is weighted by its number of pairs
 /// (Stoffer and Toloi 1992).
-pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
+pub fn whiteness_test(residuals: &[GappedSeries]) -> WhitenessTest {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
         let n = residual.values.len();
@@ -86,7 +86,7 @@ pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
         freedom += correlations.len() as f64;
     }
     let p_value = if freedom > 0.0 { ChiSquared::new(freedom).map_or(1.0, |chi| chi.sf(statistic)) } else { 1.0 };
-    Whiteness { lag1: if square > 0.0 { cross / square } else { 0.0 }, p_value }
+    WhitenessTest { lag1: if square > 0.0 { cross / square } else { 0.0 }, p_value }
 }
 
 /// Autocorrelation at one lag.
@@ -245,7 +245,7 @@ mod tests {
             let series = sine(pattern);
             let line = strongest(&series);
             assert!((line.frequency - 0.05).abs() < 2e-4 && line.share > 0.95, "{number}: {line:?}");
-            assert!(whiteness(&[series]).p_value < 1e-12, "{number}");
+            assert!(whiteness_test(&[series]).p_value < 1e-12, "{number}");
         }
     }
 
@@ -283,7 +283,7 @@ mod tests {
                 .map(|_| {
                     let mut draw = |k| if pattern(k) { StandardNormal.sample(&mut generator) } else { f64::NAN };
                     let residual: Vec<f64> = (0..300).map(&mut draw).collect();
-                    whiteness(&[GappedSeries::new(&time, &residual, 1.0)]).p_value
+                    whiteness_test(&[GappedSeries::new(&time, &residual, 1.0)]).p_value
                 })
                 .collect();
             let mean = p_values.iter().sum::<f64>() / 40.0;

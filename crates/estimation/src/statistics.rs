@@ -38,7 +38,7 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 
 /// Score interval of a proportion observed in `cases` independent cases (Wilson 1927); `quantile` is the quantile of
 /// the standard normal distribution, 1.96 for 95 %. [0, 1] if there are no cases.
-pub fn wilson(share: f64, cases: f64, quantile: f64) -> [f64; 2] {
+pub fn wilson_interval(share: f64, cases: f64, quantile: f64) -> [f64; 2] {
     if cases <= 0.0 {
         return [0.0, 1.0];
     }
@@ -62,9 +62,9 @@ mod tests {
 
     #[test]
     fn shares_have_the_interval_of_wilson() {
-        let [low, high] = wilson(0.8, 10.0, 1.96);
+        let [low, high] = wilson_interval(0.8, 10.0, 1.96);
         assert!((low - 0.490).abs() < 1e-3 && (high - 0.943).abs() < 1e-3);
-        assert_eq!(wilson(0.0, 0.0, 1.96), [0.0, 1.0]);
+        assert_eq!(wilson_interval(0.0, 0.0, 1.96), [0.0, 1.0]);
     }
 
     #[test]

@@ -6,12 +6,12 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::replay::pooled;
+use crate::replay::pooled_response_rms;
 
 /// Entry of a successful fit.
 ///
 /// `heading_rmse_deg` is the rms heading error of the replay, deg. Diagnostics that are not finite are left out.
-pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> MethodEntry {
+pub fn success_entry(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> MethodEntry {
     let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());
     MethodEntry {
         method: method.to_owned(),
@@ -31,7 +31,7 @@ pub fn answered(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>
 }
 
 /// Entry of a failed fit: the reason as a sentence and as a kind.
-pub fn failed(method: &str, error: &IdentifyError) -> MethodEntry {
+pub fn failure_entry(method: &str, error: &IdentifyError) -> MethodEntry {
     let (reason, failure) = (Some(error.to_string()), Some(error.kind().to_owned()));
     MethodEntry { method: method.to_owned(), reason, failure, ..MethodEntry::default() }
 }
@@ -43,7 +43,10 @@ pub fn entry(
     trials: &[Trial],
 ) -> (MethodEntry, Option<Estimate>) {
     match answer {
-        Ok(estimate) => (answered(label, &estimate, pooled(trials, &estimate.response).map(to_deg)), Some(estimate)),
-        Err(error) => (failed(label, &error), None),
+        Ok(estimate) => (
+            success_entry(label, &estimate, pooled_response_rms(trials, &estimate.response).map(to_deg)),
+            Some(estimate),
+        ),
+        Err(error) => (failure_entry(label, &error), None),
     }
 }

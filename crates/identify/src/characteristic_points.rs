@@ -144,8 +144,8 @@ impl Identifier for CharacteristicPoints {
         let fit = match self.settings.variant {
             Variant::LeastSquares => classic::identify(&analysed, bias, limit, false),
             Variant::ThreePeaks => classic::identify(&analysed, bias, limit, true),
-            Variant::Equation8 => equation_8::identify_spread(&analysed, bias, limit),
-            Variant::Equation8Vertices => equation_8::identify_at_vertices(&analysed, bias, limit),
+            Variant::Equation8 => equation_8::identify_at_spaced_instants(&analysed, bias, limit),
+            Variant::Equation8Vertices => equation_8::identify_at_extrema(&analysed, bias, limit),
         }?;
         let [gain, gain_bias, time] = fit.parameters;
         let response = FirstOrder { inverse_T: 1.0 / time, K_over_T: gain / time, rudder_bias: gain_bias / gain };

@@ -174,7 +174,7 @@ impl Covariance {
     /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and q = ν
     /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` if the region of 1/T contains
     /// zero, so that T is unbounded, and without a covariance.
-    pub fn outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
+    pub fn joint_region_outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
         const CORNERS: usize = 120;
         let exceedance: f64 = 0.05;
         let q = match self.degrees_of_freedom {
@@ -287,7 +287,7 @@ mod tests {
     fn the_outline_is_an_ellipse_where_errors_are_small() {
         let response = FirstOrder::from_indices(0.1, 16.3, 0.0);
         let small = covariance(1e-5, 1e-6);
-        let outline = small.outline(&response).expect("bounded");
+        let outline = small.joint_region_outline(&response).expect("bounded");
         let half = |part: usize| {
             let coordinates = || outline.iter().map(|place| place[part]);
             0.5 * (coordinates().fold(f64::MIN, f64::max) - coordinates().fold(f64::MAX, f64::min))
@@ -297,9 +297,9 @@ mod tests {
             assert_relative_eq!(half(part), 5.991465f64.sqrt() * sd, max_relative = 2e-3);
         }
         assert_eq!(outline[0], outline[outline.len() - 1]);
-        assert_eq!(covariance(0.04, 1e-6).outline(&response), None);
+        assert_eq!(covariance(0.04, 1e-6).joint_region_outline(&response), None);
         let few = Covariance { degrees_of_freedom: Some(10.0), ..small };
-        let wider = few.outline(&response).expect("bounded")[0][1] - response.T();
+        let wider = few.joint_region_outline(&response).expect("bounded")[0][1] - response.T();
         // 2 F₀.₉₅(2, 10) = 8.2056.
         assert_relative_eq!(wider / (outline[0][1] - response.T()), (8.2056f64 / 5.9915).sqrt(), max_relative = 2e-3);
     }

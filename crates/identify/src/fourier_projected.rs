@@ -28,7 +28,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::fourier::basis::NestedBases;
 use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
-use crate::fourier::{self, Fitted, FourierFit, Fundamental, MAX_HARMONICS, TRUSTED_CONDITION};
+use crate::fourier::{self, FittedSeries, FourierSeries, Fundamental, MAX_HARMONICS, MAX_TRUSTED_CONDITION};
 use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
@@ -132,9 +132,9 @@ pub struct FourierProjected {
 #[derive(Debug, Clone)]
 pub struct Curves {
     /// Heading curve.
-    pub heading: Fitted,
-    /// Rudder curve; [`FourierFit::heading`] gives the projected rudder angle, rad.
-    pub rudder: FourierFit,
+    pub heading: FittedSeries,
+    /// Rudder curve; [`FourierSeries::heading`] gives the projected rudder angle, rad.
+    pub rudder: FourierSeries,
     /// Beginning and end, s from the first observed row.
     pub window: [f64; 2],
 }
@@ -188,7 +188,7 @@ impl FourierProjected {
         Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
     }
 
-    fn fit(&self, part: &SeriesRows) -> Result<Fitted, IdentifyError> {
+    fn fit(&self, part: &SeriesRows) -> Result<FittedSeries, IdentifyError> {
         let SeriesRows { time, heading, .. } = part;
         let fundamental = &self.settings.fundamental;
         let reach = match self.settings.harmonics {
@@ -218,11 +218,11 @@ impl FourierProjected {
         let basis = series.basis(harmonics);
         let projection = basis.project(heading);
         let curve = basis.curve(&projection);
-        accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
+        accept(FittedSeries { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
     }
 
     /// Adds the equations of one trial and returns the variances of the residual.
-    fn add(&self, part: &SeriesRows, fitted: &Fitted, equations: &mut Equations) -> ResidualVariance {
+    fn add(&self, part: &SeriesRows, fitted: &FittedSeries, equations: &mut Equations) -> ResidualVariance {
         let SeriesRows { time, heading, rudder } = part;
         let residual = &fitted.projection.residual;
         let coefficients = 2 * fitted.basis.harmonics() + 1;
@@ -262,7 +262,7 @@ impl Identifier for FourierProjected {
             freedom += part.time.len() as f64 - (2 * fitted.basis.harmonics() + 1) as f64;
             fits.push(fitted);
         }
-        let solution = equations.solve(self.settings.response, TRUSTED_CONDITION)?;
+        let solution = equations.solve(self.settings.response, MAX_TRUSTED_CONDITION)?;
         let mut diagnostics = fourier::diagnostics(&fits);
         let worst = |variance: fn(&ResidualVariance) -> f64| {
             to_deg(noises.iter().fold(0.0f64, |most, noise| most.max(variance(noise))).sqrt())
@@ -305,8 +305,8 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
 }
 
 /// Fails for a basis whose coefficients cancel each other.
-fn accept(fitted: Fitted) -> Result<Fitted, IdentifyError> {
-    let (condition, limit) = (fitted.curve.condition, TRUSTED_CONDITION);
+fn accept(fitted: FittedSeries) -> Result<FittedSeries, IdentifyError> {
+    let (condition, limit) = (fitted.curve.condition, MAX_TRUSTED_CONDITION);
     if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }
 }
 

@@ -21,8 +21,8 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, DrawnTriples, MAX_TRIPLES, RegressionPoint, Selection, TripleEstimate};
-use crate::fourier::{self, Fitted, Fundamental, MAX_HARMONICS};
+use crate::fourier::triples::{self, MAX_TRIPLES, RegressionPoint, SampledTriples, Selection, TripleEstimate};
+use crate::fourier::{self, FittedSeries, Fundamental, MAX_HARMONICS};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, require};
@@ -96,16 +96,16 @@ impl FourierPublished {
     /// Fitted heading of one trial, for a figure; time runs from the first observed row.
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
-    pub fn curve(&self, trial: &Trial) -> Result<Fitted, IdentifyError> {
+    pub fn curve(&self, trial: &Trial) -> Result<FittedSeries, IdentifyError> {
         self.fit(&Samples::new(trial, 2 * self.settings.harmonics + 2)?)
     }
 
-    fn fit(&self, samples: &Samples) -> Result<Fitted, IdentifyError> {
+    fn fit(&self, samples: &Samples) -> Result<FittedSeries, IdentifyError> {
         fourier::fit(&samples.time, &samples.heading, self.settings.harmonics, &self.settings.fundamental)
     }
 
     /// Instants of one trial from which triples are sampled.
-    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<RegressionPoint> {
+    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &FittedSeries) -> Vec<RegressionPoint> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
@@ -182,7 +182,7 @@ impl Identifier for FourierPublished {
             fits.push(fitted);
         }
         let settings = &self.settings;
-        let drawn = triples::draw(&instants, settings.selection, settings.triples, settings.seed)?;
+        let drawn = triples::sample_triples(&instants, settings.selection, settings.triples, settings.seed)?;
         let answers = &drawn.answers;
         let (gain, time_constant) = (self.aggregate(answers, |a| a.K), self.aggregate(answers, |a| a.T));
         let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(answers, |a| a.rudder_bias));
@@ -204,7 +204,7 @@ impl Identifier for FourierPublished {
 }
 
 /// Diagnostics of the fits (of the first trial, or the worst of several) and of the triples.
-fn diagnostics(fits: &[Fitted], instants: usize, drawn: &DrawnTriples) -> Vec<(&'static str, f64)> {
+fn diagnostics(fits: &[FittedSeries], instants: usize, drawn: &SampledTriples) -> Vec<(&'static str, f64)> {
     let mut all = fourier::diagnostics(fits);
     let spread = |index: fn(&TripleEstimate) -> f64| {
         let values = sorted(&drawn.answers, index);
@@ -223,7 +223,7 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &DrawnTriples) -> Vec<(&
     all
 }
 
-fn warnings(fits: &[Fitted], drawn: &DrawnTriples) -> Vec<Warning> {
+fn warnings(fits: &[FittedSeries], drawn: &SampledTriples) -> Vec<Warning> {
     let mut warnings = fourier::warnings(fits);
     if drawn.negative > 0 {
         let kept = drawn.answers.len();

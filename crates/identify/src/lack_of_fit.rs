@@ -8,7 +8,7 @@
 //! rudder movement, random moments do not: nine terms explain nearly all of a missing ship term and part of a random
 //! moment.
 //!
-//! The test is of first order in small terms and does not identify a term; [`unexplained`](LackOfFit::unexplained) is
+//! The test is of first order in small terms and does not identify a term; [`unexplained_share`](LackOfFit::unexplained_share) is
 //! compared with a limit from simulated trials. It is a score test by linearised regression, Ljung (1999), System
 //! Identification: Theory for the User, chapter 16 on model validation.
 
@@ -110,7 +110,7 @@ impl LackOfFit {
 
     /// Share, from 0 to 1, of the residual beyond the noise that the ship terms do not explain: small for a missing
     /// term, large for random moments. `None` for a white residual.
-    pub fn unexplained(&self) -> Option<f64> {
+    pub fn unexplained_share(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
         let all = beyond(self.residual);
         (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
@@ -244,7 +244,7 @@ mod tests {
         for time_constant in [16.3, -40.0] {
             let case = Case { T: time_constant, K: 0.1 * time_constant.signum(), noise_deg: 0.1, ..Case::default() };
             let lack = LackOfFit::of(&[case.trial()], &case.ship()).expect("a zig-zag");
-            assert!(lack.is_white && lack.unexplained().is_none(), "{lack:?}");
+            assert!(lack.is_white && lack.unexplained_share().is_none(), "{lack:?}");
             assert!((lack.residual / lack.noise - 1.0).abs() < 0.2, "{lack:?}");
         }
     }

@@ -35,7 +35,7 @@ use crate::settings::{SettingsError, check_iterations};
 /// Times, s, of the outliers of every record: single spikes and sentinels such as −999, isolated in the residual of
 /// `output-error`. No times if more than a tenth of the readings are outliers: the noise then follows another law.
 /// Fails as `output-error` does.
-pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
+pub fn spike_times(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
     Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
 
@@ -55,7 +55,7 @@ pub struct MaximumLikelihood {
 
 impl MaximumLikelihood {
     /// Most plausible noise laws of some records, with the fit under each.
-    fn chosen(&self, trials: &[Trial]) -> Result<choice::Chosen, IdentifyError> {
+    fn chosen(&self, trials: &[Trial]) -> Result<choice::ChosenLaw, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }

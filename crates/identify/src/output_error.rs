@@ -21,7 +21,7 @@ use crate::identifier::Identifier;
 use crate::likelihood::track::Track;
 use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
-use crate::samples::track;
+use crate::samples::checked_track;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations, require};
 
@@ -200,7 +200,8 @@ impl Identifier for OutputError {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let tracks = trials.iter().map(|trial| track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let tracks =
+            trials.iter().map(|trial| checked_track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         self.fit(tracks, finest)
     }
@@ -214,7 +215,7 @@ impl OutputError {
         // The scan and the first refinement only locate the valleys, for which a part of the rows suffices; the last
         // refinement uses all rows.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
-        let scan = RangeScan { fits: scan::fits(&thinned, &grid), grid };
+        let scan = RangeScan { fits: scan::scan_inverse_times(&thinned, &grid), grid };
         let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
         let valleys = scan.valleys();
         let mut bar = f64::INFINITY;

@@ -88,8 +88,8 @@ fn unusual_indices(estimate: &Estimate, ship: Particulars) -> Vec<String> {
         Uncertainty::Covariance(covariance) => Some(covariance.matrix[(1, 1)].max(0.0).sqrt()),
         _ => None,
     };
-    let [k, t] = [estimate.K().scaled(ship.prime([-1, 0])), estimate.T().scaled(ship.prime([1, 0]))];
-    let ratio = Quantity::new(estimate.response.K_over_T, ratio_sd).scaled(ship.prime([-2, 0]));
+    let [k, t] = [estimate.K().scaled(ship.prime_factor([-1, 0])), estimate.T().scaled(ship.prime_factor([1, 0]))];
+    let ratio = Quantity::new(estimate.response.K_over_T, ratio_sd).scaled(ship.prime_factor([-2, 0]));
     let message = |(name, quantity, [low, high]): (&str, Quantity, [f64; 2])| {
         let margin = MAX_DEVIATIONS * quantity.sd.unwrap_or(0.0);
         (quantity.value + margin < low || quantity.value - margin > high)

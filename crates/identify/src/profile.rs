@@ -171,7 +171,7 @@ impl Profile {
 
 impl TrialColumns {
     fn project_columns(&mut self, inverse_time: f64) {
-        self.track.fill(inverse_time, &mut self.columns);
+        self.track.fill_columns(inverse_time, &mut self.columns);
         let MotionColumns { homogeneous, rudder, constant, .. } = &mut self.columns;
         let mean = sum(homogeneous) / homogeneous.len() as f64;
         homogeneous.iter_mut().for_each(|x| *x -= mean);

@@ -22,7 +22,7 @@ use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::identifier::Identifier;
 use crate::lack_of_fit::LackOfFit;
-use crate::replay::pooled;
+use crate::replay::pooled_response_rms;
 use crate::settings::SettingsError;
 use crate::{maximum_likelihood, output_error};
 
@@ -50,9 +50,10 @@ impl Recommendation {
     pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
         let is_calm = trials.iter().all(Trial::is_calm);
-        let is_random = !is_calm && lack.and_then(|lack| lack.unexplained()).is_some_and(|share| share >= MIN_RANDOM);
+        let is_random =
+            !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|share| share >= MIN_RANDOM);
         let has_moment = |fit: &Estimate| fit.noise.is_some_and(|noise| !noise.moment.is_none());
-        let rms = |fit: &Estimate| pooled(trials, &fit.response).unwrap_or(f64::INFINITY);
+        let rms = |fit: &Estimate| pooled_response_rms(trials, &fit.response).unwrap_or(f64::INFINITY);
         let is_far = |fit: &Estimate| output_error.is_some_and(|nearest| rms(fit) > MAX_REPLAY_RATIO * rms(nearest));
         let has_jumps = |fit: &Estimate| fit.warnings.iter().any(|warning| warning.code == WarningCode::HeadingJump);
         let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
@@ -79,7 +80,7 @@ impl Recommendation {
 
     /// Kind of the residual of output error.
     pub fn residual(&self) -> Option<ResidualKind> {
-        let share = self.lack?.unexplained();
+        let share = self.lack?.unexplained_share();
         Some(share.map_or(ResidualKind::Noise, |share| {
             if share < MIN_RANDOM || self.is_calm { ResidualKind::LacksEffect } else { ResidualKind::Random }
         }))
@@ -187,7 +188,7 @@ mod tests {
     fn a_replay_thirty_times_farther_is_of_no_ship() {
         let trials = [windy()];
         let base = nearest(&trials);
-        let distance = |response: &FirstOrder| pooled(&trials, response).expect("a replay");
+        let distance = |response: &FirstOrder| pooled_response_rms(&trials, response).expect("a replay");
         let biased = |by: f64| FirstOrder { rudder_bias: base.response.rudder_bias + by, ..base.response };
         let ratio = |response: &FirstOrder| distance(response) / distance(&base.response);
         // The heading is linear in the bias, and the nearest replay has the least sum of squares.

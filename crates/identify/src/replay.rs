@@ -51,7 +51,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
     let track = Track::new(trial);
     let mut columns = MotionColumns::default();
-    track.fill(a, &mut columns);
+    track.fill_columns(a, &mut columns);
     let mut coefficients = Coefficients::of(response);
     let forced = columns.rudder.iter().zip(&columns.constant);
     let free: Vec<f64> = track
@@ -83,7 +83,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
 }
 
 /// Root mean square residual of the replays of some records over all headings, rad; `None` if a replay is not finite.
-pub fn pooled(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
+pub fn pooled_response_rms(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
     let replays = trials.iter().map(|trial| replay(trial, response));
     Some(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?))
 }

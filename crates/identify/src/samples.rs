@@ -96,7 +96,7 @@ impl Samples {
 }
 
 /// Track of a trial that is excited and has `needed` headings; fails as [`Samples::new`] does.
-pub(crate) fn track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError> {
+pub(crate) fn checked_track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError> {
     check(trial, needed)?;
     Ok(Track::new(trial))
 }

@@ -14,7 +14,7 @@ use crate::settings::{SettingsError, require};
 pub const MAX_ORDER: usize = 5;
 
 /// Number of coefficients of a local polynomial; coefficients above its order are zero.
-pub const COEFFICIENTS: usize = MAX_ORDER + 1;
+pub const MAX_COEFFICIENTS: usize = MAX_ORDER + 1;
 
 /// Window and order of the local polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -112,7 +112,7 @@ impl<'a> WindowWeights<'a> {
 /// more points than the order, or if the equations are singular.
 ///
 /// Source: Savitzky and Golay (1964), here for any spacing.
-pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) -> Option<[f64; COEFFICIENTS]> {
+pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) -> Option<[f64; MAX_COEFFICIENTS]> {
     let coefficients = LocalFit::new(time, centre, order)?.coefficients(value);
     coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
 }
@@ -125,7 +125,7 @@ pub struct LocalFit<'a> {
     order: usize,
     /// Maximum distance from `centre`, s, by which distances are scaled.
     reach: f64,
-    normal: Cholesky<f64, Const<COEFFICIENTS>>,
+    normal: Cholesky<f64, Const<MAX_COEFFICIENTS>>,
 }
 
 impl<'a> LocalFit<'a> {
@@ -150,7 +150,7 @@ impl<'a> LocalFit<'a> {
     }
 
     /// Coefficients for one value per row.
-    pub fn coefficients(&self, value: &[f64]) -> [f64; COEFFICIENTS] {
+    pub fn coefficients(&self, value: &[f64]) -> [f64; MAX_COEFFICIENTS] {
         let right =
             self.time.iter().zip(value).fold(Vector6::zeros(), |right, (t, &y)| {
                 right + powers((t - self.centre) / self.reach, self.order) * y
@@ -159,7 +159,7 @@ impl<'a> LocalFit<'a> {
     }
 
     /// Weight of every row in Σ `functional`ₚ cₚ.
-    pub fn weights(&self, functional: [f64; COEFFICIENTS]) -> impl Iterator<Item = f64> {
+    pub fn weights(&self, functional: [f64; MAX_COEFFICIENTS]) -> impl Iterator<Item = f64> {
         let scaled = Vector6::from(self.rescaled(functional));
         let used = Vector6::from_fn(|p, _| if p <= self.order { scaled[p] } else { 0.0 });
         let solved = self.normal.solve(&used);
@@ -167,7 +167,7 @@ impl<'a> LocalFit<'a> {
     }
 
     /// Coefficients divided by powers of the reach: from powers of the scaled distance to powers of seconds.
-    fn rescaled(&self, mut coefficients: [f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
+    fn rescaled(&self, mut coefficients: [f64; MAX_COEFFICIENTS]) -> [f64; MAX_COEFFICIENTS] {
         let mut scale = 1.0;
         for coefficient in &mut coefficients {
             *coefficient *= scale;

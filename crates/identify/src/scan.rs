@@ -29,7 +29,7 @@ pub(crate) struct Fit {
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
 /// [thinned](Track::thinned) tracks.
-pub(crate) fn fits(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
+pub(crate) fn scan_inverse_times(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
     let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
     let mut fits = Vec::with_capacity(inverse_time.len());
@@ -129,7 +129,7 @@ impl Sums {
 impl estimation::lanes::Kernel for Sweep<'_> {
     type Output = [Products; LANES];
 
-    /// Recursions of [`Track::fill`] in every lane. The anchor row has only zeros and is left out.
+    /// Recursions of [`Track::fill_columns`] in every lane. The anchor row has only zeros and is left out.
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Self { track, heading, inverse_time } = self;
@@ -197,7 +197,7 @@ mod tests {
         ];
         let grid: Vec<f64> = (-15..=15).map(|k| 0.01 * f64::from(k)).collect();
         let mut profile = Profile::new(tracks.to_vec());
-        for (&a, fit) in grid.iter().zip(fits(&tracks, &grid)) {
+        for (&a, fit) in grid.iter().zip(scan_inverse_times(&tracks, &grid)) {
             let fit = fit.expect("the columns are independent");
             if let Some(rss) = profile.evaluate(a) {
                 assert_relative_eq!(fit.rss, rss, max_relative = 1e-8);

@@ -11,7 +11,7 @@ use trial::Trial;
 use crate::estimate::Estimate;
 use crate::lack_of_fit::LackOfFit;
 use crate::recommended::Recommendation;
-use crate::replay::pooled;
+use crate::replay::pooled_response_rms;
 
 /// Maximum ratio of a replay error to the smallest; above it a method is listed separately.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -20,15 +20,16 @@ const MAX_ERROR_RATIO: f64 = 10.0;
 /// and models explain 0.97 and more, also for strongly nonlinear ships and in gusts.
 const MIN_EXPLAINED_SHARE: f64 = 0.9;
 
-/// Reference methods for contradictions.
-pub const USUAL: [&str; 2] = ["output-error", "maximum-likelihood"];
+/// Ids of the methods against which every other estimate is checked for a contradiction.
+pub const REFERENCE_METHODS: [&str; 2] = ["output-error", "maximum-likelihood"];
 
 /// Verdict over the estimates of some methods to some records; `None` if no method gives an estimate.
 pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
-    let straight = pooled(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
-    let [nearest, likely] = USUAL.map(estimate_of);
+    let straight =
+        pooled_response_rms(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
+    let [nearest, likely] = REFERENCE_METHODS.map(estimate_of);
     let mut verdict = taken(&Recommendation::of(trials, nearest, likely), entries, straight)?;
     verdict.because = disbelief(&verdict, entries, straight);
     if verdict.because.is_some() {
@@ -50,7 +51,7 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     let left_deg = answered().filter_map(|entry| entry.heading_rmse_deg).fold(f64::INFINITY, f64::min);
     let explained = scatter_deg.map_or(1.0, |scatter| 1.0 - (left_deg / scatter).powi(2));
     let failed = |id: &&str| entries.iter().any(|entry| entry.id() == *id && entry.parameters.is_none());
-    let is_usual = USUAL.contains(&taken.id()) || !USUAL.iter().all(failed);
+    let is_usual = REFERENCE_METHODS.contains(&taken.id()) || !REFERENCE_METHODS.iter().all(failed);
     let is_unstable = t.ci95.is_some_and(|[_, high]| high < 0.0);
     if let Some(straight) = verdict.straight_lines_deg {
         return Some(format!(
@@ -71,7 +72,7 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     if !is_usual {
         return Some(format!(
             "{} found no answer, and noise and weather bias that of {}",
-            USUAL.join(" and "),
+            REFERENCE_METHODS.join(" and "),
             verdict.method
         ));
     }
@@ -98,7 +99,8 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let taken = taken.unwrap_or(nearest);
     let is_far = |entry: &&MethodEntry| rms(entry) > MAX_ERROR_RATIO * rms(&nearest) && entry.method != taken.method;
     let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(size(lack)));
-    let contradicts = |entry: &&MethodEntry| USUAL.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
+    let contradicts =
+        |entry: &&MethodEntry| REFERENCE_METHODS.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
     Some(VerdictEntry {
         believe: Belief::Yes,
         because: None,

@@ -21,11 +21,11 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::helm_replay::{DrawResult, SteeredZigZag};
+use crate::helm_replay::{SampleResult, SteeredZigZag};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{check_completed, in_parallel};
-use crate::replay::{file_of, thinned};
+use crate::replay::{file_of, simplified};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
@@ -90,7 +90,7 @@ pub struct Correction {
 ///
 /// The structures of the most probable members are compared. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one
 /// method.
-pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<Warning> {
+pub fn difference_warnings(full: &IdentifiedShip, trial: &IdentifiedShip, loading: &str) -> Vec<Warning> {
     let structure = |ship: &IdentifiedShip| {
         if !ship.hulls.is_empty() {
             return String::from("a hull");
@@ -125,7 +125,7 @@ pub fn difference_warning(what: &str, full: &str, trial: &str, loading: &str) ->
 }
 
 /// Results of the sampled ships in order; `None` for a ship that does not complete the manoeuvre.
-type Draws = Vec<Option<DrawResult>>;
+type Draws = Vec<Option<SampleResult>>;
 
 /// Manoeuvre of a record, simulated with both models.
 struct PairedManoeuvre {
@@ -202,7 +202,8 @@ fn zig_zag(
     let steered = SteeredZigZag::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
-    let shown = names.filter_map(|name| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
+    let shown =
+        names.filter_map(|name| Some((*name, ballast.measured_characteristic(record, zigzag, name)?))).collect();
     Some(PairedManoeuvre { rudder: steered.kind.max_rudder(), full, trial, shown })
 }
 
@@ -214,13 +215,15 @@ fn turned(
     draws: usize,
 ) -> Result<Option<PairedManoeuvre>, PredictError> {
     let length = record.particulars().or(ballast.particulars()).map(|particulars| particulars.length);
-    let turn = HeldTurn::of(record).zip(turn::recorded(record, ballast.timescale(), length));
+    let turn = HeldTurn::of(record).zip(turn::resampled_record(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
     let measured = turn.figures(&passage).into_iter();
     let shown: Vec<_> = measured.filter_map(|(name, value)| Some((name, Quantity::bare(value?)))).collect();
-    let Some(rudder) = turn.held_on(record.rudder_signal()).filter(|_| !shown.is_empty()) else { return Ok(None) };
+    let Some(rudder) = turn.extended_rudder(record.rudder_signal()).filter(|_| !shown.is_empty()) else {
+        return Ok(None);
+    };
     let Some([_, rate]) = ballast.initial_motion(record)? else { return Ok(None) };
-    let manoeuvre = Manoeuvre::replay(thinned(&rudder));
+    let manoeuvre = Manoeuvre::replay(simplified(&rudder));
     let sail = |mixture: &ShipMixture, number| {
         let mut ship = mixture.sample_ship(number, &UncertaintySource::ALL);
         // Both ships start with the yaw rate of the record.
@@ -231,7 +234,7 @@ fn turned(
         let mut figures = turn.whole_figures(&passage);
         // Characteristics at the end are read after the duration of the record for both ships.
         figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
-        Some(DrawResult { figures, largest_rate: passage.largest_rate() })
+        Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| in_parallel(draws, |number| sail(mixture, number)));
     Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
@@ -245,7 +248,7 @@ fn short(value: f64) -> String {
 
 /// R = T F/B of one figure of merit; `None` if less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
-    let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.get(name).copied()?;
+    let value = |draw: &Option<SampleResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
     let mut columns: [Vec<f64>; 4] = Default::default();
     for ((of_full, of_trial), reading) in full.iter().zip(trial).zip(readings) {
@@ -411,10 +414,10 @@ mod tests {
     #[test]
     fn different_models_are_reported() {
         let [mut full, ballast] = ships();
-        assert!(differences(&full, &ballast, FULL_LOAD).is_empty());
+        assert!(difference_warnings(&full, &ballast, FULL_LOAD).is_empty());
         full.members[0].effects.clear();
         full.length_m = Some(300.0);
-        let warnings = differences(&full, &ballast, FULL_LOAD);
+        let warnings = difference_warnings(&full, &ballast, FULL_LOAD);
         assert!(warnings[0].text.contains("nonlinear_damping") && warnings[1].text.contains("300 m"), "{warnings:?}");
     }
 

@@ -7,10 +7,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{Correction, FULL_LOAD};
-use crate::drawn_parameters::DrawnParameters;
+use crate::drawn_parameters::SampledParameters;
 use crate::form::ImoFormEntry;
 use crate::imo::PredictedCriterion;
-use crate::prediction::{Bands, ManoeuvreCurves, Prediction};
+use crate::prediction::{BandedCurve, ManoeuvreCurves, Prediction};
 use crate::replay::RecordReplay;
 
 /// Value of `schema`.
@@ -64,7 +64,7 @@ pub struct PredictDocument {
     pub seen: ValidityRange,
     /// Parameters of the sampled ships, if requested.
     #[serde(skip)]
-    pub drawn: Vec<DrawnParameters>,
+    pub drawn: Vec<SampledParameters>,
     /// Warnings of models, records and manoeuvres, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
@@ -105,7 +105,7 @@ pub struct PredictCurves {
     /// Curves of every manoeuvre, in the order of the document.
     pub manoeuvres: Vec<ManoeuvreCurves>,
     /// Curves of every replayed record: rudder against time, heading with bands, and measured headings.
-    pub replays: Vec<([Vec<f64>; 2], Bands, Vec<f64>)>,
+    pub replays: Vec<([Vec<f64>; 2], BandedCurve, Vec<f64>)>,
 }
 
 impl PredictDocument {

@@ -9,7 +9,7 @@ use ship::vessel::prior::Particular;
 use ship::vessel::scaled::ScaledHull;
 
 use crate::error::PredictError;
-use crate::root::root_of;
+use crate::root::covariance_root;
 
 /// Maximum number of rejected samples, outside the range of a coefficient or without a ship; then the stored values are
 /// used.
@@ -53,7 +53,7 @@ impl HullSampler {
             let (what, expected) = ("rows of the covariance of a hull", coefficients.len());
             return Err(IdentifiedShipError::Count { what, expected, found: rows }.into());
         }
-        let root = root_of(stored.from.as_ref().map_or(&stored.covariance, |from| &from.rest))?;
+        let root = covariance_root(stored.from.as_ref().map_or(&stored.covariance, |from| &from.rest))?;
         let from = stored
             .from
             .as_ref()
@@ -75,7 +75,7 @@ impl HullSampler {
     }
 
     /// Hull with these coefficients, or the most probable hull if they are not valid.
-    pub fn made_of(&self, values: &[f64]) -> ScaledHull {
+    pub fn hull_or_most_probable(&self, values: &[f64]) -> ScaledHull {
         self.with_coefficients(values).unwrap_or_else(|| self.most_probable())
     }
 

@@ -5,11 +5,11 @@ use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{GOLDEN, SampledShip, ShipMixture, StructureSampler, UncertaintySource, chosen};
+use crate::mixture::{GOLDEN, SampledShip, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
 
 /// Structure and parameters of a sampled ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrawnParameters {
+pub struct SampledParameters {
     /// Index of the file in the mixture.
     pub file: usize,
     /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for none.
@@ -28,8 +28,8 @@ pub struct DrawnParameters {
 impl ShipMixture {
     /// Structure and parameters of ship `number`, sampled from all sources of uncertainty as for the prediction of
     /// manoeuvres.
-    pub fn parameters(&self, number: u64) -> DrawnParameters {
-        let part = self.chosen(number);
+    pub fn sample_parameters(&self, number: u64) -> SampledParameters {
+        let part = self.structure_of_sample(number);
         let SampledShip { response, coefficients, gear, yaw_rate, .. } =
             self.sample_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
@@ -42,7 +42,7 @@ impl ShipMixture {
             None => named(response.model(), response.parameters()),
         };
         let (file, weight) = (part.file, part.weight);
-        DrawnParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
+        SampledParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
     }
 }
 
@@ -59,7 +59,7 @@ fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) 
 
 /// Structure and parameters of a response, sampled from the law of an estimate; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DrawnEstimate {
+pub struct SampledEstimate {
     /// Effects of the response, joined by ` + `; `first_order` for none.
     pub structure: String,
     /// Probability of this structure.
@@ -71,12 +71,12 @@ pub struct DrawnEstimate {
 /// Samples of an estimate: a structure by its probability, the parameters by their covariance. A sample is a response,
 /// not a ship: it has no hull, no steering gear and no random moment.
 #[derive(Debug, Clone)]
-pub struct EstimateDraws {
+pub struct EstimateSampler {
     structures: Vec<StructureSampler>,
     seed: u64,
 }
 
-impl EstimateDraws {
+impl EstimateSampler {
     /// Samples of an estimate with this seed; fails if the estimate is not valid.
     pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
         let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
@@ -86,12 +86,12 @@ impl EstimateDraws {
     }
 
     /// Sample number `number`: equal for equal seeds, whatever else is sampled.
-    pub fn draw(&self, number: u64) -> DrawnEstimate {
+    pub fn sample(&self, number: u64) -> SampledEstimate {
         let share = (0.5 + number as f64 * GOLDEN).fract();
-        let structure = chosen(&self.structures, share).unwrap_or(&self.structures[0]);
+        let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));
-        DrawnEstimate { structure: name, weight: structure.weight, parameters }
+        SampledEstimate { structure: name, weight: structure.weight, parameters }
     }
 }
 
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn an_estimate_is_drawn_again_with_its_seed() {
         let estimate = testing::identified_ship();
-        let draws = |seed: u64| -> Vec<DrawnEstimate> {
-            let draws = EstimateDraws::new(&estimate, seed).expect("made up");
-            (0..2000).map(|number| draws.draw(number)).collect()
+        let draws = |seed: u64| -> Vec<SampledEstimate> {
+            let draws = EstimateSampler::new(&estimate, seed).expect("made up");
+            (0..2000).map(|number| draws.sample(number)).collect()
         };
         let drawn = draws(7);
         assert_eq!(drawn, draws(7));
@@ -117,14 +117,14 @@ mod tests {
         assert!((mean - estimate.members[0].parameters[place]).abs() < 4.0 * sd / count.sqrt());
         assert!(drawn[0].structure == "nonlinear_damping" && drawn[0].weight == 1.0);
         let none = IdentifiedShip { members: Vec::new(), ..estimate };
-        assert_eq!(EstimateDraws::new(&none, 0).err(), Some(PredictError::Empty));
+        assert_eq!(EstimateSampler::new(&none, 0).err(), Some(PredictError::Empty));
     }
 
     /// Structure, parameters and weight agree with the steered ship.
     #[test]
     fn a_drawn_ship_is_reported_as_it_is_steered() {
         let mixture = testing::mixture(testing::identified_ship());
-        let (drawn, ship) = (mixture.parameters(7), mixture.sample_ship(7, &UncertaintySource::ALL));
+        let (drawn, ship) = (mixture.sample_parameters(7), mixture.sample_ship(7, &UncertaintySource::ALL));
         let keys = drawn.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
         assert_eq!(keys[..3], ["inverse_T", "K_over_T", "rudder_bias"]);
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");
@@ -135,7 +135,7 @@ mod tests {
 
         let hulls = ["quadratic", "mmg"].map(testing::hull).to_vec();
         let mixture = testing::mixture(IdentifiedShip { hulls, ..testing::identified_ship() });
-        let mmg = (0..20).map(|number| mixture.parameters(number)).find(|drawn| drawn.structure == "mmg");
+        let mmg = (0..20).map(|number| mixture.sample_parameters(number)).find(|drawn| drawn.structure == "mmg");
         let drawn = mmg.expect("half of them");
         assert!(drawn.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && drawn.weight == 0.5, "{drawn:?}");
     }

@@ -35,17 +35,21 @@ pub fn characteristics(
     let last = passage.heading.last().copied();
     match *kind {
         Manoeuvre::ZigZag { heading, .. } => {
-            let mut figures = initial_turning(passage, passage.reached(heading, side), particulars);
+            let mut figures = initial_turning(passage, passage.time_of_heading_change(heading, side), particulars);
             zig_zag(passage, &mut figures);
             figures
         }
         Manoeuvre::InitialTurning { .. } => {
             let end = passage.time(passage.heading.len().saturating_sub(1));
-            initial_turning(passage, passage.reached(INITIAL_TURN - 1e-9, side).or(Some(end)), particulars)
+            initial_turning(
+                passage,
+                passage.time_of_heading_change(INITIAL_TURN - 1e-9, side).or(Some(end)),
+                particulars,
+            )
         }
         Manoeuvre::TurningCircle { .. } => {
-            let mut figures = turn(passage, side);
-            figures.extend(circle(passage, 0.0));
+            let mut figures = turn_characteristics(passage, side);
+            figures.extend(circle_characteristics(passage, 0.0));
             figures
         }
         Manoeuvre::PullOut { .. } => Characteristics::from([
@@ -76,7 +80,7 @@ pub(crate) fn initial_turning(
 }
 
 /// Characteristics of the track of a turn with the execute at `execute` s; none without a track.
-pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Characteristics {
+pub(crate) fn circle_characteristics(passage: &SimulatedManoeuvre, execute: f64) -> Characteristics {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Characteristics::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
     let measures = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
@@ -95,7 +99,7 @@ pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64) -> Characterist
 }
 
 /// `true` if an interval is possible for a characteristic: sizes of a turning circle are above zero.
-pub(crate) fn is_sound(name: &str, interval: &PredictionInterval) -> bool {
+pub(crate) fn is_possible(name: &str, interval: &PredictionInterval) -> bool {
     let is_size = ["advance", "transfer", "tactical_diameter"].iter().any(|size| name.starts_with(size));
     !is_size || interval.ci90[0] > 0.0
 }
@@ -116,12 +120,12 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
     for (number, name) in EXECUTE_TIMES.into_iter().enumerate() {
         figures.insert(name, executes.get(number + 1).map(|execute| execute.time));
     }
-    figures.insert("period_s", period(executes));
+    figures.insert("period_s", execute_period(executes));
 }
 
 /// Mean time between executes to the same side, s. The cycle from the second execute on includes the initial transient
 /// and counts only if there is no later cycle, as in a record ([`trial::ZigZag::period`]).
-pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
+pub(crate) fn execute_period(executes: &[HelmOrder]) -> Option<f64> {
     let first = if executes.len() > 4 { 2 } else { 1 };
     let ends = executes.iter().skip(first + 2);
     let cycles: Vec<f64> = executes.iter().skip(first).zip(ends).map(|(a, b)| b.time - a.time).collect();
@@ -129,15 +133,15 @@ pub(crate) fn period(executes: &[HelmOrder]) -> Option<f64> {
 }
 
 /// Times and steady rate, over the last half turn, of a turn to one side (±1).
-pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64) -> Characteristics {
+pub(crate) fn turn_characteristics(passage: &SimulatedManoeuvre, side: f64) -> Characteristics {
     let last = passage.heading.last().map_or(0.0, |heading| side * heading);
     let steady = || {
-        let from = passage.reached(last - PI, side).filter(|_| last > 1.5 * PI)?;
-        Some(to_deg(PI / (passage.reached(last, side)? - from)))
+        let from = passage.time_of_heading_change(last - PI, side).filter(|_| last > 1.5 * PI)?;
+        Some(to_deg(PI / (passage.time_of_heading_change(last, side)? - from)))
     };
     Characteristics::from([
-        ("time_to_90_s", passage.reached(FRAC_PI_2, side)),
-        ("time_to_180_s", passage.reached(PI, side)),
+        ("time_to_90_s", passage.time_of_heading_change(FRAC_PI_2, side)),
+        ("time_to_180_s", passage.time_of_heading_change(PI, side)),
         ("steady_rate_deg_s", steady()),
     ])
 }

@@ -16,14 +16,14 @@ use crate::standard::{self, EXECUTES};
 const TOLERANCE: f64 = 0.05;
 
 /// Result of one sampled ship.
-pub(crate) struct DrawResult {
+pub(crate) struct SampleResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Characteristics,
     /// Maximum |yaw rate|, rad/s.
     pub largest_rate: f64,
 }
 
-/// Helm of a measured zig-zag.
+/// Manoeuvre, initial yaw rate and rudder rate of a measured zig-zag, with which sampled ships are steered.
 pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
     /// Change of heading that ends the initial turning, rad: the nominal change, also if the helm is late.
@@ -69,7 +69,7 @@ impl SteeredZigZag {
     }
 
     /// Results of sampled ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
-    pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
+    pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<SampleResult>> {
         let manoeuvre = standard::with_end(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         // The record gives the yaw rate of the approach.
         let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
@@ -80,11 +80,11 @@ impl SteeredZigZag {
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let mut figures = figures::characteristics(&self.kind, &passage, mixture.particulars());
-            let turned = passage.reached(self.turned, self.kind.first_side().sign());
+            let turned = passage.time_of_heading_change(self.turned, self.kind.first_side().sign());
             let shown = passage.executes.get(..self.executes).unwrap_or(&passage.executes);
-            figures.insert("period_s", figures::period(shown));
+            figures.insert("period_s", figures::execute_period(shown));
             figures.extend(figures::initial_turning(&passage, turned, mixture.particulars()));
-            Some(DrawResult { figures, largest_rate: passage.largest_rate() })
+            Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
         })
     }
 }
@@ -92,7 +92,7 @@ impl SteeredZigZag {
 /// Characteristic of a measured zig-zag by name; angles in degrees, times in s from the first execute.
 ///
 /// The distance of the initial turning uses the recorded speed, or V times the time if `particulars` are given.
-pub(crate) fn shown(
+pub(crate) fn measured_characteristic(
     trial: &Trial,
     measured: &Measured,
     name: &str,

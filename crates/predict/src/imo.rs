@@ -40,7 +40,7 @@ pub(crate) const TURNING_CIRCLE_35: FormManoeuvre = "turning-circle 35";
 /// Rudder of that circle and its tolerance, rad. The resolution also allows the maximum rudder angle, which no model
 /// gives.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
-pub(crate) const TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
+pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// Limit of the resolution.
 pub(crate) struct Limit {
@@ -121,7 +121,7 @@ impl Limit {
             |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
             TURNING_CIRCLE_35 => {
-                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= TOLERANCE)
+                matches!(*kind, Manoeuvre::TurningCircle { rudder, .. } if (rudder - CIRCLE_RUDDER).abs() <= CIRCLE_RUDDER_TOLERANCE)
             }
             ZIG_ZAG_20_20 => is_pair(20.0),
             _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),

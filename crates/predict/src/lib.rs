@@ -46,7 +46,7 @@ mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
-pub use drawn_parameters::{DrawnEstimate, DrawnParameters, EstimateDraws};
+pub use drawn_parameters::{EstimateSampler, SampledEstimate, SampledParameters};
 pub use error::PredictError;
 pub use interval::PredictionInterval;
 pub use mixture::{ShipMixture, UncertaintySource};

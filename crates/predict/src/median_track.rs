@@ -9,12 +9,12 @@ use crate::interval::band;
 const STEP: f64 = PI / 60.0;
 
 /// Track of a turn, a position for every heading; the heading grows with the turn from zero at the execute, rad.
-pub(crate) struct Turn<'a> {
+pub(crate) struct TurnTrack<'a> {
     pub heading: &'a [f64],
     pub track: &'a [[f64; 2]],
 }
 
-impl Turn<'_> {
+impl TurnTrack<'_> {
     /// Position at which the heading has changed by an angle, linear between rows.
     fn at(&self, side: f64, angle: f64) -> Option<[f64; 2]> {
         let change = |row: usize| side * (self.heading[row] - self.heading[0]);
@@ -27,7 +27,7 @@ impl Turn<'_> {
 }
 
 /// Median circle of some turns to a side (±1), as far as half of them go and at most once around; empty without a turn.
-pub(crate) fn median_track(turns: &[Turn], side: f64) -> Vec<[f64; 2]> {
+pub(crate) fn median_track(turns: &[TurnTrack], side: f64) -> Vec<[f64; 2]> {
     let place = |point: usize| {
         let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();
         let is_enough = !places.is_empty() && 2 * places.len() >= turns.len();
@@ -49,7 +49,7 @@ mod tests {
             heading.iter().map(|psi| [radius * -psi.sin(), radius * (psi.cos() - 1.0)]).collect()
         };
         let tracks = [1.0, 2.0, 4.0].map(track);
-        let turns: Vec<Turn> = tracks.iter().map(|track| Turn { heading: &heading, track }).collect();
+        let turns: Vec<TurnTrack> = tracks.iter().map(|track| TurnTrack { heading: &heading, track }).collect();
         let median = median_track(&turns, -1.0);
         assert_eq!(median.len(), 61);
         let is_near = |[north, east]: [f64; 2], expected: [f64; 2]| {

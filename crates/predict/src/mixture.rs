@@ -14,7 +14,7 @@ use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::drawable_hull::HullSampler;
 use crate::error::PredictError;
-use crate::root::root_of;
+use crate::root::covariance_root;
 
 /// Source of the uncertainty of a prediction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -168,7 +168,7 @@ impl ShipMixture {
     pub fn sample_ship(&self, number: u64, sources: &[UncertaintySource]) -> SampledShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
-        let part = if has(UncertaintySource::Structure) { self.chosen(number) } else { self.likeliest() };
+        let part = if has(UncertaintySource::Structure) { self.structure_of_sample(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
@@ -191,7 +191,8 @@ impl ShipMixture {
             true => hull.sample(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
             false => hull.stored.values(),
         });
-        let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.made_of(values));
+        let hull =
+            part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.hull_or_most_probable(values));
         let approach = random_part(UncertaintySource::InitialState, of_rate * stored.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.stored.beginning_yaw_rate_rad_s);
         let error = random_part(UncertaintySource::ProcessNoise, of_beginning * of_hull);
@@ -234,9 +235,9 @@ impl ShipMixture {
 
     /// Structure of a sample: for any number of samples the shares follow the probabilities (golden ratio). Samples of
     /// an independent mixture follow √2, which is incommensurable with it.
-    pub(crate) fn chosen(&self, number: u64) -> &StructureSampler {
+    pub(crate) fn structure_of_sample(&self, number: u64) -> &StructureSampler {
         let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
-        chosen(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
+        structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }
 
@@ -244,7 +245,7 @@ impl ShipMixture {
 pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
-pub(crate) fn chosen(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {
+pub(crate) fn structure_at_probability(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {
     parts.iter().find(|part| {
         share -= part.weight;
         share < 0.0
@@ -265,7 +266,7 @@ fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
 impl StructureSampler {
     pub(crate) fn new(stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
         let (weight, model) = (checked(weight, stored.weight)?, stored.model()?);
-        let (root, dead_times) = (root_of(&stored.covariance)?, stored.dead_times(&model));
+        let (root, dead_times) = (covariance_root(&stored.covariance)?, stored.dead_times(&model));
         Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
     }
 
@@ -311,7 +312,7 @@ impl StructureSampler {
                     values[place] = values[place].clamp(described[place].lowest, described[place].highest);
                 }
             }
-            if values.iter().zip(&described).all(|(value, parameter)| parameter.holds(*value)) {
+            if values.iter().zip(&described).all(|(value, parameter)| parameter.is_in_range(*value)) {
                 break;
             }
         }

@@ -14,7 +14,7 @@ use trial::manoeuvre::{deserialize_text, serialize_text};
 use crate::error::PredictError;
 use crate::figures::{self, Characteristics};
 use crate::interval::{PredictionInterval, band};
-use crate::median_track::{Turn, median_track};
+use crate::median_track::{TurnTrack, median_track};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, row_interval};
 use crate::steady::SteadyCurve;
@@ -56,7 +56,7 @@ impl Predicted {
 
 /// Curve against time with bands; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Bands {
+pub struct BandedCurve {
     /// Time from the first execute, s.
     pub time: Vec<f64>,
     /// Most probable ship without disturbances, to the end of its manoeuvre; NaN after it.
@@ -95,7 +95,7 @@ pub struct Prediction {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ManoeuvreCurves {
     /// Heading; empty for a spiral.
-    pub heading: Bands,
+    pub heading: BandedCurve,
     /// Most probable ship without disturbances; `None` for a spiral.
     pub most_probable: Option<SimulatedManoeuvre>,
     /// Tracks of some samples, north and east, m; empty for a model without speed and drift.
@@ -119,8 +119,8 @@ struct DrawnSeries {
 }
 
 impl DrawnSeries {
-    fn turn(&self) -> Option<Turn<'_>> {
-        Some(Turn { heading: &self.heading, track: self.track.as_ref()? })
+    fn turn(&self) -> Option<TurnTrack<'_>> {
+        Some(TurnTrack { heading: &self.heading, track: self.track.as_ref()? })
     }
 }
 
@@ -168,7 +168,7 @@ impl ShipMixture {
         };
         let is_circle = matches!(kind, Manoeuvre::TurningCircle { .. });
         let series = |number: u64, passage: SimulatedManoeuvre| DrawnSeries {
-            largest_rate: passage.largest_rate(),
+            largest_rate: passage.max_yaw_rate(),
             track: passage.track().filter(|_| is_circle || number < TRACKS).map(<[_]>::to_vec),
             heading: passage.heading,
             is_shown: number < TRACKS,
@@ -185,7 +185,7 @@ impl ShipMixture {
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let headings: Vec<&[f64]> = made.iter().map(|series| series.heading.as_slice()).collect();
-        let turns: Vec<Turn> = made.iter().filter(|_| is_circle).filter_map(DrawnSeries::turn).collect();
+        let turns: Vec<TurnTrack> = made.iter().filter(|_| is_circle).filter_map(DrawnSeries::turn).collect();
         let curves = ManoeuvreCurves {
             heading: bands(&headings, most_probable.as_ref(), row_interval(self.timescale())),
             most_probable,
@@ -196,7 +196,7 @@ impl ShipMixture {
         let mut figures = predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0));
         let mut undetermined = Vec::new();
         figures.retain(|name, figure| {
-            let sound = figures::is_sound(name, &figure.interval);
+            let sound = figures::is_possible(name, &figure.interval);
             undetermined.extend((!sound).then(|| (name.clone(), figure.interval)));
             sound
         });
@@ -266,8 +266,8 @@ fn predicted(
 }
 
 /// Quantiles row by row, up to the row that a tenth of the samples reach.
-fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
-    let mut bands = Bands::default();
+fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> BandedCurve {
+    let mut bands = BandedCurve::default();
     let mut values = Vec::with_capacity(draws.len());
     for row in 0.. {
         values.clear();

@@ -18,7 +18,7 @@ use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{Bands, check_completed, in_parallel, too_few_error};
+use crate::prediction::{BandedCurve, check_completed, in_parallel, too_few_error};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
@@ -64,7 +64,7 @@ pub struct RecordReplay {
     pub rudder: [Vec<f64>; 2],
     /// Heading with the band of a reading, at the rows of the record.
     #[serde(skip)]
-    pub heading: Bands,
+    pub heading: BandedCurve,
     /// Measured headings at these rows, rad.
     #[serde(skip)]
     pub measured: Vec<f64>,
@@ -82,7 +82,7 @@ pub fn file_of(trial: &Trial) -> &str {
 const STRAIGHT_TOLERANCE_RAD: f64 = 2e-4;
 
 /// Corners of a rudder (Douglas and Peucker 1973), at which the steps of the solver end.
-pub(crate) fn thinned(signal: &Polyline) -> Polyline {
+pub(crate) fn simplified(signal: &Polyline) -> Polyline {
     let (times, values) = (signal.times(), signal.values());
     let last = times.len() - 1;
     let mut kept = vec![false; times.len()];
@@ -116,7 +116,7 @@ impl ShipMixture {
         current: Option<Current>,
     ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
-        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(simplified(trial.rudder_signal()));
         let ships = self.in_wind_of(trial);
         let Some([first, rate]) = ships.initial_motion(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
@@ -132,7 +132,7 @@ impl ShipMixture {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let time: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - start).collect();
         let at_rows = |passage: &SimulatedManoeuvre| -> Vec<f64> {
-            time.iter().map(|time| passage.at(&passage.heading, *time)).collect()
+            time.iter().map(|time| passage.interpolated(&passage.heading, *time)).collect()
         };
         let of_draw = |number| {
             let (passage, mut rng) = sail(number, &UncertaintySource::ALL)?;
@@ -147,7 +147,7 @@ impl ShipMixture {
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
         let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>()));
-        let heading = Bands { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
+        let heading = BandedCurve { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(x, y)| (x - y).powi(2)).sum();
@@ -190,28 +190,28 @@ impl ShipMixture {
         let drawn = steered.draws(self, draws).into_iter().flatten();
         let drawn: Vec<Characteristics> = drawn.map(|result| result.figures).collect();
         check_completed(&steered.kind, drawn.len(), draws)?;
-        Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
+        Ok(compared(&drawn, |name| self.measured_characteristic(trial, measured, name)))
     }
 
     /// Characteristic of a measured zig-zag. For a model without speed the distance of the initial turning is V times
     /// the time, in the record as in the prediction.
-    pub(crate) fn shown(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
+    pub(crate) fn measured_characteristic(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
         let particulars = self.particulars();
         let has_way = !self.first().hulls.is_empty();
         let stand_in = trial.particulars().or(particulars).filter(|_| !has_way);
-        helm_replay::shown(trial, measured, name, particulars.map(|ship| ship.length), stand_in)
+        helm_replay::measured_characteristic(trial, measured, name, particulars.map(|ship| ship.length), stand_in)
     }
 
     /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, from this ship: a straight line
     /// through the differences between the first readings and the replay from zero heading and yaw rate. `None` if the
     /// record has too few headings at its beginning.
     pub(crate) fn initial_motion(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
-        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(simplified(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::simulate(&self.most_probable(), &manoeuvre, self.timescale());
         let at_rest = at_rest.map_err(|_| too_few_error(trial.name(), 0, 1))?;
         let read = |row: usize| {
             let time = trial.time()[row] - trial.time()[0];
-            (time, trial.heading()[row] - at_rest.at(&at_rest.heading, time))
+            (time, trial.heading()[row] - at_rest.interpolated(&at_rest.heading, time))
         };
         let rows: Vec<(f64, f64)> = trial.observed_rows().map(read).collect();
         let count = rows.iter().take_while(|(time, _)| *time <= BEGINNING * self.timescale()).count();
@@ -230,7 +230,7 @@ fn compared(drawn: &[Characteristics], shown: impl Fn(&str) -> Option<Quantity>)
         let mut rng = StreamKey::default().indexed(Purpose::Heading, 1 + number as u32);
         let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
-        let interval = PredictionInterval::of(&mut values).filter(|interval| figures::is_sound(name, interval))?;
+        let interval = PredictionInterval::of(&mut values).filter(|interval| figures::is_possible(name, interval))?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.contains_90(measured) }))
     };
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
@@ -247,7 +247,7 @@ fn turns(
     current: Option<Current>,
 ) -> (ByName, Option<TurnTracks>) {
     let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
-    let turn = HeldTurn::of(trial).zip(turn::recorded(trial, timescale, length));
+    let turn = HeldTurn::of(trial).zip(turn::resampled_record(trial, timescale, length));
     let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
     let measured = turn.figures(&record);
     let drawn_figures = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
@@ -304,7 +304,7 @@ mod tests {
         let times: Vec<f64> = (0..400).map(f64::from).collect();
         let angle = |t: f64| (0.02 * (t - 50.0)).clamp(0.0, 0.3) - (0.02 * (t - 200.0)).clamp(0.0, 0.6);
         let signal = Polyline::new(times.clone(), times.iter().map(|t| angle(*t)).collect()).expect("increasing");
-        let thin = thinned(&signal);
+        let thin = simplified(&signal);
         assert!(thin.times().len() <= 8, "{:?}", thin.times());
         assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT_TOLERANCE_RAD));
     }

@@ -6,7 +6,7 @@ use crate::error::PredictError;
 
 /// Square root U √Λ of a covariance with eigenvalues Λ; small negative eigenvalues count as zero. Fails with
 /// [`PredictError::Covariance`] for a matrix that is not a covariance.
-pub(crate) fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
+pub(crate) fn covariance_root(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     let count = covariance.len();
     if count == 0 {
         return Ok(DMatrix::zeros(0, 0));

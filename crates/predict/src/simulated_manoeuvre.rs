@@ -28,7 +28,7 @@ const MAX_WAIT_TIMESCALES: f64 = 500.0;
 /// Motion of a ship; time in s from the first execute, angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedManoeuvre {
-    /// Time between rows, s.
+    /// Time between the rows of a simulated manoeuvre, s.
     pub period: f64,
     /// Heading, 0 at the first execute.
     pub heading: Vec<f64>,
@@ -91,7 +91,7 @@ impl SimulatedManoeuvre {
     }
 
     /// Value of a series on the rows at a time, s, linear between rows.
-    pub(crate) fn at(&self, values: &[f64], time: f64) -> f64 {
+    pub(crate) fn interpolated(&self, values: &[f64], time: f64) -> f64 {
         let place = (time / self.period).clamp(0.0, (values.len() - 1) as f64);
         let (low, share) = (place.floor() as usize, place.fract());
         let high = (low + 1).min(values.len() - 1);
@@ -123,13 +123,13 @@ impl SimulatedManoeuvre {
         simulation.weather_grid = row_interval(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
-            None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),
+            None => (!ship.response.model().effects().is_empty()).then(|| ship.response.min_time_constant()),
         };
         if let Some(shortest) = shortest {
             let step = (shortest / STEPS_PER_TIME_CONSTANT).min(row_interval(timescale));
             simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
-        let passage = Self::of(simulation, &ship.key, timescale)?;
+        let passage = Self::from_simulation(simulation, &ship.key, timescale)?;
         match ship.hull.as_ref().and_then(|hull| passage.runs_away(MAX_SPEED * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),
@@ -149,7 +149,7 @@ impl SimulatedManoeuvre {
     /// ship, s.
     ///
     /// Fails as the simulation does.
-    pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
+    pub fn from_simulation(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
         simulation.recording = Recording::every(row_interval(timescale));
         simulation.longest_wait = MAX_WAIT_TIMESCALES * timescale;
         let Simulated { trial, truth } = simulation.run(key)?;
@@ -182,7 +182,7 @@ impl SimulatedManoeuvre {
     }
 
     /// Maximum |yaw rate|, rad/s.
-    pub fn largest_rate(&self) -> f64 {
+    pub fn max_yaw_rate(&self) -> f64 {
         self.yaw_rate.iter().fold(0.0, |largest, rate| largest.max(rate.abs()))
     }
 
@@ -192,7 +192,7 @@ impl SimulatedManoeuvre {
     }
 
     /// First time, s, at which the heading has changed by `angle` (rad) to the side `side` (±1); straight between rows.
-    pub fn reached(&self, angle: f64, side: f64) -> Option<f64> {
+    pub fn time_of_heading_change(&self, angle: f64, side: f64) -> Option<f64> {
         let row = self.heading.iter().position(|heading| side * heading >= angle)?;
         let Some(before) = row.checked_sub(1) else { return Some(0.0) };
         let [low, high] = [before, row].map(|row| side * self.heading[row]);

@@ -22,7 +22,7 @@ pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// Manoeuvre with its end, for a ship with this timescale, s; `None` for a spiral, which is a curve of steady turns.
+/// Requested manoeuvre with its end added, scaled by the timescale (s) of a ship; `None` for a spiral, a steady curve.
 pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {

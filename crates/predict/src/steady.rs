@@ -82,7 +82,7 @@ impl SteadyCurve {
     }
 
     /// Yaw rate at a rudder (rad) on the outer branch of that side, rad/s.
-    pub fn outer(&self, rudder: f64) -> Option<f64> {
+    pub fn outer_branch(&self, rudder: f64) -> Option<f64> {
         let mut rates = self.rates_at(rudder);
         if rudder < 0.0 { rates.next() } else { rates.next_back() }
     }
@@ -103,8 +103,8 @@ impl SteadyCurve {
         let instability = self.instability();
         let of_loop = |value: fn(InstabilityLoop) -> f64| Some(to_deg(instability.map_or(0.0, value)));
         Characteristics::from([
-            ("rate_starboard_deg_s", self.outer(rudder).map(to_deg)),
-            ("rate_port_deg_s", self.outer(-rudder).map(to_deg)),
+            ("rate_starboard_deg_s", self.outer_branch(rudder).map(to_deg)),
+            ("rate_port_deg_s", self.outer_branch(-rudder).map(to_deg)),
             ("loop_width_deg", of_loop(|unstable| unstable.width)),
             ("loop_height_deg_s", of_loop(|unstable| unstable.height)),
         ])
@@ -140,9 +140,9 @@ mod tests {
     fn a_stable_ship_has_no_loop() {
         let curve = curve(0.06);
         assert_eq!(curve.instability(), None);
-        let rate = curve.outer(0.2).expect("within");
+        let rate = curve.outer_branch(0.2).expect("within");
         assert!((0.06 * rate + 300.0 * rate.powi(3) - 6e-3 * 0.2).abs() < 2e-5, "{rate}");
-        assert!((curve.outer(-0.2).expect("within") + rate).abs() < 1e-12);
-        assert_eq!(curve.outer(0.9), None);
+        assert!((curve.outer_branch(-0.2).expect("within") + rate).abs() < 1e-12);
+        assert_eq!(curve.outer_branch(0.9), None);
     }
 }

@@ -9,7 +9,7 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial, ZigZag};
 
 use crate::figures::{self, Characteristics};
-use crate::median_track::{Turn, median_track};
+use crate::median_track::{TurnTrack, median_track};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
 /// Minimum rudder angle of a held rudder, relative to the maximum.
@@ -102,13 +102,13 @@ impl HeldTurn {
     }
 
     /// Duration from the first row to the execute, s.
-    pub(crate) fn approach(&self) -> f64 {
+    pub(crate) fn approach_duration(&self) -> f64 {
         self.execute - self.start
     }
 
     /// Row of the execute.
     fn first_row(&self, passage: &SimulatedManoeuvre) -> usize {
-        (self.approach() / passage.period).round() as usize
+        (self.approach_duration() / passage.period).round() as usize
     }
 
     /// Headings from the execute on.
@@ -124,11 +124,11 @@ impl HeldTurn {
     /// Characteristics of a turn up to its end; the clock starts with the record.
     pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Characteristics {
         let first = self.first_row(passage);
-        let begin = passage.at(&passage.heading, self.approach());
+        let begin = passage.interpolated(&passage.heading, self.approach_duration());
         let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
         let after = SimulatedManoeuvre { heading, period: passage.period, ..SimulatedManoeuvre::default() };
-        let mut figures = figures::turn(&after, self.side);
-        figures.extend(figures::circle(passage, self.approach()));
+        let mut figures = figures::turn_characteristics(&after, self.side);
+        figures.extend(figures::circle_characteristics(passage, self.approach_duration()));
         figures
     }
 
@@ -148,7 +148,7 @@ impl HeldTurn {
     }
 
     /// Rudder of the record up to the end of the turn, and held from there.
-    pub(crate) fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
+    pub(crate) fn extended_rudder(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
         times.push(self.until + EXTENSION * (self.until - self.execute));
@@ -179,7 +179,7 @@ impl MeasuredCircle {
         let turn = HeldTurn::of(&trial)?;
         let ship = trial.particulars();
         let timescale = ship.map_or_else(|| trial.duration() / DEFAULT_TIMESCALES, |ship| ship.length / ship.speed);
-        let passage = recorded(&trial, timescale, ship.map(|ship| ship.length))?;
+        let passage = resampled_record(&trial, timescale, ship.map(|ship| ship.length))?;
         let figures = turn.figures(&passage);
         figures.get("time_to_90_s").copied().flatten()?;
         let track = turn.track(&passage);
@@ -210,7 +210,7 @@ impl TurnTracks {
     ) -> Option<Self> {
         let drawn: Vec<(&[f64], Vec<[f64; 2]>)> =
             made.iter().filter_map(|passage| Some((turn.headings(passage), turn.track(passage)?))).collect();
-        let turns: Vec<Turn> = drawn.iter().map(|(heading, track)| Turn { heading, track }).collect();
+        let turns: Vec<TurnTrack> = drawn.iter().map(|(heading, track)| TurnTrack { heading, track }).collect();
         let median = median_track(&turns, turn.side);
         Some(Self {
             measured: turn.track(record)?,
@@ -223,7 +223,7 @@ impl TurnTracks {
 
 /// Record resampled to the rows of a simulation with this timescale, s; with velocity and track if it has positions and
 /// a length, m. `None` without headings.
-pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
+pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
     let period = simulated_manoeuvre::row_interval(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
@@ -273,7 +273,7 @@ mod tests {
         let columns = Columns { time, channels: channels.into(), unknown: Vec::new() };
         let trial = Trial::new("circle", Origin::Measured { file: "made up".into(), sha256: String::new() }, columns);
         let trial = trial.expect("a record");
-        let record = recorded(&trial, 10.0, Some(10.0)).expect("headings");
+        let record = resampled_record(&trial, 10.0, Some(10.0)).expect("headings");
         let track = HeldTurn::of(&trial).expect("a turn").track(&record).expect("positions");
         // The heading begins to change a second after the execute.
         let row = |angle: f64| track[((angle / rate + 1.0) / record.period).round() as usize];

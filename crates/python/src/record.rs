@@ -90,7 +90,7 @@ impl PyRecord {
     /// Names of the columns, as in a file.
     fn columns(&self) -> Vec<String> {
         let channels = Channel::ALL.into_iter().filter(|channel| self.trial.channel(*channel).is_some());
-        let unknown = self.trial.unknown().iter().map(|(name, _)| name.clone());
+        let unknown = self.trial.unknown_columns().iter().map(|(name, _)| name.clone());
         std::iter::once(TIME_COLUMN.to_owned()).chain(channels.map(Channel::column_name)).chain(unknown).collect()
     }
 
@@ -107,7 +107,7 @@ impl PyRecord {
                 Some(PyArray1::from_vec(py, values.collect()))
             }
             None => {
-                let (_, values) = self.trial.unknown().iter().find(|(column, _)| column == name)?;
+                let (_, values) = self.trial.unknown_columns().iter().find(|(column, _)| column == name)?;
                 Some(PyArray1::from_slice(py, values))
             }
         }
@@ -167,7 +167,7 @@ pub fn of_table(
     name::of_file(&path)?;
     let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
     let sidecar = sidecar.map_err(Failure::input)?;
-    let mut log = Log::of_bytes(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
+    let mut log = Log::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
     let mut warnings = Warnings::default();
     warnings.extend(source(&path).of(std::mem::take(&mut log.warnings)));
     let trial = of_log(log, &path, options, &mut warnings)?;

@@ -109,7 +109,7 @@ impl TextLine {
     }
 }
 
-/// The page.
+/// Page to draw on, with coordinates in points.
 #[derive(Clone)]
 pub(crate) struct Canvas {
     pub area: DrawingArea<Svg, Shift>,
@@ -144,7 +144,7 @@ impl Canvas {
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
-    /// Text on a white ground, for places with lines underneath.
+    /// Text on a white background, for places with lines underneath.
     pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> Plotted {
         let [left, right] = text.ends(x);
         let (left, right, half) = (left - 0.12 * text.size, right + 0.12 * text.size, 0.5 * text.size);
@@ -152,7 +152,7 @@ impl Canvas {
         self.text((x, y), text)
     }
 
-    /// Draws a marker or a ship.
+    /// Draws elements at places in backend units, such as a marker or a ship outline.
     pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> Plotted {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
@@ -165,7 +165,7 @@ impl Canvas {
     }
 }
 
-/// Place on the page in the units of the backend.
+/// Point of the page converted to the units of the SVG backend.
 pub(crate) fn at((x, y): PagePoint) -> (i32, i32) {
     (units(x), units(y))
 }

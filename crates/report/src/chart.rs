@@ -22,7 +22,7 @@ pub(crate) type Context = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
 /// clipped, so lines leave the frame at the correct places.
 const BEYOND: i32 = 1_000_000;
 
-/// Rectangle with two axes.
+/// Framed pair of axes on the page.
 pub(crate) struct Chart {
     data: DrawingArea<Svg, Cartesian2d<Axis, Axis>>,
     pub canvas: Canvas,
@@ -31,7 +31,7 @@ pub(crate) struct Chart {
     pub y: Axis,
 }
 
-/// Interval from left to right.
+/// Horizontal bar of an interval.
 pub(crate) struct Bar {
     /// Height of the interval, a value of the vertical axis.
     pub y: f64,
@@ -57,24 +57,24 @@ impl Chart {
         [self.rect.x, self.rect.y, self.rect.right(), self.rect.bottom()].map(units)
     }
 
-    /// Horizontal place of a value.
+    /// Horizontal page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn across(&self, x: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS;
         self.x.has_place(x).then(at)
     }
 
-    /// Vertical place of a value.
+    /// Vertical page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn up(&self, y: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS;
         self.y.has_place(y).then(at)
     }
 
-    /// Place of a pair of values, also outside the frame.
+    /// Page point of a data point, also outside the frame; `None` if it is not on the scales.
     pub(crate) fn place(&self, x: f64, y: f64) -> Option<PagePoint> {
         self.reach(x, y).filter(|_| self.has_place(&(x, y)))
     }
 
-    /// Place of a pair of numbers; without a place on a logarithmic axis it is far beyond the lower end.
+    /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end.
     pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
         (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS, f64::from(up) / UNITS))

@@ -1,4 +1,4 @@
-//! Key of a figure: samples with their names, always outside the data.
+//! Legend of a figure: symbols with their names, always outside the data.
 
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
@@ -10,7 +10,7 @@ use crate::lines::wrap;
 use crate::palette::{CurveOrigin, Dash, INK, Look};
 use crate::theme::Theme;
 
-/// Sample before a name.
+/// Symbol of a legend entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum KeySample {
     Nothing,
@@ -32,7 +32,7 @@ pub(crate) fn outline_stroke(dash: Dash, theme: &Theme) -> Stroke {
     Stroke { dash, ..Stroke::solid(INK, 1.4 * theme.line) }
 }
 
-/// Sample and its name.
+/// Entry of a legend: symbol and name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct KeyEntry {
     pub sample: KeySample,

@@ -115,7 +115,7 @@ impl PrimeSwayYaw {
 
 impl PrimeIndices {
     /// Indices in seconds of a ship of this length at this speed: K = K' U/L, T = T' L/U.
-    pub fn at(&self, particulars: Particulars) -> SecondOrderIndices {
+    pub fn to_dimensional(&self, particulars: Particulars) -> SecondOrderIndices {
         let unit = particulars.length / particulars.speed;
         SecondOrderIndices { K: self.K / unit, T1: self.T1 * unit, T2: self.T2 * unit, T3: self.T3 * unit }
     }

@@ -49,13 +49,13 @@ impl Particulars {
     /// r' = r L/V, u' = u/V.
     ///
     /// Not finite if length or speed is zero.
-    pub fn prime(self, [seconds, metres]: Dimension) -> f64 {
+    pub fn prime_factor(self, [seconds, metres]: Dimension) -> f64 {
         self.time().powi(-seconds) * self.length.powi(-metres)
     }
 
     /// Factor on a quantity from this ship to a geometrically similar ship, at equal prime value.
     pub fn factor_to(self, other: Self, dimension: Dimension) -> f64 {
-        self.prime(dimension) / other.prime(dimension)
+        self.prime_factor(dimension) / other.prime_factor(dimension)
     }
 }
 
@@ -139,8 +139,8 @@ mod tests {
     #[test]
     fn indices_lose_their_dimension() {
         let yukun = Particulars { length: 105.0, speed: 8.59 };
-        assert!((0.1 * yukun.prime(dimension("1/s")) - 1.222).abs() < 1e-3);
-        assert!((16.3 * yukun.prime(dimension("s")) - 1.3335).abs() < 1e-3);
+        assert!((0.1 * yukun.prime_factor(dimension("1/s")) - 1.222).abs() < 1e-3);
+        assert!((16.3 * yukun.prime_factor(dimension("s")) - 1.3335).abs() < 1e-3);
         let model = Particulars { length: 4.2, speed: 8.59 / 5.0 };
         // Froude scaling: a ship of one twenty-fifth of the length is five times as fast in time.
         assert!((yukun.factor_to(model, dimension("s")) - 0.2).abs() < 1e-12);

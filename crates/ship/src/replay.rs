@@ -25,7 +25,7 @@ pub struct RecordedSignals<'a> {
 
 impl<'a> RecordedSignals<'a> {
     /// Record with a rudder only.
-    pub fn rudder(rudder: &'a Polyline) -> Self {
+    pub fn from_rudder(rudder: &'a Polyline) -> Self {
         Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
     }
 
@@ -37,7 +37,7 @@ impl<'a> RecordedSignals<'a> {
     }
 
     fn measured(&self, t: f64, piece: usize) -> MeasuredChannels {
-        let at = |signal: Option<&Polyline>| signal.map(|signal| signal.at_from(t, piece));
+        let at = |signal: Option<&Polyline>| signal.map(|signal| signal.at_with_hint(t, piece));
         MeasuredChannels {
             speed: at(self.speed),
             sway: at(self.sway),

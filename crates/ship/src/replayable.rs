@@ -36,13 +36,13 @@ impl TimeConstants {
     }
 }
 
-/// Ship whose record can be replayed from any row.
+/// Ship model that can be started at any row of a record with a given heading and yaw rate.
 pub trait Replayable<R: Real = f64>: Dynamics<R> {
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input.
     fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]);
 
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory.
-    fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]);
+    fn reset_motion(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
     /// `true` if a measured channel acts on the ship.
     fn needs(&self, channel: Regressor) -> bool;

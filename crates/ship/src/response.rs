@@ -180,7 +180,7 @@ impl<R: EffectReal> Response<R> {
     }
 
     /// Shortest time constant of base and effects, s.
-    pub fn shortest_time(&self) -> f64 {
+    pub fn min_time_constant(&self) -> f64 {
         self.time_constants().shortest(f64::NEG_INFINITY, f64::INFINITY)
     }
 
@@ -211,7 +211,7 @@ impl<R: EffectReal> Response<R> {
             rudder = R::action(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
-        let mut scale = BaseFactors::none();
+        let mut scale = BaseFactors::unity();
         let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
@@ -257,7 +257,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         let mut pace = TimeConstants::always(values[0].abs().recip());
         for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
             let p = &values[place.parameters()];
-            let (time, span) = (effect.shortest_time(p), effect.fast_span(p));
+            let (time, span) = (effect.min_time_constant(p), effect.fast_span(p));
             pace.add(span, time);
         }
         pace
@@ -283,7 +283,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
 
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory of all effects. The state s of a
     /// second-order response is adjusted so that the yaw acceleration is unchanged.
-    fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
+    fn reset_motion(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);
         if let Some((coupling, s)) = self.coupling {
@@ -366,7 +366,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
 
     /// Fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
     fn largest_step(&self) -> f64 {
-        (self.shortest_time() / 50.0).clamp(1e-3, 0.1)
+        (self.min_time_constant() / 50.0).clamp(1e-3, 0.1)
     }
 }
 

@@ -80,17 +80,17 @@ impl Polyline {
     }
 
     /// Index of the piece that holds `t`: the last point not after it (0 before the first point).
-    pub fn piece(&self, t: f64) -> usize {
+    pub fn piece_index(&self, t: f64) -> usize {
         self.time.partition_point(|&point| point <= t).saturating_sub(1)
     }
 
     /// Value at time `t`.
     pub fn at(&self, t: f64) -> f64 {
-        self.at_from(t, self.piece(t))
+        self.at_with_hint(t, self.piece_index(t))
     }
 
     /// Value at time `t`; the search starts at the piece `hint`, and is O(1) when the hint is near.
-    pub fn at_from(&self, t: f64, hint: usize) -> f64 {
+    pub fn at_with_hint(&self, t: f64, hint: usize) -> f64 {
         let last = self.time.len() - 1;
         let mut piece = hint.min(last);
         while piece < last && self.time[piece + 1] <= t {
@@ -115,10 +115,10 @@ mod tests {
     fn interpolates_and_holds_its_ends() {
         let ramp = Polyline::new(vec![1.0, 3.0, 4.0], vec![0.0, 4.0, 4.0]).expect("valid points");
         for hint in 0..4 {
-            assert_eq!(ramp.at_from(0.0, hint), 0.0);
-            assert_eq!(ramp.at_from(2.0, hint), 2.0);
-            assert_eq!(ramp.at_from(3.0, hint), 4.0);
-            assert_eq!(ramp.at_from(9.0, hint), 4.0);
+            assert_eq!(ramp.at_with_hint(0.0, hint), 0.0);
+            assert_eq!(ramp.at_with_hint(2.0, hint), 2.0);
+            assert_eq!(ramp.at_with_hint(3.0, hint), 4.0);
+            assert_eq!(ramp.at_with_hint(9.0, hint), 4.0);
         }
         assert_eq!(ramp.at(2.5), 3.0);
     }

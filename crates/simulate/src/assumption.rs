@@ -20,7 +20,7 @@ impl Assumption {
     pub const ALL: [Self; 3] = [Self::InstantRudder, Self::PerfectHelmsman, Self::PerfectCompass];
 
     /// `true` if a simulation makes this assumption. A rate set to infinity is intentional and is no assumption.
-    pub fn holds(self, simulation: &Simulation) -> bool {
+    pub fn is_made_by(self, simulation: &Simulation) -> bool {
         let Simulation { manoeuvre, helmsman, gear, sensors, .. } = simulation;
         match self {
             Self::InstantRudder => {

@@ -31,7 +31,7 @@ impl DisplayReading {
 
 /// Heading display in one run.
 #[derive(Debug)]
-pub(crate) struct Display {
+pub(crate) struct HeadingDisplay {
     period: f64,
     next: u64,
     base: f64,
@@ -42,7 +42,7 @@ pub(crate) struct Display {
     log: Vec<DisplayReading>,
 }
 
-impl Display {
+impl HeadingDisplay {
     /// Display with a reading every `period` s; the base course is the noise-free reading at `heading`.
     pub fn new(period: f64, sensors: Sensors, waves: SeaWaves, key: &StreamKey, heading: f64) -> Self {
         let base = quantise(heading + sensors.heading_bias, sensors.heading_quantum);

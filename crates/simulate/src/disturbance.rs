@@ -122,33 +122,33 @@ impl Disturbances {
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
         if let Some(wind) = &self.wind {
-            error::finite("disturbance.wind.moment-deg", wind.moment)?;
-            error::finite("disturbance.wind.from-deg", wind.from)?;
+            error::check_finite("disturbance.wind.moment-deg", wind.moment)?;
+            error::check_finite("disturbance.wind.from-deg", wind.from)?;
             if let Some(speed) = wind.speed {
-                error::not_negative("disturbance.wind.speed-m-s", speed)?;
+                error::check_not_negative("disturbance.wind.speed-m-s", speed)?;
             }
             if let Some(gusting) = &wind.gusting {
-                error::not_negative("disturbance.wind.gusting.sd", gusting.sd)?;
-                error::positive_time("disturbance.wind.gusting.correlation-s", gusting.correlation_time)?;
+                error::check_not_negative("disturbance.wind.gusting.sd", gusting.sd)?;
+                error::check_positive_time("disturbance.wind.gusting.correlation-s", gusting.correlation_time)?;
             }
         }
         if let Some(gusts) = &self.gusts {
-            error::not_negative("disturbance.gusts.sd-deg", gusts.sd)?;
-            error::positive_time("disturbance.gusts.correlation-s", gusts.correlation_time)?;
+            error::check_not_negative("disturbance.gusts.sd-deg", gusts.sd)?;
+            error::check_positive_time("disturbance.gusts.correlation-s", gusts.correlation_time)?;
         }
-        error::finite("disturbance.drift-deg-per-s", self.drift)?;
+        error::check_finite("disturbance.drift-deg-per-s", self.drift)?;
         if let Some(squall) = &self.squall {
-            error::time("disturbance.squall.start-s", squall.start)?;
-            error::positive_time("disturbance.squall.duration-s", squall.duration)?;
-            error::between("disturbance.squall.edge-s", squall.edge, 0.0, 0.5 * squall.duration)?;
-            error::finite("disturbance.squall.moment-deg", squall.moment)?;
+            error::check_time("disturbance.squall.start-s", squall.start)?;
+            error::check_positive_time("disturbance.squall.duration-s", squall.duration)?;
+            error::check_between("disturbance.squall.edge-s", squall.edge, 0.0, 0.5 * squall.duration)?;
+            error::check_finite("disturbance.squall.moment-deg", squall.moment)?;
         }
-        error::not_negative("disturbance.random-walk-deg-per-root-s", self.random_walk)?;
+        error::check_not_negative("disturbance.random-walk-deg-per-root-s", self.random_walk)?;
         if let Some(waves) = &self.waves {
-            error::not_negative("disturbance.waves.sd-deg", waves.sd)?;
-            error::positive("disturbance.waves.frequency-rad-s", waves.frequency)?;
-            error::at_most("disturbance.waves.frequency-rad-s", waves.frequency, MAX_FREQUENCY_RAD_S)?;
-            error::between("disturbance.waves.damping", waves.damping, 0.0, MAX_DAMPING)?;
+            error::check_not_negative("disturbance.waves.sd-deg", waves.sd)?;
+            error::check_positive("disturbance.waves.frequency-rad-s", waves.frequency)?;
+            error::check_at_most("disturbance.waves.frequency-rad-s", waves.frequency, MAX_FREQUENCY_RAD_S)?;
+            error::check_between("disturbance.waves.damping", waves.damping, 0.0, MAX_DAMPING)?;
         }
         Ok(())
     }

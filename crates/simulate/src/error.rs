@@ -214,7 +214,7 @@ fn unit(key: &str) -> f64 {
 }
 
 /// Error that no single value causes; always fails.
-pub(crate) fn refused(key: &'static str, expected: Expected) -> Check {
+pub(crate) fn refuse(key: &'static str, expected: Expected) -> Check {
     Err(SpecificationError { key, value: f64::NAN, expected })
 }
 
@@ -232,43 +232,43 @@ fn check(holds: bool, key: &'static str, value: f64, expected: Expected) -> Chec
     Err(SpecificationError { key, value: value / unit, expected })
 }
 
-pub(crate) fn finite(key: &'static str, value: f64) -> Check {
+pub(crate) fn check_finite(key: &'static str, value: f64) -> Check {
     check(value.is_finite(), key, value, Expected::Finite)
 }
 
-pub(crate) fn positive(key: &'static str, value: f64) -> Check {
+pub(crate) fn check_positive(key: &'static str, value: f64) -> Check {
     check(value.is_finite() && value > 0.0, key, value, Expected::Positive)
 }
 
 /// Check of a count; fails outside the range from 1 to `most`.
-pub(crate) fn count(key: &'static str, value: usize, most: usize) -> Check {
-    between(key, value as f64, 1.0, most as f64)
+pub(crate) fn check_count(key: &'static str, value: usize, most: usize) -> Check {
+    check_between(key, value as f64, 1.0, most as f64)
 }
 
-pub(crate) fn not_negative(key: &'static str, value: f64) -> Check {
+pub(crate) fn check_not_negative(key: &'static str, value: f64) -> Check {
     check(value.is_finite() && value >= 0.0, key, value, Expected::NotNegative)
 }
 
-pub(crate) fn positive_or_infinite(key: &'static str, value: f64) -> Check {
+pub(crate) fn check_positive_or_infinite(key: &'static str, value: f64) -> Check {
     check(value > 0.0, key, value, Expected::PositiveOrInfinite)
 }
 
-pub(crate) fn between(key: &'static str, value: f64, low: f64, high: f64) -> Check {
+pub(crate) fn check_between(key: &'static str, value: f64, low: f64, high: f64) -> Check {
     check(value >= low && value <= high, key, value, Expected::Between(low, high))
 }
 
-pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Check {
+pub(crate) fn check_at_most(key: &'static str, value: f64, limit: f64) -> Check {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
 /// Check of a duration, s; fails if it is negative or longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
-pub(crate) fn time(key: &'static str, value: f64) -> Check {
-    not_negative(key, value)?;
-    at_most(key, value, MAX_TIME_S)
+pub(crate) fn check_time(key: &'static str, value: f64) -> Check {
+    check_not_negative(key, value)?;
+    check_at_most(key, value, MAX_TIME_S)
 }
 
 /// Check of a duration, s; fails if it is not positive or longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).
-pub(crate) fn positive_time(key: &'static str, value: f64) -> Check {
-    positive(key, value)?;
-    at_most(key, value, MAX_TIME_S)
+pub(crate) fn check_positive_time(key: &'static str, value: f64) -> Check {
+    check_positive(key, value)?;
+    check_at_most(key, value, MAX_TIME_S)
 }

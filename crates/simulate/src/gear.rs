@@ -111,11 +111,11 @@ impl SteeringGear {
 
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
-        error::positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
-        error::time("steering-gear.lag-s", self.lag)?;
-        error::time("steering-gear.dead-time-s", self.dead_time)?;
-        error::not_negative("steering-gear.dead-band-deg", self.dead_band)?;
-        error::positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
+        error::check_positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
+        error::check_time("steering-gear.lag-s", self.lag)?;
+        error::check_time("steering-gear.dead-time-s", self.dead_time)?;
+        error::check_not_negative("steering-gear.dead-band-deg", self.dead_band)?;
+        error::check_positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
     }
 
     /// Appends the response to an order that arrives at `start` with the rudder at `from`: segments, the last without

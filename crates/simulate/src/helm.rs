@@ -27,9 +27,9 @@ impl Helmsman {
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
         if let Some(period) = self.reads_display_every {
-            error::between("helmsman.reads-display-every-s", period, MIN_PERIOD_S, MAX_PERIOD_S)?;
+            error::check_between("helmsman.reads-display-every-s", period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         }
-        error::time("helmsman.reaction-time-s", self.reaction_time)
+        error::check_time("helmsman.reaction-time-s", self.reaction_time)
     }
 }
 

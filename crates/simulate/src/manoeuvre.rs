@@ -7,13 +7,13 @@ use crate::limits::MAX_EXECUTES;
 
 /// Check of every value of a manoeuvre; fails with the first invalid value.
 pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
-    let [rudder_key, duration_key] = key_of(manoeuvre);
+    let [rudder_key, duration_key] = scenario_keys(manoeuvre);
     if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
-        error::positive(rudder_key, manoeuvre.max_rudder())?;
+        error::check_positive(rudder_key, manoeuvre.max_rudder())?;
     }
     match manoeuvre {
         Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
-            return error::refused(
+            return error::refuse(
                 "manoeuvre.zig-zag.duration-s",
                 Expected::Other([
                     "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
@@ -23,11 +23,11 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
             );
         }
         Manoeuvre::ZigZag { heading, executes, .. } => {
-            error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
-            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MAX_EXECUTES)?;
+            error::check_positive("manoeuvre.zig-zag.heading-deg", *heading)?;
+            error::check_count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MAX_EXECUTES)?;
         }
         Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
-            return error::refused(
+            return error::refuse(
                 "manoeuvre.turning-circle.heading-change-deg",
                 Expected::Other([
                     "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
@@ -37,7 +37,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
             );
         }
         Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
-            return error::refused(
+            return error::refuse(
                 "manoeuvre.turning-circle",
                 Expected::Other([
                     "nothing ends the turning circle",
@@ -47,23 +47,23 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
             );
         }
         Manoeuvre::TurningCircle { heading_change: Some(angle), .. } => {
-            error::positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;
+            error::check_positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;
         }
-        Manoeuvre::PullOut { hold, .. } => error::positive_time("manoeuvre.pull-out.hold-s", *hold)?,
+        Manoeuvre::PullOut { hold, .. } => error::check_positive_time("manoeuvre.pull-out.hold-s", *hold)?,
         _ => {}
     }
     match manoeuvre {
         Manoeuvre::ZigZag { duration: Some(duration), .. }
         | Manoeuvre::TurningCircle { duration: Some(duration), .. }
         | Manoeuvre::PullOut { duration, .. }
-        | Manoeuvre::Williamson { duration, .. } => error::positive_time(duration_key, *duration),
-        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.duration()),
+        | Manoeuvre::Williamson { duration, .. } => error::check_positive_time(duration_key, *duration),
+        Manoeuvre::Replay { .. } => error::check_positive_time(duration_key, manoeuvre.duration()),
         _ => Ok(()),
     }
 }
 
 /// Scenario keys of the rudder angle and of the duration of a manoeuvre.
-pub(crate) fn key_of(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
+pub(crate) fn scenario_keys(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
     match manoeuvre {
         Manoeuvre::ZigZag { .. } => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
         Manoeuvre::TurningCircle { .. } => {

@@ -1,4 +1,4 @@
-//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`Scene`] contains the
+//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`PerfectReadings`] contains the
 //! readings of perfect instruments; [`with_sensor_errors`] adds the random errors of one record.
 //!
 //! Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265, for bursts of lost rows.
@@ -25,7 +25,7 @@ use crate::wave_path::SeaWaves;
 const INSTANT_TOLERANCE_S: f64 = 1e-9;
 
 /// True run at the instants of the instruments.
-pub(crate) struct View<'a> {
+pub(crate) struct TrueRunView<'a> {
     /// Motion at the instants of the readings.
     pub samples: &'a [Sample],
     /// Deviation of the sampling instants from their stamps, s; empty without jitter.
@@ -44,7 +44,7 @@ pub(crate) struct View<'a> {
 
 /// Readings of perfect instruments, column by column, without waves.
 #[derive(Debug, Clone)]
-pub(crate) struct Scene {
+pub(crate) struct PerfectReadings {
     /// Time stamps of the rows, s.
     stamps: Vec<f64>,
     /// Instants of the readings of moving quantities, s.
@@ -69,9 +69,9 @@ pub(crate) struct WrittenRows {
     pub kept: Option<Vec<bool>>,
 }
 
-impl Scene {
+impl PerfectReadings {
     /// Readings of all instruments in every row; `stamps` in s.
-    pub fn new(stamps: Vec<f64>, view: &View) -> Self {
+    pub fn new(stamps: Vec<f64>, view: &TrueRunView) -> Self {
         let column = |value: fn(&Sample) -> f64| view.samples.iter().map(value).collect::<Vec<f64>>();
         let jitter = |row: usize| view.jitter.get(row).copied().unwrap_or(0.0);
         let rows = || stamps.iter().enumerate();
@@ -103,7 +103,12 @@ impl Scene {
 }
 
 /// Record of a scene with the random errors of `key`.
-pub(crate) fn with_sensor_errors(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &StreamKey) -> WrittenRows {
+pub(crate) fn with_sensor_errors(
+    sensors: &Sensors,
+    scene: &PerfectReadings,
+    waves: SeaWaves,
+    key: &StreamKey,
+) -> WrittenRows {
     let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut rudder = scene.rudder.clone();
     if scene.rudder_is_read {
@@ -130,14 +135,14 @@ pub(crate) fn with_sensor_errors(sensors: &Sensors, scene: &Scene, waves: SeaWav
     channels.insert(Channel::Heading, heading);
     let mut columns = Columns { time: scene.stamps.clone(), channels, unknown: Vec::new() };
     if let Some(kept) = &kept {
-        keep(&mut columns.time, kept);
-        columns.channels.values_mut().for_each(|values| keep(values, kept));
+        retain_flagged(&mut columns.time, kept);
+        columns.channels.values_mut().for_each(|values| retain_flagged(values, kept));
     }
     WrittenRows { columns, kept }
 }
 
-/// Retains the kept rows.
-pub(crate) fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+/// Removes the values of the rows whose flag is `false`.
+pub(crate) fn retain_flagged<T>(values: &mut Vec<T>, kept: &[bool]) {
     let mut rows = kept.iter();
     values.retain(|_| *rows.next().unwrap_or(&false));
 }
@@ -157,13 +162,13 @@ fn quantise_all(column: &mut [f64], quantum: f64) {
 
 fn compass_and_rate(
     sensors: &Sensors,
-    scene: &Scene,
+    scene: &PerfectReadings,
     mut waves: SeaWaves,
     key: &StreamKey,
 ) -> (Vec<f64>, Option<Vec<f64>>) {
     let (mut heading, mut yaw_rate) =
         (scene.gyro.clone(), sensors.has_rate_of_turn_indicator().then(|| scene.yaw_rate.clone()));
-    if !waves.are_none() {
+    if !waves.is_empty() {
         for (row, &instant) in scene.instants.iter().enumerate() {
             let [wave, wave_rate] = waves.at(instant);
             heading[row] += wave;
@@ -225,7 +230,7 @@ fn order_at(executes: &[HelmOrder], first: f64, t: f64) -> f64 {
     if given == 0 { first } else { executes[given - 1].order }
 }
 
-fn wind_channels(view: &View) -> Vec<(Channel, Vec<f64>)> {
+fn wind_channels(view: &TrueRunView) -> Vec<(Channel, Vec<f64>)> {
     let Some((wind, mean)) = view.wind.and_then(|wind| Some((wind, wind.speed?))) else { return Vec::new() };
     let speeds: Vec<f64> = view.samples.iter().map(|sample| gusting_speed(mean, sample.gust)).collect();
     let ship = |sample: &Sample| sample.motion.speed.or(view.particulars.map(|particulars| particulars.speed));

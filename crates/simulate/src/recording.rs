@@ -78,17 +78,17 @@ impl Recording {
 
     /// Check of every value; fails with the first value that is invalid or requires another key.
     pub fn check(&self) -> Check {
-        error::positive("recording.sampling-s", self.period)?;
-        error::between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
+        error::check_positive("recording.sampling-s", self.period)?;
+        error::check_between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         if let Some(duration) = self.duration {
-            error::positive("recording.duration-s", duration)?;
+            error::check_positive("recording.duration-s", duration)?;
         }
         match (self.after_execute, self.offset) {
             (Some(number), offset) => {
-                error::count("recording.after-execute", number, MAX_EXECUTES)?;
-                error::time("recording.offset-s", offset.unwrap_or(0.0))?;
+                error::check_count("recording.after-execute", number, MAX_EXECUTES)?;
+                error::check_time("recording.offset-s", offset.unwrap_or(0.0))?;
             }
-            (None, Some(_)) => error::refused(
+            (None, Some(_)) => error::refuse(
                 "recording.offset-s",
                 Expected::Other([
                     "`recording.offset-s` counts from an execute, and `after-execute` is missing",
@@ -101,9 +101,9 @@ impl Recording {
         match (self.rudder, self.assumed_rudder_rate) {
             (RudderSource::Feedback, None) => Ok(()),
             (RudderSource::Orders, Some(rate)) => {
-                error::positive_or_infinite("recording.assumed-rudder-rate-deg-s", rate)
+                error::check_positive_or_infinite("recording.assumed-rudder-rate-deg-s", rate)
             }
-            (RudderSource::Orders, None) => error::refused(
+            (RudderSource::Orders, None) => error::refuse(
                 "recording.rudder",
                 Expected::Other([
                     "`recording.rudder` is \"orders\", and the assumed rudder rate is missing",
@@ -111,7 +111,7 @@ impl Recording {
                     "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
                 ]),
             ),
-            (RudderSource::Feedback, Some(_)) => error::refused(
+            (RudderSource::Feedback, Some(_)) => error::refuse(
                 "recording.assumed-rudder-rate-deg-s",
                 Expected::Other([
                     "`recording` has an assumed rate, but the rudder is recorded",

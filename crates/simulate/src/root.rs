@@ -6,7 +6,7 @@
 /// shorter than `tolerance` or f is zero, and returns the end with the smaller |f|.
 ///
 /// Source: Chandrupatla (1997), Advances in Engineering Software 28:145-149.
-pub(crate) fn bracketed(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), tolerance: f64) -> f64 {
+pub(crate) fn bracketed_root(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), tolerance: f64) -> f64 {
     // `a` is the newest point, `b` the opposite end of the bracket, `c` the discarded point.
     let ((mut a, mut fa), (mut b, mut fb)) = (a, b);
     let mut share = 0.5_f64;
@@ -58,7 +58,7 @@ mod tests {
                 evaluations += 1;
                 f(x)
             };
-            let located = bracketed(counted, (low, f(low)), (high, f(high)), 1e-13);
+            let located = bracketed_root(counted, (low, f(low)), (high, f(high)), 1e-13);
             assert!((located - root).abs() < 2e-13, "{located} {root}");
             assert!(evaluations < 60, "{evaluations}");
         }
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn a_root_at_an_end_is_found() {
-        assert_eq!(bracketed(|x| x, (0.0, 0.0), (1.0, 1.0), 1e-13), 0.0);
-        assert_eq!(bracketed(|x| x - 1.0, (0.0, -1.0), (1.0, 0.0), 1e-13), 1.0);
+        assert_eq!(bracketed_root(|x| x, (0.0, 0.0), (1.0, 1.0), 1e-13), 0.0);
+        assert_eq!(bracketed_root(|x| x - 1.0, (0.0, -1.0), (1.0, 0.0), 1e-13), 1.0);
     }
 }

@@ -2,14 +2,14 @@
 //! reading), and events are never rounded to a step. Recording is controlled by the caller, so a run can advance to an
 //! execute and be recorded from that execute on.
 
-use crate::display::{Display, DisplayReading};
+use crate::display::{DisplayReading, HeadingDisplay};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder};
 use trial::manoeuvre::Trigger;
 
 use crate::limits::{MAX_EXECUTES, MAX_STEPS};
-use crate::propagate::{AwaitedHeading, Limits, Propagator, has_diverged};
+use crate::propagate::{AwaitedHeading, Propagator, RowLimits, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
 
@@ -34,7 +34,7 @@ pub(crate) struct Run<'a, P> {
     path: RudderPath,
     gear: &'a SteeringGear,
     helm: Helm<'a>,
-    display: Option<Display>,
+    display: Option<HeadingDisplay>,
     base: f64,
     executes: Vec<HelmOrder>,
     longest_wait: f64,
@@ -57,7 +57,7 @@ impl<'a, P: Propagator> Run<'a, P> {
         path: RudderPath,
         gear: &'a SteeringGear,
         helm: Helm<'a>,
-        display: Option<Display>,
+        display: Option<HeadingDisplay>,
         longest_wait: f64,
     ) -> Self {
         let base = propagator.state().heading;
@@ -145,7 +145,7 @@ impl<'a, P: Propagator> Run<'a, P> {
     }
 
     /// Records the rows before the next possible event.
-    pub fn coast(&mut self, rows: &mut Sampler) {
+    pub fn record_rows(&mut self, rows: &mut Sampler) {
         // A display has instants of reading between rows.
         if self.display.is_some() {
             return;
@@ -157,8 +157,8 @@ impl<'a, P: Propagator> Run<'a, P> {
             }
             Trigger::Never => (f64::INFINITY, None),
         };
-        let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base };
-        self.propagator.coast(&self.path, &limits, rows);
+        let limits = RowLimits { before: time.min(self.helm.end()), watch, base: self.base };
+        self.propagator.record_rows(&self.path, &limits, rows);
     }
 
     /// Latest time, s, at which an awaited heading must be reached.
@@ -173,7 +173,7 @@ impl<'a, P: Propagator> Run<'a, P> {
 
     /// Ends the run and returns its result.
     pub fn finish(self) -> RunResult {
-        let readings = self.display.map(Display::into_log).unwrap_or_default();
+        let readings = self.display.map(HeadingDisplay::into_log).unwrap_or_default();
         RunResult { path: self.path, executes: self.executes, readings }
     }
 

@@ -113,29 +113,29 @@ impl Sensors {
 
     /// Check of every value; fails with the first value that is invalid or requires another key.
     pub fn check(&self) -> Check {
-        error::not_negative("sensor.heading-noise-deg", self.heading_noise)?;
-        error::not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
+        error::check_not_negative("sensor.heading-noise-deg", self.heading_noise)?;
+        error::check_not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
         if self.heading_lag != 0.0 {
-            error::between("sensor.heading-lag-s", self.heading_lag, MIN_LAG_S, MAX_LAG_S)?;
+            error::check_between("sensor.heading-lag-s", self.heading_lag, MIN_LAG_S, MAX_LAG_S)?;
         }
-        error::finite("sensor.heading-bias-deg", self.heading_bias)?;
+        error::check_finite("sensor.heading-bias-deg", self.heading_bias)?;
         if let Some(wander) = &self.heading_wander {
-            error::not_negative("sensor.heading-wander.sd-deg", wander.sd)?;
-            error::positive_time("sensor.heading-wander.correlation-s", wander.correlation_time)?;
+            error::check_not_negative("sensor.heading-wander.sd-deg", wander.sd)?;
+            error::check_positive_time("sensor.heading-wander.correlation-s", wander.correlation_time)?;
         }
         if let Some(spikes) = &self.heading_spikes {
-            error::between("sensor.heading-spikes.probability", spikes.probability, 0.0, 1.0)?;
-            error::positive("sensor.heading-spikes.size-deg", spikes.size)?;
-            error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(MAX_SPIKE_DEG))?;
+            error::check_between("sensor.heading-spikes.probability", spikes.probability, 0.0, 1.0)?;
+            error::check_positive("sensor.heading-spikes.size-deg", spikes.size)?;
+            error::check_at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(MAX_SPIKE_DEG))?;
         }
-        error::count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MAX_ROWS)?;
-        error::not_negative("sensor.yaw-rate-noise-deg-s", self.yaw_rate_noise.unwrap_or(0.0))?;
-        error::finite("sensor.yaw-rate-bias-deg-s", self.yaw_rate_bias.unwrap_or(0.0))?;
-        error::finite("sensor.yaw-rate-scale-error", self.yaw_rate_scale_error.unwrap_or(0.0))?;
-        error::not_negative("sensor.rudder-noise-deg", self.rudder_noise)?;
-        error::not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
-        error::time("sensor.jitter-s", self.jitter)?;
-        error::between("sensor.heading-delay-s", self.heading_delay, -MAX_TIME_S, MAX_TIME_S)?;
+        error::check_count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MAX_ROWS)?;
+        error::check_not_negative("sensor.yaw-rate-noise-deg-s", self.yaw_rate_noise.unwrap_or(0.0))?;
+        error::check_finite("sensor.yaw-rate-bias-deg-s", self.yaw_rate_bias.unwrap_or(0.0))?;
+        error::check_finite("sensor.yaw-rate-scale-error", self.yaw_rate_scale_error.unwrap_or(0.0))?;
+        error::check_not_negative("sensor.rudder-noise-deg", self.rudder_noise)?;
+        error::check_not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
+        error::check_time("sensor.jitter-s", self.jitter)?;
+        error::check_between("sensor.heading-delay-s", self.heading_delay, -MAX_TIME_S, MAX_TIME_S)?;
         self.drop_out.check()
     }
 
@@ -157,14 +157,14 @@ impl Sensors {
 
 impl DropOut {
     fn check(&self) -> Check {
-        error::between("sensor.drop-out.probability", self.probability, 0.0, 1.0)?;
+        error::check_between("sensor.drop-out.probability", self.probability, 0.0, 1.0)?;
         match (self.burst_probability, self.burst_mean_rows) {
             (Some(probability), Some(mean_rows)) => {
-                error::between("sensor.drop-out.burst-probability", probability, 0.0, 1.0)?;
-                error::between("sensor.drop-out.burst-mean-rows", mean_rows, 1.0, 1e9)
+                error::check_between("sensor.drop-out.burst-probability", probability, 0.0, 1.0)?;
+                error::check_between("sensor.drop-out.burst-mean-rows", mean_rows, 1.0, 1e9)
             }
             (None, None) => Ok(()),
-            _ => error::refused(
+            _ => error::refuse(
                 "sensor.drop-out",
                 Expected::Other([
                     "`sensor.drop-out` has only one of `burst-probability` and `burst-mean-rows`",

@@ -11,14 +11,14 @@ use trial::degrees::Degrees;
 use trial::manoeuvre::Manoeuvre;
 use trial::{Conditions, Origin, Trial};
 
-use crate::display::Display;
+use crate::display::HeadingDisplay;
 use crate::disturbance::Disturbances;
 use crate::error::{self, Check, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder, Helmsman};
 use crate::limits::MAX_ROWS;
-use crate::manoeuvre::{check_manoeuvre, key_of};
-use crate::measure::{self, Scene, View};
+use crate::manoeuvre::{check_manoeuvre, scenario_keys};
+use crate::measure::{self, PerfectReadings, TrueRunView};
 use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
 use crate::recording::{Recording, RudderSource, Sampler};
 use crate::run::{Run, RunEvent, RunResult};
@@ -27,7 +27,7 @@ use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
 use crate::wave_path::SeaWaves;
-use crate::weather::{GRID, Weather};
+use crate::weather::{DEFAULT_CELL_S, Weather};
 
 /// Approach of the ship to the first execute.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -51,10 +51,10 @@ pub struct BeforeExecute {
 impl BeforeExecute {
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
-        error::finite("approach.heading-deg", self.heading)?;
-        error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
-        error::finite("approach.rudder-deg", self.rudder)?;
-        error::time("approach.lead-in-s", self.lead_in)
+        error::check_finite("approach.heading-deg", self.heading)?;
+        error::check_finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
+        error::check_finite("approach.rudder-deg", self.rudder)?;
+        error::check_time("approach.lead-in-s", self.lead_in)
     }
 }
 
@@ -138,7 +138,7 @@ pub struct Simulated {
 /// True run without the random errors of the record.
 #[derive(Debug, Clone)]
 struct TrueRun {
-    scene: Scene,
+    scene: PerfectReadings,
     truth: Arc<Truth>,
 }
 
@@ -192,7 +192,7 @@ impl Simulation {
             sensors: Sensors::default(),
             recording: Recording::default(),
             solver: Solver::default(),
-            weather_grid: GRID,
+            weather_grid: DEFAULT_CELL_S,
             longest_wait: MAX_WAIT_S,
         }
     }
@@ -206,26 +206,32 @@ impl Simulation {
         self.sensors.check()?;
         self.recording.check()?;
         self.approach.check()?;
-        error::positive_time("longest_wait", self.longest_wait)?;
-        error::between("weather_grid", self.weather_grid, MIN_STEP_S, MAX_STEP_S)?;
+        error::check_positive_time("longest_wait", self.longest_wait)?;
+        error::check_between("weather_grid", self.weather_grid, MIN_STEP_S, MAX_STEP_S)?;
         if let Solver::RungeKutta(step) = self.solver {
-            error::between("solver.step", step, MIN_STEP_S, MAX_STEP_S)?;
+            error::check_between("solver.step", step, MIN_STEP_S, MAX_STEP_S)?;
         }
-        error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.largest_rudder())?;
+        error::check_at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.largest_rudder())?;
         let is_replay = matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         if !is_replay {
-            error::at_most(key_of(&self.manoeuvre)[0], self.manoeuvre.max_rudder(), self.gear.largest_rudder())?;
+            error::check_at_most(
+                scenario_keys(&self.manoeuvre)[0],
+                self.manoeuvre.max_rudder(),
+                self.gear.largest_rudder(),
+            )?;
         }
         // A negative dead time belongs to a record with a late clock, not to a ship.
-        error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
+        error::check_time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
         let end = self.approach.lead_in + self.manoeuvre.duration();
         match (&self.manoeuvre, self.recording.duration) {
             (_, None) if end.is_finite() => {
-                error::at_most(key_of(&self.manoeuvre)[1], end, self.recording.max_duration())?;
+                error::check_at_most(scenario_keys(&self.manoeuvre)[1], end, self.recording.max_duration())?;
             }
-            (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.max_duration())?,
+            (_, Some(duration)) => {
+                error::check_at_most("recording.duration-s", duration, self.recording.max_duration())?
+            }
             (Manoeuvre::ZigZag { executes: None, .. }, None) => {
-                error::refused("recording.duration-s", Expected::Duration)?;
+                error::refuse("recording.duration-s", Expected::Duration)?;
             }
             _ => {}
         }
@@ -240,7 +246,7 @@ impl Simulation {
             });
         }
         if is_replay && self.recording.rudder == RudderSource::Orders {
-            return error::refused(
+            return error::refuse(
                 "recording.rudder",
                 Expected::Value([
                     "`recording.rudder` is \"orders\", but a replayed rudder has no orders",
@@ -308,7 +314,7 @@ impl Simulation {
         let helm = Helm::new(&self.manoeuvre, &self.helmsman, lead_in);
         let display = self.helmsman.reads_display_every.map(|period| {
             let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
-            Display::new(period, self.sensors, waves, key, heading)
+            HeadingDisplay::new(period, self.sensors, waves, key, heading)
         });
         Run::new(propagator, path, &self.gear, helm, display, self.longest_wait)
     }
@@ -327,7 +333,7 @@ impl Simulation {
         }
         loop {
             if instruments.is_none() {
-                run.coast(&mut rows);
+                run.record_rows(&mut rows);
             }
             let next = instruments.as_ref().map_or(rows.next(), |sampler| sampler.next().min(rows.next()));
             if next == f64::INFINITY {
@@ -370,7 +376,7 @@ impl Simulation {
         }
         let truth = truth(&rows.samples, run);
         let assumed = self.assumed_path(&run.executes);
-        let view = View {
+        let view = TrueRunView {
             samples: instruments.as_ref().map_or(&rows.samples, |sampler| &sampler.samples),
             jitter: instruments.as_ref().map_or(&[], |sampler| &sampler.jitter),
             run,
@@ -379,7 +385,7 @@ impl Simulation {
             wind: self.disturbances.wind,
             particulars: self.vessel.particulars(),
         };
-        TrueRun { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
+        TrueRun { scene: PerfectReadings::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
     /// Record of a run with the random errors of `key`.
@@ -410,7 +416,7 @@ impl Truth {
         let Self { time, heading, yaw_rate, yaw_acceleration, rudder, disturbance, speed, executes: _ } =
             &mut kept_rows;
         let columns = [time, heading, yaw_rate, yaw_acceleration, rudder, disturbance];
-        columns.into_iter().chain(speed).for_each(|column| measure::keep(column, kept));
+        columns.into_iter().chain(speed).for_each(|column| measure::retain_flagged(column, kept));
         kept_rows
     }
 }

@@ -70,7 +70,7 @@ impl SeaWaves {
     }
 
     /// `true` if there are no waves.
-    pub fn are_none(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.paths.is_empty()
     }
 

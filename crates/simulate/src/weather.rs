@@ -9,7 +9,7 @@ use crate::stream::{Purpose, StreamKey, normal};
 
 /// Default cell width, s: short against every correlation time of weather and every time constant of a
 /// ship.
-pub(crate) const GRID: f64 = 0.1;
+pub(crate) const DEFAULT_CELL_S: f64 = 0.1;
 
 /// Weather within one cell, linear in time.
 #[derive(Debug, Clone, Copy)]
@@ -150,7 +150,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn path(disturbances: &Disturbances, cells: usize, replicate: u64) -> Vec<[f64; 2]> {
-        let mut weather = Weather::new(disturbances, GRID, &StreamKey { seed: 11, cell: 0, replicate });
+        let mut weather = Weather::new(disturbances, DEFAULT_CELL_S, &StreamKey { seed: 11, cell: 0, replicate });
         (0..cells)
             .map(|_| {
                 let cell = *weather.cell();
@@ -204,7 +204,7 @@ mod tests {
             ..walk
         };
         for (k, (alone, together)) in path(&walk, 50, 3).iter().zip(path(&both, 50, 3)).enumerate() {
-            assert_relative_eq!(alone[0] + drift * k as f64 * GRID, together[0], epsilon = 1e-15);
+            assert_relative_eq!(alone[0] + drift * k as f64 * DEFAULT_CELL_S, together[0], epsilon = 1e-15);
             assert!(alone[1] == 1.0 && together[1] != 1.0);
         }
     }

@@ -20,7 +20,7 @@ impl Formulas {
 
 /// Effect read from `NAME = FORMULA`.
 pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
-    ship::effects::formula(line).map_err(|error| error.to_string())
+    ship::effects::parse_formula(line).map_err(|error| error.to_string())
 }
 
 /// Effects read from a file. Fails with the line of the first invalid formula.
@@ -30,7 +30,7 @@ pub fn formulas(path: &str) -> Result<Formulas, String> {
     let file: EffectFile = toml::from_str(&text).map_err(|error| error.to_string().trim_end().to_owned())?;
     let read = |line_text: &Spanned<String>| {
         let line = || text[..line_text.span().start].matches('\n').count() + 1;
-        ship::effects::formula(line_text.get_ref()).map_err(|error| format!("line {}: {error}", line()))
+        ship::effects::parse_formula(line_text.get_ref()).map_err(|error| format!("line {}: {error}", line()))
     };
     file.effects.iter().map(read).collect::<Result<_, _>>().map(Formulas)
 }

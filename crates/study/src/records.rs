@@ -70,7 +70,7 @@ pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &m
     }
     // Folders and figures are named after the record.
     name::of_file(display_path(path))?;
-    let sidecar = Sidecar::describing(path, columns);
+    let sidecar = Sidecar::path_for(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
     warnings.extend(source(display_path(path)).of(std::mem::take(&mut log.warnings)));
     Ok(log)
@@ -138,7 +138,7 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
 pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
-        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
+        log.into_interval(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
         log.chosen(options.trial).map_err(refused)?
     };

@@ -20,7 +20,7 @@ pub struct RescaledRecords {
 ///
 /// Fails if the scales differ and a record does not declare length and speed.
 pub fn together(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
-    let scales = Scales::among(trials.iter().chain(held_out)).map_err(Failure::input)?;
+    let scales = Scales::from_trials(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
         Some(scales) => scales.to_first_scale(records.to_vec()),
         None => records.to_vec(),

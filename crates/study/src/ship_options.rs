@@ -69,14 +69,15 @@ pub struct TrialOptions {
 const DRAUGHT: [f64; 2] = [0.01, 50.0];
 
 fn day(text: &str) -> Result<String, String> {
-    clock::day(text).ok_or_else(|| String::from("expected a day of the calendar, such as 2026-11-20"))
+    clock::parse_date(text).ok_or_else(|| String::from("expected a day of the calendar, such as 2026-11-20"))
 }
 
 impl TrialOptions {
     /// Particulars of the options, completed by those of a record.
     pub fn or(&self, of_record: &TrialParticulars) -> TrialParticulars {
         let Self { ship_name, date, draught_fore_m, draught_aft_m } = self.clone();
-        TrialParticulars { ship_name, date, draught_fore: draught_fore_m, draught_aft: draught_aft_m }.or(of_record)
+        TrialParticulars { ship_name, date, draught_fore: draught_fore_m, draught_aft: draught_aft_m }
+            .with_missing_from(of_record)
     }
 }
 

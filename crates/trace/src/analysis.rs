@@ -17,7 +17,7 @@ use trial::{Channel, Trial};
 use crate::average::{Average, AveragedModel};
 use crate::base::Base;
 use crate::candidates;
-use crate::comparison::{RecordComparison, ReplayResult, base_result, starts};
+use crate::comparison::{RecordComparison, ReplayResult, initial_states, replay_base};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, FullModel};
@@ -27,7 +27,7 @@ use crate::location::locate;
 use crate::model::Term;
 use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
-use crate::remainder::{Innovations, Remainder, innovations, squares};
+use crate::remainder::{Innovations, Remainder, innovations, sums_of_squares};
 use crate::replay_errors::ReplayDepth;
 use crate::report;
 use crate::rudder::{self, RudderError};
@@ -71,17 +71,20 @@ const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRat
 fn of_heading(trials: &[Trial]) -> Vec<Trial> {
     let is_more = |channel: &Channel| !COMMON.contains(channel);
     let reduced = |trial: &Trial| {
-        trial.clone().without(&trial.channels().map(|(channel, _)| channel).filter(is_more).collect::<Vec<Channel>>())
+        trial
+            .clone()
+            .without_channels(&trial.channels().map(|(channel, _)| channel).filter(is_more).collect::<Vec<Channel>>())
     };
     trials.iter().map(reduced).collect()
 }
 
 /// Records without compass outliers, and the times (s) of the removed readings.
 ///
-/// Outliers are found by [`maximum_likelihood::spikes`].
+/// Outliers are found by [`maximum_likelihood::spike_times`].
 pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     let spikes = |trial: &Trial| {
-        maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
+        maximum_likelihood::spike_times(std::slice::from_ref(trial))
+            .map_or_else(|_| Vec::new(), |mut all| all.remove(0))
     };
     let readings: Vec<Vec<f64>> = trials.par_iter().map(spikes).collect();
     let kept = match readings.iter().all(Vec::is_empty) {
@@ -156,9 +159,9 @@ fn analyse(
     settings: &Settings,
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
-    let (trials, rudder_errors) = rudder::without_noise(trials);
+    let (trials, rudder_errors) = rudder::estimate_rudders(trials);
     let (trials, outliers) = without_spikes(&trials);
-    let validation = without_spikes(&rudder::without_noise(validation).0).0.into_owned();
+    let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = Base::fit(&trials)?;
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
@@ -224,7 +227,7 @@ fn weighed(
     let choose = |kinds: &[CorrelatedNoise]| {
         let fulls = full::fit(problem, base, candidates, has_waves, kinds);
         let fulls = rudder::with_rudder_noise(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
-        structures::choose(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
+        structures::weigh_structures(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
     };
     let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
     let best = choose(&kinds);
@@ -264,10 +267,10 @@ fn compare_fitted(
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::whole(trial);
-        let before = base_result(trial, &record, response, depth)?;
+        let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
-        let mut after = averaged.replay_on(trial, &record, &starts(trial, response), depth)?;
+        let mut after = averaged.replay_on(trial, &record, &initial_states(trial, response), depth)?;
         if is_base {
             // No effect is added: keep the closed-form replay of the base.
             let band = after.band;
@@ -284,7 +287,7 @@ fn compare_fitted(
 /// Replaces the replay of the average by the replay of the base if the average has the larger heading error, as under a
 /// random moment that no replay can reproduce. `true` if it was replaced.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
-    let [before, after] = squares(all);
+    let [before, after] = sums_of_squares(all);
     let keeps_base = after > before;
     if keeps_base {
         for comparison in all {
@@ -317,14 +320,14 @@ impl Analysis {
 
     /// Shape analysis of the residual of the most probable structure; `None` if its covariance is singular.
     pub fn shapes(&self) -> Option<ShapeAnalysis> {
-        shape::analysis(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
+        shape::analyse_shapes(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
 
     /// Members of the structure average for predictions, the most probable first.
     pub fn plausible_structures(&self) -> Vec<PlausibleStructure> {
         let member = |(weight, fit): (f64, &StructureFit)| {
             let (structure, theta) = fit.structure.for_record(None, &fit.theta);
-            let fitted = structure.fitted();
+            let fitted = structure.fitted_indices();
             let covariance = fit.kept_covariance(None).map(|kept| {
                 // A parameter given relative to another one is converted to its physical value.
                 let all = structure.physical_covariance(&structure.expanded_covariance(&kept));

@@ -195,7 +195,7 @@ fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
 /// A formula is a candidate like a listed effect: it is named, with its text, if it acts, and otherwise not.
 #[test]
 fn a_formula_is_named_where_it_acts() {
-    let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
+    let bank = Formula::parse("bank = c * tanh(k * psi)").expect("a formula");
     let selection = Selection { formulas: vec![Arc::clone(&bank)], ..Selection::default() };
     let settings = Settings { selection, ..Settings::default() };
     let banked = record(&ship(vec![(bank, vec![-0.05, 8.0])]), TrialPlan::default());
@@ -265,7 +265,7 @@ fn nothing_is_named_for_noise_of_the_rudder() {
 /// A tug on one side is not named wind: the shape replaces the named effect.
 #[test]
 fn a_name_falls_where_a_shape_does_better() {
-    let tug: Arc<dyn Effect> = Formula::read("tug = c * max(psi, 0)").expect("a formula");
+    let tug: Arc<dyn Effect> = Formula::parse("tug = c * max(psi, 0)").expect("a formula");
     let plan = TrialPlan { noise_deg: 0.1, seed: 5, ..TrialPlan::default() };
     let document = traced(&[record(&ship(vec![(tug, vec![-0.3])]), plan)]).document;
     assert_eq!((document.verdict, document.effects.len()), (Verdict::Located, 0), "{}", document.headline);

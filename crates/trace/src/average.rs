@@ -8,13 +8,13 @@ use ship::ReplayedShip;
 
 use crate::fit::StructureFit;
 use crate::record::PreparedRecord;
-use crate::replay_errors::{ReplayDepth, WindowError, full, restarted, root_mean_square};
+use crate::replay_errors::{ReplayDepth, WindowError, full_replay, restarted_headings, root_mean_square};
 use crate::weights::NoiseLaw;
 
 /// Maximum ratio of the error of a replay to the median error; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Ships with their weights.
+/// Model average: ships with their posterior weights.
 #[derive(Debug)]
 pub struct Average {
     /// Weights, which sum to one, and ships.
@@ -54,7 +54,7 @@ impl AverageReplay {
 }
 
 impl AveragedModel<'_> {
-    /// Weight of one hull: the total weight of the structures.
+    /// Weight of every hull in the average; all structures together have the same weight.
     pub fn hull_weight(&self) -> f64 {
         1.0 / (1 + self.hulls.len()) as f64
     }
@@ -70,7 +70,7 @@ impl AveragedModel<'_> {
         let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
             Box::new(fit.structure.response(self.fitted_record, &fit.theta))
         };
-        let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.ship::<f64>()) };
+        let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.scaled_hull::<f64>()) };
         let ships = self.members.iter().map(structure).chain(self.hulls.iter().map(hull));
         Average { members: self.weights().zip(ships).collect() }
     }
@@ -83,7 +83,7 @@ impl Average {
         let replays: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
             .iter()
-            .filter_map(|(weight, ship)| Some((*weight, ship.as_ref(), full(ship.as_ref(), record, starts)?)))
+            .filter_map(|(weight, ship)| Some((*weight, ship.as_ref(), full_replay(ship.as_ref(), record, starts)?)))
             .collect();
         let weights: Vec<f64> = replays.iter().map(|(weight, ..)| *weight).collect();
         let errors: Vec<f64> = replays.iter().map(|(.., replay)| replay.rms()).collect();
@@ -95,8 +95,10 @@ impl Average {
         let [heading, yaw_rate] = [combined(|replay| &replay.heading), combined(|replay| &replay.yaw_rate)];
         let residual = record.heading.iter().zip(&heading).map(|(measured, replayed)| measured - replayed).collect();
         let within = |length: f64| {
-            let all: Option<Vec<Vec<f64>>> =
-                replays.iter().map(|(_, ship, replay)| restarted(*ship, record, replay.initial(), length)).collect();
+            let all: Option<Vec<Vec<f64>>> = replays
+                .iter()
+                .map(|(_, ship, replay)| restarted_headings(*ship, record, replay.initial(), length))
+                .collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let residual = record.heading.iter().zip(combine(&columns)).map(|(measured, mean)| measured - mean);

@@ -105,7 +105,7 @@ impl ResidualSampler {
         variance: f64,
     ) -> Option<Self> {
         let (structure, theta) = fit.structure.for_record(after.fitted_record, &fit.theta);
-        let linear = problem.linear(&structure, &theta, &[initial]);
+        let linear = problem.linearise(&structure, &theta, &[initial]);
         let rows = linear.blocks[0].residual.len();
         let count = linear.unknowns - 2;
         let column = |unknown: usize| {
@@ -133,7 +133,7 @@ impl ResidualSampler {
                 }
                 ParameterErrors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
             }
-            None => ParameterErrors::Independent(root(&covariance)),
+            None => ParameterErrors::Independent(covariance_root(&covariance)),
         };
         let full = record.full_readings as f64;
         Some(Self {
@@ -174,7 +174,7 @@ impl ResidualSampler {
 }
 
 /// Matrix root R of a covariance that may be singular: R Rᵀ = covariance.
-pub fn root(covariance: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn covariance_root(covariance: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = covariance.clone().symmetric_eigen();
     let scale = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
     eigen.eigenvectors * DMatrix::from_diagonal(&scale)

@@ -14,13 +14,13 @@ use crate::selection::Selection;
 const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
 /// Prior probability of an effect.
-pub const PROBABILITY: f64 = 0.1;
+pub const PRIOR_PROBABILITY: f64 = 0.1;
 
 /// Prior probability of an effect of the measured speed or sway, which occurs for every hull.
-pub const PROBABILITY_OF_MOTION: f64 = 0.5;
+pub const PRIOR_PROBABILITY_OF_MOTION: f64 = 0.5;
 
 /// Prior probability of a moment that depends on time, in one record: such a moment resembles noise.
-pub const PROBABILITY_OF_TIME: f64 = 0.001;
+pub const PRIOR_PROBABILITY_OF_TIME: f64 = 0.001;
 
 /// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2).
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
@@ -56,14 +56,14 @@ pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, re
 
 /// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
 /// declares a calm, or all records if it would act in all of them.
-pub fn is_becalmed(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
+pub fn is_excluded_by_calm(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_environmental() && !selection.requires(effect.id()) && is_calm()
 }
 
 /// `true` if waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
-    selection.allows(WaveYaw.id()) && !is_becalmed(&WaveYaw, None, trials, selection)
+    selection.allows(WaveYaw.id()) && !is_excluded_by_calm(&WaveYaw, None, trials, selection)
 }
 
 /// Candidate terms that these records allow. Waves are not among them, because they are a noise law. A moment that
@@ -75,7 +75,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],
         };
-        for only in places.into_iter().filter(|only| !is_becalmed(effect.as_ref(), *only, trials, selection)) {
+        for only in places.into_iter().filter(|only| !is_excluded_by_calm(effect.as_ref(), *only, trials, selection)) {
             let about = record_scales(records, trials, time, &records[only.unwrap_or(0)]);
             let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
             candidates.push(Term { effect, only, priors, log_odds: 0.0 });
@@ -86,9 +86,9 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
     };
     let weighted = |term: &Term| {
         let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
-            (true, _) => PROBABILITY_OF_TIME,
-            (false, Some(Regressor::Speed | Regressor::Sway)) => PROBABILITY_OF_MOTION,
-            (false, _) => PROBABILITY,
+            (true, _) => PRIOR_PROBABILITY_OF_TIME,
+            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_OF_MOTION,
+            (false, _) => PRIOR_PROBABILITY,
         };
         let probability = prior / forms(term.effect.id(), term.only);
         Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })

@@ -4,7 +4,7 @@
 //! separately.
 
 use document::trace::{ErrorsEntry, HorizonEntry};
-use estimation::statistics::wilson;
+use estimation::statistics::wilson_interval;
 use identify::replay::{Replay, replay};
 use rayon::prelude::*;
 use ship::angle::to_deg;
@@ -60,7 +60,7 @@ impl BandCoverage {
         let square: f64 = off.iter().map(|off| off * off).sum();
         let correlation = if square > 0.0 { (cross / square).max(0.0) } else { 0.0 };
         let independent = total as f64 * (1.0 - correlation) / (1.0 + correlation);
-        Some(Self { inside: count, total, interval: wilson(share, independent, QUANTILE_99) })
+        Some(Self { inside: count, total, interval: wilson_interval(share, independent, QUANTILE_99) })
     }
 
     /// Share of the headings inside the band.
@@ -91,7 +91,7 @@ impl ReplayResult {
 impl From<&ReplayResult> for ErrorsEntry {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
-        let horizon = HORIZONS.map(|length| (format!("{length:.0}"), errors.within(length).map(to_deg)));
+        let horizon = HORIZONS.map(|length| (format!("{length:.0}"), errors.restarted_rms(length).map(to_deg)));
         Self {
             heading_rmse_deg: to_deg(errors.heading),
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
@@ -132,7 +132,7 @@ impl RecordComparison {
 }
 
 /// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, of the base, as measured.
-pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
+pub fn initial_states(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
     let mut starts = vec![[heading, 0.0]];
@@ -142,7 +142,7 @@ pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
 }
 
 /// Replay of the base on a record, in closed form, which holds for either sign of T; fails if it is not finite.
-pub fn base_result(
+pub fn replay_base(
     trial: &Trial,
     record: &PreparedRecord,
     base: &FirstOrder,
@@ -161,11 +161,11 @@ pub fn base_result(
 impl AveragedModel<'_> {
     /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
     /// Fails if no replay is finite.
-    pub fn compared(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
+    pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::whole(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
-        let mut before = base_result(trial, &record, base, depth)?;
-        let mut starts = starts(trial, base);
+        let mut before = replay_base(trial, &record, base, depth)?;
+        let mut starts = initial_states(trial, base);
         starts.push(before.replay.initial());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
@@ -182,7 +182,7 @@ impl AveragedModel<'_> {
         base: &FirstOrder,
         thorough: bool,
     ) -> Result<Vec<RecordComparison>, TraceError> {
-        trials.par_iter().map(|trial| self.compared(trial, base, thorough)).collect()
+        trials.par_iter().map(|trial| self.compare(trial, base, thorough)).collect()
     }
 
     /// Replay of the average on a record from initial states near the `starts`; fails if no replay is finite.

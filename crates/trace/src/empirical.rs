@@ -18,14 +18,14 @@ use crate::record::PreparedRecord;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monomial {
     /// Exponents and magnitudes.
-    pub powers: &'static Powers,
+    pub powers: &'static MonomialPowers,
     /// Root mean squares of r (rad/s), δ (rad), ψ (rad) and U (m/s).
     pub size: [f64; 4],
 }
 
-/// Monomial of the library.
+/// Exponents of r, δ, ψ and U in one monomial of the library of empirical terms.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Powers {
+pub struct MonomialPowers {
     /// Exponents of r, δ, ψ and U.
     pub exponents: [i32; 4],
     /// `true` if one factor of each power is a magnitude.
@@ -35,7 +35,7 @@ pub struct Powers {
     equation: String,
 }
 
-impl Powers {
+impl MonomialPowers {
     /// Parses the notation: "δ|δ||ψ|" is δ to the second power, one factor of it a magnitude, times the magnitude of ψ.
     fn from_notation(form: &'static str) -> Self {
         let (mut exponents, mut magnitude, mut factor, mut inside) = ([0; 4], [false; 4], 0, false);
@@ -54,7 +54,7 @@ impl Powers {
         Self { exponents, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
     }
 
-    /// Formula for [`Formula::read`](ship::effects::Formula::read): "proposal = c * r^2 * delta".
+    /// Formula for [`Formula::parse`](ship::effects::Formula::parse): "proposal = c * r^2 * delta".
     pub fn line(&self) -> String {
         let factor = |(place, name): (usize, &str)| match (self.exponents[place], self.magnitude[place]) {
             (0, _) => String::new(),
@@ -84,16 +84,16 @@ const WITH_MAGNITUDES: &str = "|ψ| |r| ψ|ψ| δ|δ| δ|ψ| ψ|δ| |δ||ψ| r|�
     r|r||δ| rδ|ψ| rψ|δ| r|δ||ψ| δψ|r| δ|r||ψ| ψ|r||δ| |r||δ||ψ|";
 
 /// All monomials; those with magnitudes are last.
-static LIBRARY: LazyLock<Vec<Powers>> =
-    LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(Powers::from_notation).collect());
+static LIBRARY: LazyLock<Vec<MonomialPowers>> =
+    LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(MonomialPowers::from_notation).collect());
 
 /// All monomials; those with magnitudes are last.
-pub fn all() -> &'static [Powers] {
+pub fn all() -> &'static [MonomialPowers] {
     &LIBRARY
 }
 
 /// Monomials without magnitudes.
-pub fn plain() -> &'static [Powers] {
+pub fn plain() -> &'static [MonomialPowers] {
     &LIBRARY[..PLAIN.split(' ').count()]
 }
 
@@ -183,12 +183,12 @@ mod tests {
             ("ψ²|r|", [1, 0, 2, 0], [true, false, false, false]),
         ];
         for (form, exponents, magnitude) in cases {
-            let powers = Powers::from_notation(form);
+            let powers = MonomialPowers::from_notation(form);
             assert_eq!((powers.exponents, powers.magnitude), (exponents, magnitude), "{form}");
         }
-        assert_eq!(Powers::from_notation("r²δ").line(), "proposal = c * r^2 * delta");
-        assert_eq!(Powers::from_notation("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
-        assert!(all().iter().all(|powers| ship::effects::Formula::read(&powers.line()).is_ok()));
+        assert_eq!(MonomialPowers::from_notation("r²δ").line(), "proposal = c * r^2 * delta");
+        assert_eq!(MonomialPowers::from_notation("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
+        assert!(all().iter().all(|powers| ship::effects::Formula::parse(&powers.line()).is_ok()));
         assert_eq!((plain().len(), all().len()), (18, 59));
     }
 }

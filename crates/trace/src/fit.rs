@@ -11,11 +11,11 @@ use rayon::prelude::*;
 use ship::effects::Prior;
 use statrs::distribution::{self, ContinuousCDF};
 
-use crate::linear::{Linearisation, tangents};
-use crate::model::{Structure, headings};
+use crate::linear::{Linearisation, heading_sensitivities};
+use crate::model::{Structure, replay_headings};
 use crate::noise::RecordNoise;
 use crate::record::PreparedRecord;
-use crate::weights::{NoiseLaw, Weights};
+use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,10 +95,10 @@ impl FittedRecords {
     }
 
     /// Whitening filters of all records under a law.
-    pub fn weights(&self, law: &NoiseLaw) -> Weights {
+    pub fn weights(&self, law: &NoiseLaw) -> RecordWhitening {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();
         let scale = law.variance.iter().zip(&law.power).map(|(variance, power)| (power / variance).sqrt());
-        Weights { whiteners, scale: scale.collect() }
+        RecordWhitening { whiteners, scale: scale.collect() }
     }
 
     /// Heading residual (measured minus replayed) of every record, rad.
@@ -106,7 +106,7 @@ impl FittedRecords {
         let residual = |(number, record): (usize, &PreparedRecord)| {
             let response = structure.response(Some(number), theta);
             let mut out = vec![0.0; record.observed.len()];
-            headings(&response, record, initial[number], |row, heading| {
+            replay_headings(&response, record, initial[number], |row, heading| {
                 out[row] = record.heading[record.observed[row]] - heading;
             });
             out
@@ -115,19 +115,19 @@ impl FittedRecords {
     }
 
     /// Residual and heading sensitivities at a point.
-    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linearisation {
-        let (entries, fitted) = (structure.entries(), structure.fitted());
+    pub fn linearise(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linearisation {
+        let (entries, fitted) = (structure.entries(), structure.fitted_indices());
         let unknowns = fitted.len() + 2 * self.records.len();
         let sensitivities = |(number, record): (usize, &PreparedRecord)| {
             let state = fitted.len() + 2 * number;
             // Unknown and index in θ; the initial heading and yaw rate follow θ.
-            let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts(&entries[**place], number));
+            let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts_in(&entries[**place], number));
             let mut variables: Vec<(usize, usize)> = acting.map(|(unknown, &place)| (unknown, place)).collect();
             variables.push((state + 1, theta.len() + 1));
             if structure.is_heading_dependent() {
                 variables.push((state, theta.len()));
             }
-            let mut block = tangents(structure, record, number, theta, initial[number], &variables);
+            let mut block = heading_sensitivities(structure, record, number, theta, initial[number], &variables);
             if !structure.is_heading_dependent() {
                 // The initial heading then only shifts the heading.
                 block.columns.push((state, vec![1.0; block.residual.len()]));
@@ -143,7 +143,7 @@ impl FittedRecords {
         structure: &Structure,
         theta: Vec<f64>,
         initial: Vec<[f64; 2]>,
-        weights: &Weights,
+        weights: &RecordWhitening,
         effort: StoppingRule,
     ) -> StructureFit {
         let priors = structure.entries().into_iter().map(|entry| entry.prior).collect();
@@ -171,9 +171,9 @@ impl FittedRecords {
         structure: &Structure,
         theta: &[f64],
         initial: &[[f64; 2]],
-        weights: &Weights,
+        weights: &RecordWhitening,
     ) -> NormalEquations {
-        normal_equations(&self.linear(structure, theta, initial), structure, theta, weights)
+        normal_equations(&self.linearise(structure, theta, initial), structure, theta, weights)
     }
 }
 
@@ -192,7 +192,7 @@ struct FitPoint {
 struct PosteriorSearch<'a> {
     problem: &'a FittedRecords,
     structure: &'a Structure,
-    weights: &'a Weights,
+    weights: &'a RecordWhitening,
     priors: Vec<Prior>,
     /// Point evaluated last, and point accepted last.
     last: FitPoint,
@@ -211,7 +211,7 @@ impl PosteriorSearch<'_> {
     fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
         let misfit = self.weights.misfit(&residual);
-        let penalty: f64 = self.priors.iter().zip(&theta).map(|(prior, &x)| deviation(*prior, x).powi(2)).sum();
+        let penalty: f64 = self.priors.iter().zip(&theta).map(|(prior, &x)| prior_deviation(*prior, x).powi(2)).sum();
         let value = misfit + penalty;
         FitPoint { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
     }
@@ -247,23 +247,23 @@ pub fn normal_equations(
     linear: &Linearisation,
     structure: &Structure,
     theta: &[f64],
-    weights: &Weights,
+    weights: &RecordWhitening,
 ) -> NormalEquations {
     let (mut normal, _) = linear.normal(weights);
     for (k, (prior, value)) in structure.fitted_priors(theta).into_iter().enumerate() {
-        normal.matrix[(k, k)] += curvature(prior);
-        normal.gradient[k] -= deviation(prior, value) * curvature(prior).sqrt();
+        normal.matrix[(k, k)] += prior_precision(prior);
+        normal.gradient[k] -= prior_deviation(prior, value) * prior_precision(prior).sqrt();
     }
     normal
 }
 
 /// Distance of a value from the prior mean, in prior standard deviations; 0 for a uniform prior.
-pub fn deviation(prior: Prior, value: f64) -> f64 {
+pub fn prior_deviation(prior: Prior, value: f64) -> f64 {
     if prior.sd > 0.0 && prior.sd.is_finite() { (value - prior.mean) / prior.sd } else { 0.0 }
 }
 
 /// Precision of a prior; 12/(range)² for a uniform prior.
-pub fn curvature(prior: Prior) -> f64 {
+pub fn prior_precision(prior: Prior) -> f64 {
     if prior.sd.is_finite() { prior.sd.powi(-2) } else { 12.0 / (prior.highest - prior.lowest).powi(2) }
 }
 
@@ -292,7 +292,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f
     let law = distribution::Normal::standard();
     let inside = |(k, &(prior, value)): (usize, &(Prior, f64))| {
         let sd = covariance[(k, k)].sqrt();
-        let held = normal.is_held(k, value, [prior.lowest, prior.highest]);
+        let held = normal.is_bound_active(k, value, [prior.lowest, prior.highest]);
         let push = if held { normal.gradient[k] * sd } else { 0.0 };
         let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
         let room = if push > 0.0 { to_high - push } else { to_low + push };
@@ -329,7 +329,13 @@ pub struct StructureFit {
 
 impl StructureFit {
     /// Refit without one of the terms.
-    pub fn without(&self, out: usize, problem: &FittedRecords, weights: &Weights, effort: StoppingRule) -> Self {
+    pub fn refit_without(
+        &self,
+        out: usize,
+        problem: &FittedRecords,
+        weights: &RecordWhitening,
+        effort: StoppingRule,
+    ) -> Self {
         let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
         theta.drain(self.structure.term_ranges()[out].clone());
         terms.remove(out);
@@ -344,7 +350,7 @@ impl StructureFit {
     }
 
     /// Physical values of all entries of θ with standard deviations, which are infinite if the precision is singular.
-    pub fn physical(&self) -> Vec<(f64, f64)> {
+    pub fn physical_values(&self) -> Vec<(f64, f64)> {
         let covariance = self.covariance().map(|all| self.structure.physical_covariance(&all));
         let sd = |place: usize| covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
         let values = self.structure.physical(&self.theta).into_iter().enumerate();

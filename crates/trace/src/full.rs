@@ -12,7 +12,7 @@ use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
 use crate::noise::CorrelatedNoise;
 use crate::transient;
-use crate::weights::{NoiseLaw, Weights};
+use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Noise standard deviation of the first fit over the root mean square residual of the base.
 const FIRST_NOISE_RATIO: f64 = 0.1;
@@ -89,7 +89,7 @@ pub fn fit(
 fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[CorrelatedNoise]) -> FullModel {
     let structure = Structure::base(problem.records.len(), problem.time);
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
-    let theta = start(&structure, &base.estimate.response, std::iter::empty());
+    let theta = start_point(&structure, &base.estimate.response, std::iter::empty());
     let refit = |theta: Vec<f64>, initial: Vec<[f64; 2]>, law: &NoiseLaw| {
         problem.fit(&structure, theta, initial, &problem.weights(law), StoppingRule::FINE)
     };
@@ -99,11 +99,17 @@ fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[Co
 }
 
 /// Fit of the base and the stationary candidates, the better of two starts (prior means, neutral values).
-fn fit_stationary(problem: &FittedRecords, base: &Base, structure: &Structure, weights: &Weights) -> StructureFit {
+fn fit_stationary(
+    problem: &FittedRecords,
+    base: &Base,
+    structure: &Structure,
+    weights: &RecordWhitening,
+) -> StructureFit {
     let starts: [fn(&Term) -> Vec<f64>; 2] =
         [|term| term.priors.iter().map(|prior| prior.mean).collect(), Term::neutral];
     let fits = starts.par_iter().map(|values| {
-        let theta = start(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
+        let theta =
+            start_point(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
         problem.fit(structure, theta, base.initial(), weights, StoppingRule { steps: 4, ..StoppingRule::COARSE })
     });
     let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
@@ -112,7 +118,7 @@ fn fit_stationary(problem: &FittedRecords, base: &Base, structure: &Structure, w
 }
 
 /// Start point θ: parameters of the base, no deviations of the rudder bias, then the values of the terms.
-pub fn start(structure: &Structure, response: &FirstOrder, of_terms: impl Iterator<Item = f64>) -> Vec<f64> {
+pub fn start_point(structure: &Structure, response: &FirstOrder, of_terms: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut theta = vec![response.inverse_T, response.K_over_T, response.rudder_bias];
     theta.resize(structure.base_count(), 0.0);
     theta.extend(of_terms);

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
-use crate::remainder::{Remainder, squares};
+use crate::remainder::{Remainder, sums_of_squares};
 use crate::settings::Settings;
 
 /// Hulls that fit the records about as well as the structures, with earlier trials as priors. No hulls without length
@@ -20,7 +20,10 @@ pub fn fit(
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
-    hull::supported_hulls(hull::fit_all(trials, &settings.earlier), (squares(comparisons)[1] / rows as f64).sqrt())
+    hull::supported_hulls(
+        hull::fit_all(trials, &settings.earlier),
+        (sums_of_squares(comparisons)[1] / rows as f64).sqrt(),
+    )
 }
 
 /// Hulls refitted to other records under the same priors.

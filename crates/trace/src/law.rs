@@ -13,11 +13,11 @@ use estimation::minimum::golden_section_minimum;
 use nalgebra::{Cholesky, DVector, Dyn};
 use rayon::prelude::*;
 
-use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
+use crate::fit::{FittedRecords, StructureFit, prior_deviation, prior_precision};
 use crate::linear::Linearisation;
 use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::waves;
-use crate::weights::{NoiseLaw, Weights};
+use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Lower bound of the standard deviation of a heading, rad: a thousandth of a degree.
 pub const MIN_HEADING_SD: f64 = 1.75e-5;
@@ -69,10 +69,10 @@ pub struct LinearisedFit<'a> {
 impl<'a> LinearisedFit<'a> {
     /// Linearises a fit. Unknowns are the fitted parameters, then the initial states.
     pub fn new(problem: &'a FittedRecords, fit: &StructureFit) -> Self {
-        let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
+        let linear = problem.linearise(&fit.structure, &fit.theta, &fit.initial);
         let prior = fit.structure.fitted_priors(&fit.theta).into_iter().map(|(prior, value)| {
-            let precision = curvature(prior);
-            (precision, deviation(prior, value) / precision.sqrt())
+            let precision = prior_precision(prior);
+            (precision, prior_deviation(prior, value) / precision.sqrt())
         });
         let mut prior: Vec<(f64, f64)> = prior.collect();
         prior.resize(linear.unknowns, (0.0, 0.0));
@@ -94,7 +94,7 @@ impl<'a> LinearisedFit<'a> {
 
     /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` if the
     /// precision is singular.
-    pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
+    pub fn solved(&self, weights: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
         let (mut normal, _) = self.linear.normal(weights);
         self.add_prior(&mut normal);
         let factor = normal.matrix.cholesky()?;
@@ -128,9 +128,10 @@ impl<'a> LinearisedFit<'a> {
     }
 
     /// Normal equations and sum of squares of one record.
-    fn record_normal(&self, record: usize, all: &Weights) -> (NormalEquations, Vec<f64>) {
+    fn record_normal(&self, record: usize, all: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let alone = Linearisation { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
-        let weights = Weights { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
+        let weights =
+            RecordWhitening { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
         alone.normal(&weights)
     }
 
@@ -139,7 +140,7 @@ impl<'a> LinearisedFit<'a> {
         &self,
         law: &NoiseLaw,
         blocks: &[(NormalEquations, Vec<f64>)],
-        weights: &Weights,
+        weights: &RecordWhitening,
     ) -> Option<(Vec<f64>, f64)> {
         let mut normal = NormalEquations::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
@@ -207,7 +208,7 @@ pub fn estimate(
     let linearised = LinearisedFit::new(problem, fit);
     let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
     let mut best = linearised.law(&start, kinds);
-    if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
+    if with_waves && let Some(sea) = waves::estimate_waves(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [
             Some(NoiseColour { waves: Some(sea), correlated: None }),

@@ -55,7 +55,7 @@ pub fn leave_one_out(
             .collect();
         let (hulls, time) = (hulls::refitted(hulls, &without(trials, omitted)), problem.time);
         let averaged = AveragedModel { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
-        averaged.compared(&trials[omitted], &base.estimate.response, true).ok()
+        averaged.compare(&trials[omitted], &base.estimate.response, true).ok()
     };
     let watched = |omitted: usize| {
         let comparison = (!watcher.is_asked_to_stop()).then(|| fold(omitted));

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use ship::DIRECTIONS;
 use ship::Tangent;
 
-use crate::model::{Structure, headings};
+use crate::model::{Structure, replay_headings};
 use crate::record::PreparedRecord;
-use crate::weights::Weights;
+use crate::weights::RecordWhitening;
 
 /// Heading residual and sensitivities of one record.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub struct HeadingSensitivities {
 
 impl HeadingSensitivities {
     /// Residual and columns whitened to unit variance.
-    pub fn white(&self, record: usize, weights: &Weights) -> Self {
+    pub fn white(&self, record: usize, weights: &RecordWhitening) -> Self {
         let mut white = self.clone();
         let mut all: Vec<&mut Vec<f64>> = white.columns.iter_mut().map(|(_, column)| column).collect();
         all.push(&mut white.residual);
@@ -38,7 +38,7 @@ impl HeadingSensitivities {
 
 /// Replays one record with forward derivatives (Griewank and Walther 2008) by some variables, each given as its unknown
 /// and its index in (θ, initial state).
-pub fn tangents(
+pub fn heading_sensitivities(
     structure: &Structure,
     record: &PreparedRecord,
     number: usize,
@@ -56,7 +56,7 @@ pub fn tangents(
         let (theta, initial) = point.split_at(theta.len());
         let response = structure.response(Some(number), theta);
         let (mut residual, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
-        headings(&response, record, [initial[0], initial[1]], |row, heading| {
+        replay_headings(&response, record, [initial[0], initial[1]], |row, heading| {
             residual[row] = record.heading[record.observed[row]] - heading.value;
             columns.iter_mut().zip(heading.by).for_each(|(column, by)| column[row] = by);
         });
@@ -79,7 +79,7 @@ pub struct Linearisation {
 
 impl Linearisation {
     /// Normal equations under weights, and |e|² of every record.
-    pub fn normal(&self, weights: &Weights) -> (NormalEquations, Vec<f64>) {
+    pub fn normal(&self, weights: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let (mut normal, mut squares) = (NormalEquations::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
             let HeadingSensitivities { residual, columns } = block.white(record, weights);

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{Term, TermName};
-use crate::naming::{EffectNaming, named};
+use crate::naming::{EffectNaming, named_effects};
 use crate::rudder::RudderError;
 use crate::settings::Settings;
-use crate::shape::{self, EQUIVALENT_GAIN, MIN_GAIN, MomentSize, ShapeAnalysis};
+use crate::shape::{self, MAX_EQUIVALENT_GAIN, MIN_GAIN, MomentSize, ShapeAnalysis};
 use crate::structures::{Structures, chi_square_p_value};
 
 /// Maximum p value (χ²) of a named effect.
@@ -63,7 +63,7 @@ pub fn locate(
 ) -> Location {
     let named_structures = NamedStructures { problem, full, structures, candidates };
     let is_asked = |effect: &EffectNaming| settings.selection.requires(effect.term.0);
-    let mut probable = named(structures, settings.probability, &settings.selection);
+    let mut probable = named_effects(structures, settings.probability, &settings.selection);
     probable.retain(|effect| is_asked(effect) || named_structures.is_supported(effect));
     let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
     let all = named_structures.shapes(&[asked.as_slice(), &open].concat());
@@ -88,11 +88,11 @@ pub fn locate(
 }
 
 /// `true` if the residual without an effect is explained better than with it: by shapes with a gain above
-/// [`EQUIVALENT_GAIN`], by a random law with any gain.
+/// [`MAX_EQUIVALENT_GAIN`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
     let power = without.as_ref().map_or(1.0, |shapes| shapes.power);
-    power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * EQUIVALENT_GAIN } else { 0.0 }
+    power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN } else { 0.0 }
 }
 
 /// Criterion −2 log p + penalty of the best explanation.
@@ -162,7 +162,7 @@ impl NamedStructures<'_> {
     /// Shape analysis of the residual of some named effects.
     fn shapes(&self, named: &[EffectNaming]) -> Option<ShapeAnalysis> {
         let names: Vec<TermName> = named.iter().map(|effect| effect.term).collect();
-        shape::analysis(self.problem, &self.fit(&names)?, &self.full.law)
+        shape::analyse_shapes(self.problem, &self.fit(&names)?, &self.full.law)
     }
 
     /// Fit of the structure of some terms: the weighed one, otherwise a new fit from their values in other structures.

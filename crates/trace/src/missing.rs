@@ -8,9 +8,9 @@ use ship::effects::Prior;
 use crate::analysis::Analysis;
 use crate::candidates::is_variant;
 use crate::fit::StoppingRule;
-use crate::full::start;
+use crate::full::start_point;
 use crate::law::MIN_HEADING_SD;
-use crate::missing_moment::{Explanation, MissingMoment};
+use crate::missing_moment::{MissingMoment, RelativeResponse};
 use crate::model::{Structure, TermName};
 
 impl Analysis {
@@ -22,7 +22,7 @@ impl Analysis {
         let structure = Structure::base(self.problem.records.len(), self.problem.time);
         let weights = self.problem.weights(&self.full.law);
         let initial: Vec<[f64; 2]> = self.identification.iter().map(|fitted| fitted.before.replay.initial()).collect();
-        let theta = |values: &mut dyn Iterator<Item = f64>| start(&structure, &self.base.response, values);
+        let theta = |values: &mut dyn Iterator<Item = f64>| start_point(&structure, &self.base.response, values);
         let base = self.problem.residual(&structure, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
         let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).collect();
@@ -51,10 +51,10 @@ impl Analysis {
                 for (weight, fit) in &model {
                     mean.iter_mut().zip(&fit.residual[number]).for_each(|(sum, e)| *sum += weight * e);
                 }
-                explanations.push(Explanation { effects, heading: difference(&mean) });
+                explanations.push(RelativeResponse { effects, heading: difference(&mean) });
             }
             let here = fits.iter().filter(|((_, _, only), _)| only.is_none_or(|only| only == number));
-            explanations.extend(here.map(|((id, form, _), residual)| Explanation {
+            explanations.extend(here.map(|((id, form, _), residual)| RelativeResponse {
                 effects: vec![(*id, *form)],
                 heading: difference(&residual[number]),
             }));

@@ -153,8 +153,8 @@ impl Structure {
         fitted.map(|(entry, &value)| (entry.prior, value)).collect()
     }
 
-    /// Indices in θ of the fitted entries: unknown k of a fit is entry `fitted()[k]`.
-    pub fn fitted(&self) -> Vec<usize> {
+    /// Indices in θ of the fitted entries: unknown k of a fit is entry `fitted_indices()[k]`.
+    pub fn fitted_indices(&self) -> Vec<usize> {
         let entries = self.entries();
         (0..entries.len()).filter(|&place| entries[place].prior.is_fitted()).collect()
     }
@@ -162,13 +162,13 @@ impl Structure {
     /// Index of the unknown of every entry of θ; `None` for a fixed entry.
     pub fn unknowns(&self) -> Vec<Option<usize>> {
         let mut unknowns = vec![None; self.count()];
-        self.fitted().into_iter().enumerate().for_each(|(unknown, place)| unknowns[place] = Some(unknown));
+        self.fitted_indices().into_iter().enumerate().for_each(|(unknown, place)| unknowns[place] = Some(unknown));
         unknowns
     }
 
     /// Covariance of all entries of θ from the covariance of the fitted entries; zero for fixed entries.
     pub fn expanded_covariance(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
-        let places = self.fitted();
+        let places = self.fitted_indices();
         let mut all = DMatrix::zeros(self.count(), self.count());
         for (i, &row) in places.iter().enumerate() {
             for (j, &column) in places.iter().enumerate() {
@@ -184,7 +184,7 @@ impl Structure {
     }
 
     /// `true` if an entry of θ acts in a record.
-    pub fn acts(entry: &ModelParameter, record: usize) -> bool {
+    pub fn acts_in(entry: &ModelParameter, record: usize) -> bool {
         entry.only.is_none_or(|only| only == record)
     }
 
@@ -254,7 +254,7 @@ impl Structure {
 }
 
 /// Solver step (s) between two times, for rows `spacing` seconds apart and `steps` per minimum time constant.
-pub fn step<R: Real, S: Replayable<R> + ?Sized>(
+pub fn solver_step<R: Real, S: Replayable<R> + ?Sized>(
     ship: &S,
     spacing: f64,
     steps: f64,
@@ -267,18 +267,18 @@ pub fn step<R: Real, S: Replayable<R> + ?Sized>(
 const STEPS: f64 = 2.0;
 
 /// Replays a response along a record from its first row and calls `visit` with every observed row and its heading.
-pub fn headings<R: EffectReal>(
+pub fn replay_headings<R: EffectReal>(
     response: &Response<R>,
     record: &PreparedRecord,
     initial: [R; 2],
     mut visit: impl FnMut(usize, R),
 ) {
-    let recorded = record.recorded(response);
+    let recorded = record.replay_signals(response);
     let mut state = vec![R::from(0.0); response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time());
     response.initialise(initial[0], initial[1], &start, &mut state);
     let mut number = 0;
-    let step = step(response, record.spacing, STEPS);
+    let step = solver_step(response, record.spacing, STEPS);
     replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
         if record.observed.get(number) == Some(&row) {
             visit(number, state[0]);

@@ -38,7 +38,7 @@ impl EffectNaming {
 type EffectKey = (&'static str, Option<usize>);
 
 /// Named effects, the most probable first: above the threshold, requested, or in a group above it.
-pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<EffectNaming> {
+pub fn named_effects(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<EffectNaming> {
     let mut keys: Vec<(EffectKey, f64)> = Vec::new();
     for name in structures.probabilities.keys() {
         let key = (name.0, name.2);

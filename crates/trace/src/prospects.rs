@@ -21,7 +21,7 @@ use crate::weights::NoiseLaw;
 /// Minimum expected visibility (squared coefficient over its variance) of a distinguishable effect.
 const MIN_VISIBILITY: f64 = 20.0;
 
-/// Value of one planned trial. Effects are named with their form: "wind moment (steady wind)".
+/// What one planned trial would separate and reveal. Effects are named with their form: "wind moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prospect {
     /// Name of the manoeuvre.
@@ -79,7 +79,7 @@ impl Analysis {
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
-        let (normal, _) = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
+        let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal(&problem.weights(&law));
         let fitted = full.kept_covariance(None)?.try_inverse()?;
         let count = fitted.nrows();
         let mut precision = normal.matrix;

@@ -138,7 +138,7 @@ impl PreparedRecord {
     }
 
     /// Input signals of the replay of a ship, reduced to the required signals.
-    pub fn recorded<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> RecordedSignals<'_> {
+    pub fn replay_signals<R: Real>(&self, ship: &(impl Replayable<R> + ?Sized)) -> RecordedSignals<'_> {
         let needed = |channel| ship.needs(channel);
         RecordedSignals {
             rudder: &self.rudder,

@@ -164,7 +164,7 @@ mod tests {
     use ship::Response;
 
     use super::*;
-    use crate::comparison::base_result;
+    use crate::comparison::replay_base;
     use crate::testing::{BASE, TrialPlan, moved, record, ship};
     use crate::{Settings, trace};
 
@@ -184,7 +184,7 @@ mod tests {
         for inverse_time in [BASE[0], -0.01] {
             let base = FirstOrder { inverse_T: inverse_time, K_over_T: BASE[1], rudder_bias: BASE[2] };
             let moment = RecordMoment::new(&record, &base).expect("enough headings");
-            let replay = base_result(&trial, &record, &base, ReplayDepth::Heading).expect("finite").replay;
+            let replay = replay_base(&trial, &record, &base, ReplayDepth::Heading).expect("finite").replay;
             let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(base)))] };
             let [exact, replayed] = [moment.of_base(&replay), moment.of_average(&average, &replay)].map(deg);
             for (exact, replayed) in exact.into_iter().zip(replayed) {

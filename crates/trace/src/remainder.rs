@@ -1,6 +1,6 @@
 //! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on the remainder.
 
-use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness};
+use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness_test};
 use trial::Trial;
 
 use crate::comparison::{RecordComparison, ReplayResult};
@@ -15,7 +15,7 @@ use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
 /// Sums of squared heading errors over all records, rad²: base, average.
-pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
+pub fn sums_of_squares(all: &[RecordComparison]) -> [f64; 2] {
     let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
     let before = all.iter().map(|comparison| square(&comparison.before.errors)).sum();
     [before, all.iter().map(|comparison| square(&comparison.after.errors)).sum()]
@@ -40,7 +40,7 @@ impl Innovations {
     }
 }
 
-/// Residual of the structures.
+/// Judgement of the residual that the structures leave: noise, credible, or unexplained.
 #[derive(Debug, Clone)]
 pub struct Remainder {
     /// `true` if the noise law describes the residual and its bands cover the records.
@@ -77,7 +77,7 @@ impl Remainder {
         let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
         let is_noise = are_noise(&innovations) && identification.iter().all(is_covered);
-        let [before, after] = squares(identification);
+        let [before, after] = sums_of_squares(identification);
         let is_credible = is_noise || after < before;
         let rows: f64 = identification.iter().map(|fitted| fitted.after.errors.rows as f64).sum();
         let white =
@@ -134,5 +134,5 @@ pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLa
 fn are_noise(all: &[Innovations]) -> bool {
     let even = all.iter().map(|record| constant_variance_p_value(&record.values)).fold(1.0, f64::min);
     let series: Vec<GappedSeries> = all.iter().map(Innovations::series).collect();
-    whiteness(&series).p_value.min(even * series.len() as f64) > SIGNIFICANCE_LEVEL
+    whiteness_test(&series).p_value.min(even * series.len() as f64) > SIGNIFICANCE_LEVEL
 }

@@ -12,7 +12,7 @@ use ship::{Real, Replayable, ReplayedShip, Tangent};
 use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
-use crate::model::step;
+use crate::model::solver_step;
 use crate::record::PreparedRecord;
 
 /// Solver steps per minimum time constant: the heading is then exact to 10⁻⁵ of the response.
@@ -77,7 +77,7 @@ pub struct ReplayErrors {
 
 impl ReplayErrors {
     /// Root mean square heading error of replays restarted every `length` seconds, rad.
-    pub fn within(&self, length: f64) -> Option<f64> {
+    pub fn restarted_rms(&self, length: f64) -> Option<f64> {
         self.windows.iter().find(|window| window.length == length)?.heading
     }
 }
@@ -119,7 +119,7 @@ pub fn duration(time: &[f64]) -> f64 {
 }
 
 /// Full replay of a record from the best initial state near one of the `starts`; `None` if no replay is finite.
-pub fn full(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
+pub fn full_replay(ship: &dyn ReplayedShip, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
     let mut minima: Vec<(f64, [f64; 2])> = Vec::new();
     for &start in starts {
@@ -180,7 +180,12 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 
 /// Headings (rad) of a replay restarted every `length` seconds from the best initial heading and yaw rate of each
 /// window; other states continue. `None` if a window holds too few headings.
-pub fn restarted(ship: &dyn ReplayedShip, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
+pub fn restarted_headings(
+    ship: &dyn ReplayedShip,
+    record: &PreparedRecord,
+    initial: [f64; 2],
+    length: f64,
+) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; ship.dimension()];
     enter(ship, record, 0, initial, None, &mut state);
@@ -226,10 +231,10 @@ fn enter<R: Real>(
     match memory {
         Some(memory) => {
             state.iter_mut().zip(memory).for_each(|(x, &memory)| *x = R::from(memory));
-            ship.restart(start[0], start[1], state);
+            ship.reset_motion(start[0], start[1], state);
         }
         None => {
-            let input = record.recorded(ship).input(record.time[row], ship.dead_time());
+            let input = record.replay_signals(ship).input(record.time[row], ship.dead_time());
             ship.initialise(start[0], start[1], &input, state);
         }
     }
@@ -243,9 +248,9 @@ fn run<R: Real>(
     state: &mut [R],
     mut visit: impl FnMut(usize, R, R),
 ) {
-    let step = step(ship, record.spacing, SOLVER_STEPS);
+    let step = solver_step(ship, record.spacing, SOLVER_STEPS);
     let times = &record.time[rows.clone()];
-    replay_states(ship, &record.recorded(ship), times, step, state, |row, state, _| {
+    replay_states(ship, &record.replay_signals(ship), times, step, state, |row, state, _| {
         visit(rows.start + row, state[0], state[1]);
     });
 }
@@ -321,7 +326,8 @@ mod tests {
         let base = ship(Vec::new());
         let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
         for length in HORIZONS {
-            let headings = restarted(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
+            let headings =
+                restarted_headings(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
             let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());
             let largest = errors.fold(0.0, f64::max);
             assert!(headings.len() == trial.len() && largest < 1e-5, "{length} s: {largest}");

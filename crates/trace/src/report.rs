@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use document::trace::*;
 use document::{HeadingNoise, Quantity, RandomMoment};
-use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio};
-use estimation::residuals::{GappedSeries, whiteness};
+use estimation::mixture::{MixtureSummary, NormalMixture, NormalPair, ratio_summary};
+use estimation::residuals::{GappedSeries, whiteness_test};
 use ship::angle::to_deg;
 use ship::effects::{self, Effect, Parameter};
 use ship::particulars::prime_unit;
@@ -14,7 +14,7 @@ use ship::{Particulars, Regressor};
 use trial::Trial;
 
 use crate::base::Base;
-use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME, is_becalmed};
+use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_OF_TIME, is_excluded_by_calm};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::FullModel;
@@ -103,15 +103,16 @@ impl TraceParts<'_> {
             structures: self.listed(),
             prior: PriorEntry {
                 candidates: self.candidates.len(),
-                probability: PROBABILITY,
-                probability_of_time: PROBABILITY_OF_TIME,
+                probability: PRIOR_PROBABILITY,
+                probability_of_time: PRIOR_PROBABILITY_OF_TIME,
                 named_from: self.settings.probability,
-                odds_factors: prior_odds::FACTORS.into(),
+                odds_factors: prior_odds::PRIOR_ODDS_FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
             unexplained: UnexplainedEntry {
                 present: self.remainder.is_unexplained,
-                signature: signature.map(|s| sentences::signature(s, &self.trials[s.record].title()) + &self.bands()),
+                signature: signature
+                    .map(|s| sentences::signature_sentence(s, &self.trials[s.record].title()) + &self.bands()),
             },
             disturbance,
             located,
@@ -148,7 +149,10 @@ impl TraceParts<'_> {
     fn bands(&self) -> String {
         let records = self.trials.iter().zip(self.identification);
         let bands = records.filter_map(|(trial, comparison)| Some((trial, comparison.after.coverage()?)));
-        bands.filter(|(_, band)| !band.is_nominal()).map(|(t, band)| sentences::band(&t.title(), &band)).collect()
+        bands
+            .filter(|(_, band)| !band.is_nominal())
+            .map(|(t, band)| sentences::band_sentence(&t.title(), &band))
+            .collect()
     }
 
     fn ship(&self) -> Option<Particulars> {
@@ -180,14 +184,15 @@ impl TraceParts<'_> {
         };
         let pairs: Vec<NormalPair> = members.iter().map(pair).collect();
         let reciprocal = |pair: &NormalPair| NormalPair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
-        let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(reciprocal).collect::<Vec<_>>()));
-        let bias = members.iter().map(|(weight, fit)| (*weight, fit.physical()[2].0, fit.physical()[2].1));
+        let (k, t) = (ratio_summary(&pairs), ratio_summary(&pairs.iter().map(reciprocal).collect::<Vec<_>>()));
+        let bias =
+            members.iter().map(|(weight, fit)| (*weight, fit.physical_values()[2].0, fit.physical_values()[2].1));
         self.with_prime([k, t, NormalMixture { parts: bias.collect() }.summary()].map(quantity))
     }
 
     /// Physical parameters of a structure.
     fn parameters(&self, fit: &StructureFit) -> Vec<ParameterEntry> {
-        let values = fit.structure.entries().into_iter().zip(fit.physical()).zip(&fit.theta);
+        let values = fit.structure.entries().into_iter().zip(fit.physical_values()).zip(&fit.theta);
         values.map(|((entry, (value, sd)), &fitted)| self.parameter(&entry, vec![(1.0, value, sd)], fitted)).collect()
     }
 
@@ -203,7 +208,7 @@ impl TraceParts<'_> {
 
     fn number(&self, parameter: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
         let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
-            quantity: quantity.scaled(ship.prime(parameter.dimension())),
+            quantity: quantity.scaled(ship.prime_factor(parameter.dimension())),
             unit: prime_unit(parameter.unit),
         });
         let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
@@ -217,7 +222,7 @@ impl TraceParts<'_> {
         let with = all.filter_map(|(weight, fit)| {
             let place = fit.structure.terms.iter().position(|term| term.name() == name)?;
             let range = fit.structure.term_ranges()[place].clone();
-            let values = fit.physical()[range.clone()].to_vec();
+            let values = fit.physical_values()[range.clone()].to_vec();
             Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
         });
         let fits: Vec<_> = with.collect();
@@ -269,7 +274,7 @@ impl TraceParts<'_> {
             (parameter.symbol.into(), self.number(parameter, Quantity::bare(value), None, false))
         });
         let gain = self.full.waves_gain;
-        let probability = |factor: f64| prior_odds::from_gain(0.5 * gain, factor);
+        let probability = |factor: f64| prior_odds::probability_from_gain(0.5 * gain, factor);
         Some(EffectEntry {
             id: waves.id().into(),
             form: waves.form().into(),
@@ -280,10 +285,10 @@ impl TraceParts<'_> {
             alias_forms: Vec::new(),
             parameters: parameters.collect(),
             probability: probability(1.0),
-            probability_by_prior_odds: prior_odds::FACTORS.map(probability).into(),
+            probability_by_prior_odds: prior_odds::PRIOR_ODDS_FACTORS.map(probability).into(),
             delta_bic: -gain,
             p_value: (-0.5 * gain).exp().min(1.0),
-            evidence: sentences::waves(sd, sea.frequency),
+            evidence: sentences::wave_evidence(sd, sea.frequency),
         })
     }
 
@@ -296,7 +301,7 @@ impl TraceParts<'_> {
         let excluded = !selection.allows(id);
         let mut effects = selection.effects();
         effects.retain(|form| form.id() == id);
-        let becalmed = effects.iter().any(|form| is_becalmed(form.as_ref(), None, self.trials, selection));
+        let becalmed = effects.iter().any(|form| is_excluded_by_calm(form.as_ref(), None, self.trials, selection));
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
@@ -370,7 +375,7 @@ impl TraceParts<'_> {
 
     fn errors(&self) -> ErrorEntry {
         let entry = |(trial, comparison): (&Trial, &RecordComparison)| BeforeAfter {
-            file: sentences::file_of(trial),
+            file: sentences::record_label(trial),
             before: (&comparison.before).into(),
             after: (&comparison.after).into(),
             horizons: Vec::new(),
@@ -393,7 +398,7 @@ impl TraceParts<'_> {
         let records = self.identification.iter().map(model).zip(self.trials);
         let series =
             records.map(|(on, trial)| GappedSeries::new(&on.replay.time, &on.replay.residual, trial.sampling_period()));
-        whiteness(&series.collect::<Vec<_>>()).into()
+        whiteness_test(&series.collect::<Vec<_>>()).into()
     }
 
     /// Heading noise of every fitted record.
@@ -417,12 +422,12 @@ impl TraceParts<'_> {
                 other => (other.kind(), None),
             };
             RecordNoiseEntry {
-                file: sentences::file_of(&self.trials[number]),
+                file: sentences::record_label(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest())),
                 heading_wander: heading
-                    .map(|_| if law.is_of_model() { HeadingWander::Model } else { HeadingWander::Compass }),
+                    .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,
                 moment_sd_rudder_deg: (!noise.moment.is_none()).then(|| to_deg(noise.moment.size())),
                 moment_correlation_s: correlation,

@@ -64,7 +64,7 @@ pub struct RudderError {
 }
 
 /// Records with the estimated true rudder, and the measurement errors; `None` for a record without measurement error.
-pub fn without_noise(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderError>>) {
+pub fn estimate_rudders(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderError>>) {
     let clean: Vec<Option<(Trial, RudderError)>> = trials.par_iter().map(smoothed).collect();
     let errors: Vec<Option<RudderError>> = clean.iter().map(|pair| pair.as_ref().map(|(_, error)| *error)).collect();
     let kept = match errors.iter().all(Option::is_none) {
@@ -228,7 +228,7 @@ mod tests {
     fn a_clean_rudder_stays() {
         let (clean, _) = trial_with(<[f64]>::to_vec);
         let trials = [clean];
-        let (kept, errors) = without_noise(&trials);
+        let (kept, errors) = estimate_rudders(&trials);
         assert!(matches!(kept, Cow::Borrowed(_)) && errors == [None]);
     }
 
@@ -236,7 +236,7 @@ mod tests {
     fn noise_of_the_rudder_has_its_size() {
         for sd in [0.1, 0.3] {
             let (clean, read) = trial_with(|rudder| noisy(rudder, sd));
-            let (kept, errors) = without_noise(std::slice::from_ref(&read));
+            let (kept, errors) = estimate_rudders(std::slice::from_ref(&read));
             let error = errors[0].expect("noise");
             assert!((to_deg(error.sd) / sd - 1.0).abs() < 0.15, "{sd}: {error:?}");
             let off = |trial: &Trial| -> f64 {

@@ -18,7 +18,7 @@ pub const NOT_CREDIBLE: &str = "adding effects does not improve the replay, and 
                                 so no effect is named";
 
 /// File name of a measured trial, or scenario of a simulated one.
-pub fn file_of(trial: &Trial) -> String {
+pub fn record_label(trial: &Trial) -> String {
     match trial.origin() {
         Origin::Measured { file, .. } => file.clone(),
         Origin::Simulated { scenario, .. } => scenario.clone(),
@@ -210,12 +210,12 @@ pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) 
 }
 
 /// Evidence for waves: their standard deviation (rad) and frequency (rad/s).
-pub fn waves(sd: f64, frequency: f64) -> String {
+pub fn wave_evidence(sd: f64, frequency: f64) -> String {
     format!("Waves move the heading by {}° (standard deviation) at {} rad/s.", short(to_deg(sd)), short(frequency))
 }
 
 /// Location of the residual in the record `name`.
-pub fn signature(signature: &Signature, name: &str) -> String {
+pub fn signature_sentence(signature: &Signature, name: &str) -> String {
     let ([from, to], share) = signature.span;
     let ([low, high], largest) = signature.heading;
     let line = signature.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
@@ -235,7 +235,7 @@ pub fn signature(signature: &Signature, name: &str) -> String {
 }
 
 /// Coverage of a band that holds less than its nominal share.
-pub fn band(name: &str, coverage: &BandCoverage) -> String {
+pub fn band_sentence(name: &str, coverage: &BandCoverage) -> String {
     let [low, high] = coverage.interval.map(|end| 100.0 * end);
     let (inside, total, share) = (coverage.inside, coverage.total, 100.0 * coverage.share());
     format!("; the 95 % band holds {inside} of {total} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")

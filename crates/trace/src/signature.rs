@@ -2,7 +2,7 @@
 
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 
-/// Location of a residual.
+/// Time span, frequency, headings and rudder side at which the residual of a record is largest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signature {
     /// Index of the record.

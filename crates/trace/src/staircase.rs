@@ -12,7 +12,7 @@ use crate::model::TermName;
 use crate::noise::NoiseColour;
 use crate::weights::NoiseLaw;
 
-/// Base and one step for every term.
+/// Nested models from the base to the most probable structure, one term added per step.
 #[derive(Debug, Clone)]
 pub struct Staircase {
     /// Times of the observed rows of the first record, s.
@@ -55,7 +55,7 @@ impl Analysis {
         let mut steps = Vec::new();
         while !fit.structure.terms.is_empty() {
             let places = 0..fit.structure.terms.len();
-            let without = |out: usize| (out, fit.without(out, problem, &weights, StoppingRule::FINE));
+            let without = |out: usize| (out, fit.refit_without(out, problem, &weights, StoppingRule::FINE));
             let fewer: Vec<(usize, StructureFit)> = places.into_par_iter().map(without).collect();
             let nearest = |(_, a): &(usize, StructureFit), (_, b): &(usize, StructureFit)| {
                 root_mean_square(a).total_cmp(&root_mean_square(b))

@@ -16,11 +16,11 @@ use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
 use crate::selection::Selection;
 use crate::settings::Rule;
-use crate::weights::Weights;
+use crate::weights::RecordWhitening;
 use quadratic::{MAX_LOG_ODDS, QuadraticPosterior};
 use result::names;
 
-pub use quadratic::{Support, chi_square_p_value};
+pub use quadratic::{TermEvidence, chi_square_p_value};
 pub use result::{Structures, WeighedStructure};
 
 /// Maximum number of structures whose fit is iterated to convergence.
@@ -35,7 +35,7 @@ const ROUNDS: usize = 2;
 /// Search over the structures of one noise law.
 struct StructureSearch<'a> {
     problem: &'a FittedRecords,
-    weights: Weights,
+    weights: RecordWhitening,
     full: &'a FullModel,
     variants: Vec<&'a Arc<Term>>,
     selection: &'a Selection,
@@ -50,7 +50,7 @@ struct StructureSearch<'a> {
 /// Weighs the structures under every noise law and chooses the most probable law by the evidence of its structures. If
 /// structures under a smooth model error explain the misfit of the base, only such laws compete. `base` is the mean
 /// square residual of the base, rad².
-pub fn choose(
+pub fn weigh_structures(
     problem: &FittedRecords,
     fulls: Vec<FullModel>,
     candidates: &[Arc<Term>],
@@ -73,7 +73,7 @@ pub fn choose(
     });
     let is_physical = |(_, full, structures): &(f64, FullModel, Structures)| {
         let max_ratio = if diverges { MAX_PHYSICAL_RATIO_IF_DIVERGENT } else { MAX_PHYSICAL_RATIO };
-        full.law.is_of_model() && structures.mean_square_of_ship() / base < max_ratio * max_ratio
+        full.law.includes_model_error() && structures.mean_square_of_ship() / base < max_ratio * max_ratio
     };
     let physical = weighed.iter().any(is_physical);
     let mut kept: Vec<(f64, FullModel, Structures)> =
@@ -130,7 +130,7 @@ fn weigh(
         seen.push(names(&top.structure));
         // Alternatives to a term appear after its removal.
         for out in 0..top.structure.terms.len() {
-            let less = top.without(out, problem, &search.weights, StoppingRule::COARSE);
+            let less = top.refit_without(out, problem, &search.weights, StoppingRule::COARSE);
             search.screen(&search.full_parameters(&less), &less.initial, &search.terms_of(&less));
             search.store(vec![less]);
         }

@@ -71,7 +71,7 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
     let noise = Normal::new(0.0, from_deg(plan.noise_deg)).expect("a standard deviation");
     let mut generator = ChaCha8Rng::seed_from_u64(plan.seed);
     let mut heading = vec![f64::NAN; plan.rows];
-    replay(ship, &RecordedSignals::rudder(&signal), &time, 0.05, &mut state, |row, motion| {
+    replay(ship, &RecordedSignals::from_rudder(&signal), &time, 0.05, &mut state, |row, motion| {
         if row % plan.every == 0 {
             heading[row] = motion.heading + noise.sample(&mut generator);
         }

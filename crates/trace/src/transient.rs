@@ -8,7 +8,7 @@ use ship::first_order::Transition;
 use crate::fit::{FittedRecords, StructureFit, normal_equations};
 use crate::linear::Linearisation;
 use crate::model::Term;
-use crate::weights::Weights;
+use crate::weights::RecordWhitening;
 
 /// Durations of the boxes as shares of the record.
 const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
@@ -21,10 +21,10 @@ const STEP_SPACING: f64 = 1.0 / 80.0;
 pub fn start_values(
     problem: &FittedRecords,
     fit: &StructureFit,
-    weights: &Weights,
+    weights: &RecordWhitening,
     terms: &[&Term],
 ) -> Vec<Option<Vec<f64>>> {
-    let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
+    let linear = problem.linearise(&fit.structure, &fit.theta, &fit.initial);
     let normal = normal_equations(&linear, &fit.structure, &fit.theta, weights);
     let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
     let explained = factor.solve(&normal.gradient);
@@ -35,7 +35,7 @@ pub fn start_values(
 fn place(
     problem: &FittedRecords,
     fit: &StructureFit,
-    weights: &Weights,
+    weights: &RecordWhitening,
     term: &Term,
     linear: &Linearisation,
     factor: &Cholesky<f64, Dyn>,

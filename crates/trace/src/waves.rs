@@ -22,7 +22,7 @@ const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, or
 /// if waves do not increase the likelihood.
-pub fn find(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
+pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let evaluate = |colour: &NoiseColour| {

@@ -19,7 +19,7 @@ pub struct NoiseLaw {
 
 impl NoiseLaw {
     /// `true` if the law includes a smooth model error.
-    pub fn is_of_model(&self) -> bool {
+    pub fn includes_model_error(&self) -> bool {
         matches!(self.colour.correlated, Some((CorrelatedNoise::Smooth(_), _)))
     }
 
@@ -43,14 +43,14 @@ impl NoiseLaw {
 
 /// Whitening filters of all records with their scales.
 #[derive(Debug, Clone)]
-pub struct Weights {
+pub struct RecordWhitening {
     /// Whitening filters.
     pub whiteners: Vec<Whitener>,
     /// Inverse standard deviation of the noise of a row, 1/rad.
     pub scale: Vec<f64>,
 }
 
-impl Weights {
+impl RecordWhitening {
     /// Whitens columns of one record to unit variance.
     pub fn apply(&self, record: usize, columns: &mut [&mut Vec<f64>]) {
         self.whiteners[record].apply(columns);

@@ -136,7 +136,7 @@ impl Cell {
 ///
 /// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
 /// displays it. Exponents may be written with `D` (Fortran).
-pub fn cell(text: &str, separator: Separator) -> Cell {
+pub fn parse_cell(text: &str, separator: Separator) -> Cell {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => return Cell::Number(value),
         Ok(value) if value.is_nan() => return Cell::Missing,
@@ -204,19 +204,19 @@ mod tests {
 
     #[test]
     fn numbers_missing_values_and_text_are_told_apart() {
-        assert_eq!(cell("-1.5e2", Separator::Comma), Cell::Number(-150.0));
-        assert_eq!(cell(".000000000", Separator::Blank), Cell::Number(0.0));
-        assert_eq!(cell("1.5D+02", Separator::Blank), Cell::Number(150.0));
-        assert_eq!(cell("1,5", Separator::Semicolon), Cell::CommaNumber(1.5));
+        assert_eq!(parse_cell("-1.5e2", Separator::Comma), Cell::Number(-150.0));
+        assert_eq!(parse_cell(".000000000", Separator::Blank), Cell::Number(0.0));
+        assert_eq!(parse_cell("1.5D+02", Separator::Blank), Cell::Number(150.0));
+        assert_eq!(parse_cell("1,5", Separator::Semicolon), Cell::CommaNumber(1.5));
         // The cell is in quotes, otherwise there would be two; three digits after the comma may be thousands.
-        assert_eq!(cell("1,5", Separator::Comma), Cell::CommaNumber(1.5));
-        assert_eq!(cell("1,500", Separator::Comma), Cell::Text);
-        assert_eq!(cell("1.234,5", Separator::Semicolon), Cell::Text);
+        assert_eq!(parse_cell("1,5", Separator::Comma), Cell::CommaNumber(1.5));
+        assert_eq!(parse_cell("1,500", Separator::Comma), Cell::Text);
+        assert_eq!(parse_cell("1.234,5", Separator::Semicolon), Cell::Text);
         for missing in ["", "NaN", "nan", "NA", "n/a", "-", "NULL"] {
-            assert_eq!(cell(missing, Separator::Comma), Cell::Missing, "{missing}");
+            assert_eq!(parse_cell(missing, Separator::Comma), Cell::Missing, "{missing}");
         }
         for text in ["inf", "-Infinity", "1e999", "abc", "12:30:05", "****", "d", "ed", "1 2"] {
-            assert_eq!(cell(text, Separator::Blank), Cell::Text, "{text}");
+            assert_eq!(parse_cell(text, Separator::Blank), Cell::Text, "{text}");
         }
     }
 }

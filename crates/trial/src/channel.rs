@@ -210,7 +210,7 @@ impl Channel {
 }
 
 /// Channel and unit of a column name; `None` for an unknown name and for time. Surrounding blanks and case are ignored.
-pub fn column(name: &str) -> Option<(Channel, Unit)> {
+pub fn parse_column_name(name: &str) -> Option<(Channel, Unit)> {
     let name = name.trim().to_ascii_lowercase();
     Channel::ALL.into_iter().find_map(|channel| {
         let suffix = name.strip_prefix(channel.quantity())?.strip_prefix('_')?;
@@ -220,7 +220,7 @@ pub fn column(name: &str) -> Option<(Channel, Unit)> {
 }
 
 /// Unit of a time column (`t_s`, `t_ms`, `t_min`); `None` for any other name.
-pub fn time_column(name: &str) -> Option<Unit> {
+pub fn time_column_unit(name: &str) -> Option<Unit> {
     let name = name.trim().to_ascii_lowercase();
     let suffix = name.strip_prefix("t_")?;
     TIMES.into_iter().find(|unit| unit.id() == suffix)
@@ -242,14 +242,14 @@ mod tests {
              wind_relative_speed_m_s or wind_relative_speed_kn, wind_relative_from_deg or wind_relative_from_rad, \
              wind_true_speed_m_s or wind_true_speed_kn, wind_true_from_deg or wind_true_from_rad"
         );
-        assert_eq!((time_column("t_s"), column("t_s")), (Some(Unit::Second), None));
+        assert_eq!((time_column_unit("t_s"), parse_column_name("t_s")), (Some(Unit::Second), None));
     }
 
     #[test]
     fn written_names_are_read_back_and_all_channels_are_listed_once() {
         for (place, channel) in Channel::ALL.into_iter().enumerate() {
             for &unit in channel.units() {
-                assert_eq!(column(&channel.name_in(unit)), Some((channel, unit)));
+                assert_eq!(parse_column_name(&channel.name_in(unit)), Some((channel, unit)));
             }
             assert_eq!(channel as usize, place);
         }
@@ -259,10 +259,10 @@ mod tests {
     fn names_that_are_not_known_stay_unknown() {
         for name in ["", "heading", "heading_m", "roll_rate_deg_s", "deg", "rudder_order", "heading_deg_s", "t", "T_h"]
         {
-            assert_eq!(column(name), None, "{name}");
-            assert_eq!(time_column(name), None, "{name}");
+            assert_eq!(parse_column_name(name), None, "{name}");
+            assert_eq!(time_column_unit(name), None, "{name}");
         }
-        assert_eq!(column(" Heading_DEG "), Some((Channel::Heading, Unit::Degree)));
+        assert_eq!(parse_column_name(" Heading_DEG "), Some((Channel::Heading, Unit::Degree)));
     }
 
     #[test]

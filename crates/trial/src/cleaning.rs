@@ -10,7 +10,7 @@ use document::{Warning, WarningCode};
 
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::wording::{counted, instant};
+use crate::wording::{counted, rounded_to_thousandth};
 
 /// Minimum rudder angle of an impossible reading, rad.
 pub(crate) const IMPOSSIBLE_RUDDER: f64 = 1.6;
@@ -122,7 +122,8 @@ fn reject(
 ) -> String {
     const SHOWN: usize = 6;
     rejected.extend(rows.iter().map(|&row| RejectedReading { channel, time: time[row], value: values[row] }));
-    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&row| instant(time[row]).to_string()).collect();
+    let mut shown: Vec<String> =
+        rows.iter().take(SHOWN).map(|&row| rounded_to_thousandth(time[row]).to_string()).collect();
     shown.extend((rows.len() > SHOWN).then(|| String::from("…")));
     format!("at t = {} s", shown.join(", "))
 }
@@ -273,7 +274,7 @@ fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Op
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|span| &seen[span.start..=span.end]).collect();
     let spans: Vec<String> = frozen
         .iter()
-        .map(|rows| [rows[0], rows[rows.len() - 1]].map(|row| instant(time[row])))
+        .map(|rows| [rows[0], rows[rows.len() - 1]].map(|row| rounded_to_thousandth(time[row])))
         .map(|[from, to]| format!("from {from} s to {to} s"))
         .collect();
     let rows: Vec<usize> = frozen.iter().flat_map(|rows| &rows[1..]).copied().collect();

@@ -7,7 +7,7 @@
 use chrono::NaiveDate;
 
 /// Seconds of a day.
-pub const DAY: f64 = 86_400.0;
+pub const SECONDS_PER_DAY: f64 = 86_400.0;
 
 /// Date of a stamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,13 +23,13 @@ impl Date {
     fn day(self, month_first: bool) -> Option<i64> {
         match self {
             Date::Day(day) => Some(day),
-            Date::Either { first, second, year } if month_first => days(year, first, second),
-            Date::Either { first, second, year } => days(year, second, first),
+            Date::Either { first, second, year } if month_first => days_since_1970(year, first, second),
+            Date::Either { first, second, year } => days_since_1970(year, second, first),
         }
     }
 }
 
-/// Stamp: a date, a time of day or both, with the zone if stated.
+/// Date, time of day or both, as a log states them, with the time zone if stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
     date: Option<Date>,
@@ -42,7 +42,7 @@ pub struct Stamp {
 }
 
 /// Days from 1970-01-01 to a date of the Gregorian calendar; `None` for an invalid date.
-pub fn days(year: i32, month: u32, day: u32) -> Option<i64> {
+pub fn days_since_1970(year: i32, month: u32, day: u32) -> Option<i64> {
     NaiveDate::from_ymd_opt(year, month, day).map(|date| i64::from(date.to_epoch_days()))
 }
 
@@ -52,7 +52,7 @@ pub fn date(day: i64) -> impl std::fmt::Display {
 }
 
 /// Day of a text such as `2026-11-20`, as written by [`date`].
-pub fn day(text: &str) -> Option<String> {
+pub fn parse_date(text: &str) -> Option<String> {
     text.trim().parse::<NaiveDate>().ok().map(|day| day.to_string())
 }
 
@@ -120,29 +120,29 @@ fn read_date(scan: &mut Scan) -> Option<Date> {
         let (day, _) = scan.number()?;
         while scan.eat(b", ").is_some() {}
         let (year, digits) = scan.number()?;
-        return days(full_year(year, digits)?, month, day).map(Date::Day);
+        return days_since_1970(full_year(year, digits)?, month, day).map(Date::Day);
     }
     let (first, digits) = scan.number()?;
     if digits == 8 {
-        return days((first / 10_000) as i32, first / 100 % 100, first % 100).map(Date::Day);
+        return days_since_1970((first / 10_000) as i32, first / 100 % 100, first % 100).map(Date::Day);
     }
     let mark = scan.eat(b"-/. ")?;
     if let Some(month) = scan.month() {
         scan.eat(b"-/. ,")?;
         let (year, digits) = scan.number()?;
-        return days(full_year(year, digits)?, month, first).map(Date::Day);
+        return days_since_1970(full_year(year, digits)?, month, first).map(Date::Day);
     }
     let (second, _) = scan.number()?;
     scan.eat(&[mark])?;
     let (third, last) = scan.number()?;
     if digits == 4 {
-        return days(first as i32, second, third).map(Date::Day);
+        return days_since_1970(first as i32, second, third).map(Date::Day);
     }
     let year = full_year(third, last)?;
     if mark == b'.' {
-        return days(year, second, first).map(Date::Day);
+        return days_since_1970(year, second, first).map(Date::Day);
     }
-    let possible = days(year, second, first).or(days(year, first, second));
+    let possible = days_since_1970(year, second, first).or(days_since_1970(year, first, second));
     possible.map(|_| Date::Either { first, second, year })
 }
 
@@ -268,13 +268,13 @@ pub struct Clock {
 impl Clock {
     /// Time of day at time `t` (s) of the record: `14:03:05`.
     pub fn at(&self, t: f64) -> String {
-        let second = (self.second + t).rem_euclid(DAY).floor() as u32;
+        let second = (self.second + t).rem_euclid(SECONDS_PER_DAY).floor() as u32;
         format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
     }
 
     /// Date at time `t` (s) of the record: `2026-11-20`.
     pub fn date_at(&self, t: f64) -> Option<String> {
-        Some(date(self.day? + ((self.second + t) / DAY).floor() as i64).to_string())
+        Some(date(self.day? + ((self.second + t) / SECONDS_PER_DAY).floor() as i64).to_string())
     }
 
     /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0.
@@ -282,8 +282,8 @@ impl Clock {
         let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
         match stamp.date {
-            None => Some(second.rem_euclid(DAY)),
-            Some(Date::Day(day)) => Some((day - self.day?) as f64 * DAY + second),
+            None => Some(second.rem_euclid(SECONDS_PER_DAY)),
+            Some(Date::Day(day)) => Some((day - self.day?) as f64 * SECONDS_PER_DAY + second),
             Some(Date::Either { .. }) => None,
         }
     }
@@ -298,9 +298,9 @@ pub enum StampFault {
     EitherMonth,
 }
 
-/// State of the conversion of the stamps of a file to seconds since the first.
+/// Converter of the time stamps of one file to seconds since its first stamp.
 #[derive(Debug, Clone, Default)]
-pub struct Stamps {
+pub struct StampConverter {
     first: Option<Stamp>,
     /// Last date, and its days after the first date.
     last: Option<(Date, i64)>,
@@ -311,7 +311,7 @@ pub struct Stamps {
     month_first: Option<bool>,
 }
 
-impl Stamps {
+impl StampConverter {
     /// Seconds from the first stamp to this one.
     ///
     /// A time of day that decreases by more than half a day has passed midnight. A date such as 03/04/2026 is kept in
@@ -322,8 +322,8 @@ impl Stamps {
         let day = match (stamp.date, first.date) {
             (Some(date), Some(begin)) => self.day(begin, date)?,
             _ => {
-                self.midnights += i64::from(self.last_second - second > 0.5 * DAY);
-                self.midnights -= i64::from(second - self.last_second > 0.5 * DAY && self.midnights > 0);
+                self.midnights += i64::from(self.last_second - second > 0.5 * SECONDS_PER_DAY);
+                self.midnights -= i64::from(second - self.last_second > 0.5 * SECONDS_PER_DAY && self.midnights > 0);
                 self.last_second = second;
                 self.midnights
             }
@@ -332,7 +332,7 @@ impl Stamps {
             (Some(minutes), Some(begin)) => 60.0 * f64::from(begin - minutes),
             _ => 0.0,
         };
-        Ok(day as f64 * DAY + second - first.second.unwrap_or(0.0) + zone)
+        Ok(day as f64 * SECONDS_PER_DAY + second - first.second.unwrap_or(0.0) + zone)
     }
 
     /// Days from the first date to another date.

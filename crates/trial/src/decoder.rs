@@ -23,7 +23,7 @@ thread_local! {
 static QUIET: Once = Once::new();
 
 /// Runs a decoder; `None` if it panics. The message of the panic is not shown.
-pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
     QUIET.call_once(|| {
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |about| {
@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn a_panic_of_the_decoder_is_no_panic_of_the_program() {
-        assert_eq!(guarded(|| 3), Some(3));
-        assert_eq!(guarded(|| -> u8 { panic!("a decoder gave up") }), None);
+        assert_eq!(catch_panic(|| 3), Some(3));
+        assert_eq!(catch_panic(|| -> u8 { panic!("a decoder gave up") }), None);
         assert!(!IS_GUARDED.get());
     }
 

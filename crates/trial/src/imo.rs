@@ -47,7 +47,7 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
 }
 
 /// Caution for a ship shorter than covered by the criteria; `None` for a longer ship.
-pub fn caution(Particulars { length, speed }: Particulars) -> Option<String> {
+pub fn short_ship_caution(Particulars { length, speed }: Particulars) -> Option<String> {
     (length < MIN_LENGTH_M).then(|| {
         format!(
             "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length); the limits \

@@ -1,7 +1,7 @@
 //! Customary names of columns: the header of a column, split into a quantity and its unit, becomes a [`ColumnMeaning`].
 //! This module contains names and units; the reader decides which column of a table is used.
 
-use crate::channel::{Channel, UNITS, Unit, column, time_column};
+use crate::channel::{Channel, UNITS, Unit, parse_column_name, time_column_unit};
 
 /// Meaning of a column name: quantity and, if stated, unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +97,7 @@ pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
 }
 
 /// Unit of a text with or without brackets: `[deg]`, `(°/min)`, `kn`.
-pub fn unit(text: &str) -> Option<Unit> {
+pub fn parse_unit(text: &str) -> Option<Unit> {
     if text.len() > MAX_NAME_BYTES {
         return None;
     }
@@ -140,21 +140,23 @@ fn unitless_meaning(normalised: &str) -> Option<ColumnMeaning> {
 }
 
 /// Meaning of a `quantity_unit` name such as `t_s` or `heading_deg`.
-pub(crate) fn contract(name: &str) -> Option<ColumnMeaning> {
+pub(crate) fn quantity_unit_meaning(name: &str) -> Option<ColumnMeaning> {
     let of_channel = |(channel, unit)| ColumnMeaning::Channel(channel, Some(unit));
-    time_column(name).map(|unit| ColumnMeaning::Time(Some(unit))).or_else(|| column(name).map(of_channel))
+    time_column_unit(name)
+        .map(|unit| ColumnMeaning::Time(Some(unit)))
+        .or_else(|| parse_column_name(name).map(of_channel))
 }
 
 /// Meaning of a column name; `None` for an unknown name and for a unit that the quantity cannot have.
 ///
 /// A unit may follow in brackets, after a comma, a slash or a blank (`ROT deg/min`, `Heading [°]`, `SOG_kn`), with or
 /// without `in`. Case does not matter.
-pub fn meaning(name: &str) -> Option<ColumnMeaning> {
+pub fn column_meaning(name: &str) -> Option<ColumnMeaning> {
     let name = name.trim();
     if name.len() > MAX_NAME_BYTES {
         return None;
     }
-    if let Some(meaning) = contract(name) {
+    if let Some(meaning) = quantity_unit_meaning(name) {
         return Some(meaning);
     }
     let marks =
@@ -171,7 +173,7 @@ pub fn meaning(name: &str) -> Option<ColumnMeaning> {
 
 /// Unit at the end of a name; blanks and `_` may replace a slash: `deg_s` as well as `deg/s`.
 fn suffix_unit(text: &str) -> Option<Unit> {
-    unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
+    parse_unit(text).or_else(|| parse_unit(&text.replace(['_', ' '], "/")))
 }
 
 /// Unit of a channel for a written unit; `None` if the channel cannot have it.
@@ -184,7 +186,9 @@ fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
 /// The same meaning with a unit; `None` if the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
-        ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),
+        ColumnMeaning::Time(_) => {
+            time_column_unit(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit)))
+        }
         ColumnMeaning::Channel(channel, _) => {
             channel_unit(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
@@ -236,13 +240,13 @@ mod tests {
             ("COG", Some(ColumnMeaning::Course)),
         ];
         for (name, expected) in cases {
-            assert_eq!(meaning(name), expected, "{name}");
+            assert_eq!(column_meaning(name), expected, "{name}");
         }
         // Unknown names, and units that the quantity cannot have, give no meaning.
         for name in
             ["", "helm", "rudder port", "heading_m", "Heading [kn]", "course_deg_x", "wind speed", "load_t", "Ä["]
         {
-            assert_eq!(meaning(name), None, "{name}");
+            assert_eq!(column_meaning(name), None, "{name}");
         }
     }
 
@@ -250,12 +254,12 @@ mod tests {
     fn every_name_is_there_once_and_reads_as_itself() {
         for (place, (name, expected)) in names().enumerate() {
             assert!(names().take(place).all(|(other, _)| other != name), "{name}");
-            assert_eq!(meaning(name), Some(expected), "{name}");
+            assert_eq!(column_meaning(name), Some(expected), "{name}");
             assert_eq!(normalised(name), name);
         }
         for (place, (name, expected)) in units().enumerate() {
             assert!(units().take(place).all(|(other, _)| other != name), "{name}");
-            assert_eq!(unit(&format!("[{name}]")), Some(expected), "{name}");
+            assert_eq!(parse_unit(&format!("[{name}]")), Some(expected), "{name}");
         }
     }
 }

@@ -23,7 +23,7 @@ use crate::wording::counted;
 use alternation::sensor_disagreement;
 pub use motion::reversals;
 pub(crate) use motion::{changes, extremes, mean_rate, range};
-use regression::{PartialSlope, heading_on_yaw_rate, rudder_on_heading, turn_with_rudder};
+use regression::{PartialSlope, first_order_gain, heading_on_yaw_rate, steady_turn_gain};
 use rudder::rudder_movements;
 
 /// Implausibility of a record, with angles in degrees for messages.
@@ -155,7 +155,7 @@ pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
     let turns = range_deg(trial.heading()) > MAX_SWING_DEG;
-    let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
+    let response = if turns { steady_turn_gain(trial) } else { first_order_gain(trial) };
     warnings.extend(yaw_rate(trial, response)?);
     warnings.extend(rudder_sign(trial, response)?);
     warnings.extend(rudder_movements(trial));

@@ -298,7 +298,7 @@ impl Trial {
     }
 
     /// Columns with an unknown name, as read.
-    pub fn unknown(&self) -> &[(String, Vec<f64>)] {
+    pub fn unknown_columns(&self) -> &[(String, Vec<f64>)] {
         &self.unknown
     }
 
@@ -389,7 +389,7 @@ mod tests {
         let trial = trial.with_particulars(model).with_noise(Noise { yaw_rate: Some(0.01), ..Noise::default() });
         let large = trial.scaled_to(ship).expect("a known scale");
         let prime = |trial: &Trial, channel: Channel| {
-            let factor = trial.particulars().expect("declared").prime(channel.dimension());
+            let factor = trial.particulars().expect("declared").prime_factor(channel.dimension());
             trial.channel(channel).expect("a channel")[20] * factor
         };
         for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::Speed, Channel::North] {

@@ -41,7 +41,7 @@ impl Scales {
     /// Scales of records; `None` if the declared scales do not differ.
     ///
     /// Fails if records differ in scale and a record does not declare its scale.
-    pub fn among<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
+    pub fn from_trials<'a>(trials: impl Iterator<Item = &'a Trial> + Clone) -> Result<Option<Self>, ScaleError> {
         let mut particulars: Vec<Particulars> = Vec::new();
         let mut indices = Vec::new();
         for declared in trials.clone().map(Trial::particulars) {
@@ -98,7 +98,7 @@ const ROUNDING: f64 = 1e-12;
 /// Comparison of independent dimensionless estimates at different scales: the maximum difference of two, x₂ − x₁ in
 /// units of √(s₁² + s₂²), and its verdict. The difference is `None` if fewer than two estimates have a standard
 /// deviation.
-pub fn scaling(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
+pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
     let with_sd: Vec<(f64, f64)> = estimates
         .iter()
         .filter_map(|estimate| Some((estimate.value, estimate.sd?)))
@@ -147,9 +147,9 @@ mod tests {
     fn records_of_about_one_length_are_of_one_scale() {
         let [a, b] = [record("a", Some((7.0, 1.18))), record("b", Some((320.0, 7.97)))];
         let [c, unknown] = [record("c", Some((7.05, 0.9))), record("u", None)];
-        assert_eq!(Scales::among([&a, &c].into_iter()), Ok(None));
-        assert_eq!(Scales::among([&a, &unknown].into_iter()), Ok(None));
-        let scales = Scales::among([&a, &b, &c].into_iter()).expect("declared").expect("two");
+        assert_eq!(Scales::from_trials([&a, &c].into_iter()), Ok(None));
+        assert_eq!(Scales::from_trials([&a, &unknown].into_iter()), Ok(None));
+        let scales = Scales::from_trials([&a, &b, &c].into_iter()).expect("declared").expect("two");
         assert_eq!((scales.indices.as_slice(), scales.particulars.len()), ([0, 1, 0].as_slice(), 2));
         let groups: Vec<Vec<usize>> = scales.groups(3).into_iter().map(|(_, records)| records).collect();
         assert_eq!(groups, [vec![0, 2], vec![1]]);
@@ -157,25 +157,25 @@ mod tests {
         let together = scales.to_first_scale(vec![a.clone(), b.clone(), c]);
         assert!((together[1].duration() / b.duration() - 7.0 / 1.18 / (320.0 / 7.97)).abs() < 1e-12);
         assert!((together[2].duration() / a.duration() - 7.0 / 1.18 / (7.05 / 0.9)).abs() < 1e-12);
-        let error = Scales::among([&a, &b, &unknown].into_iter()).expect_err("no scale").to_string();
+        let error = Scales::from_trials([&a, &b, &unknown].into_iter()).expect_err("no scale").to_string();
         assert!(error.contains("length and speed of u are not declared"), "{error}");
         let still = record("still", Some((7.0, 0.0)));
-        assert!(matches!(Scales::among([&b, &still].into_iter()), Err(ScaleError::NotPositive { .. })));
+        assert!(matches!(Scales::from_trials([&b, &still].into_iter()), Err(ScaleError::NotPositive { .. })));
     }
 
     #[test]
     fn a_difference_is_judged_by_its_error() {
         let of = |value: f64, sd: f64| Quantity::new(value, Some(sd));
-        let (difference, word) = scaling(&[of(1.0, 0.03), of(1.05, 0.04)]);
+        let (difference, word) = compare_scales(&[of(1.0, 0.03), of(1.05, 0.04)]);
         assert!(word == Scaling::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
-        assert_eq!(scaling(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
-        assert_eq!(scaling(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
-        assert_eq!(scaling(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
+        assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
+        assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
+        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
         // One of three estimates without an error: the verdict is that of the two others, except agreement of all
         // three.
         let three = [of(1.0, 0.01), Quantity::bare(1.0), of(1.01, 0.01)];
-        assert_eq!(scaling(&three).1, Scaling::CannotBeTold);
-        let (difference, word) = scaling(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
+        assert_eq!(compare_scales(&three).1, Scaling::CannotBeTold);
+        let (difference, word) = compare_scales(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
         assert!(difference.is_some_and(|d| (d + 0.11 / 0.01 / 2f64.sqrt()).abs() < 1e-9), "{difference:?}");
         assert_eq!(word, Scaling::DoesNotScale);
     }

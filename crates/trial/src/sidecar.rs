@@ -15,9 +15,9 @@ use toml::{Spanned, Value};
 
 use crate::conditions::Conditions;
 use crate::file::{Kind, read_text};
-use crate::names::{ColumnMeaning, contract};
+use crate::names::{ColumnMeaning, quantity_unit_meaning};
 use crate::record::Noise;
-use crate::sidecar_error::Fault;
+use crate::sidecar_error::LocatedProblem;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
 pub use crate::sidecar_keys::{Key, keys, schema};
@@ -77,7 +77,7 @@ impl Sidecar {
 
     /// Path of the sidecar of a table: the given file, or the file of its name in the given folder; else
     /// the file next to the table.
-    pub fn describing(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
+    pub fn path_for(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
         let given = given.and_then(|given| match given.is_dir() {
             true => Self::existing_beside(&given.join(table.file_name()?)),
             false => Some(given.to_path_buf()),
@@ -186,7 +186,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
 }
 
 /// Checks every value independently.
-fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
+fn check_values(text: &str, document: &DeTable) -> Result<(), LocatedProblem> {
     let values: toml::Table = text.parse().map_err(syntax)?;
     for Key { key: name, value: kind, .. } in keys() {
         let (table, key) = name.split_once(' ').unwrap_or(("", &name));
@@ -200,17 +200,17 @@ fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
     Ok(())
 }
 
-fn unfit(text: &str, document: &DeTable, table: &str, key: &str, expected: &'static str) -> Fault {
+fn unfit(text: &str, document: &DeTable, table: &str, key: &str, expected: &'static str) -> LocatedProblem {
     let span = span(document, table, key);
     let value = span.clone().and_then(|span| text.get(span)).map(shortened).unwrap_or_default();
     (span, SidecarProblem::Value { key: key.to_owned(), value, expected })
 }
 
-fn syntax(error: toml::de::Error) -> Fault {
+fn syntax(error: toml::de::Error) -> LocatedProblem {
     (error.span(), SidecarProblem::Syntax { message: error.message().to_owned() })
 }
 
-fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
+fn resolve(text: &str, file: &Path) -> Result<Sidecar, LocatedProblem> {
     let document = DeTable::parse(text).map_err(syntax)?.into_inner();
     check_values(text, &document)?;
     let SidecarKeys { weather, table, part, column, rudder, ship, noise, check, trial, form } =
@@ -234,13 +234,18 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
 }
 
 /// Conditions declared by [form] and [ship] together; a particular known to both tables may be in either.
-fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Conditions) -> Result<Conditions, Fault> {
+fn conditions(
+    text: &str,
+    document: &DeTable,
+    ship: Option<ShipKeys>,
+    form: Conditions,
+) -> Result<Conditions, LocatedProblem> {
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
     if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
         return Err((span(document, "ship", ""), SidecarProblem::Ship));
     }
-    let has_form = hull.has_form();
+    let has_form = hull.has_hull_dimensions();
     hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
     let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
     let mut conditions = Conditions { particulars, ..form };
@@ -258,12 +263,12 @@ fn conditions(text: &str, document: &DeTable, ship: Option<ShipKeys>, form: Cond
     Ok(conditions)
 }
 
-fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, Fault> {
+fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, LocatedProblem> {
     let fault = |problem| Err((Some(column.span()), problem));
     let ColumnKeys { index, name, is, flip, scale, zero, formula, ignore } = column.get_ref();
     let which = match (index, name, formula) {
         (None, None, Some(formula)) => {
-            ColumnReference::Formula(ColumnFormula::read(formula.get_ref()).map_err(|error| {
+            ColumnReference::Formula(ColumnFormula::parse(formula.get_ref()).map_err(|error| {
                 let problem = error.to_string();
                 (Some(formula.span()), SidecarProblem::Formula { problem })
             })?)
@@ -295,7 +300,7 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
     let (scale, zero) = (sign * number("scale", *scale, 1.0)?, number("zero", *zero, 0.0)?);
     let meaning_of = |is: &Spanned<String>| {
         let unknown = || SidecarProblem::UnknownQuantity { name: shortened(is.get_ref()) };
-        contract(is.get_ref()).ok_or_else(|| (Some(is.span()), unknown()))
+        quantity_unit_meaning(is.get_ref()).ok_or_else(|| (Some(is.span()), unknown()))
     };
     let meaning = is.as_ref().map(meaning_of).transpose()?;
     Ok(DescribedColumn { line: line_of(text, column.span().start), which, meaning, scale, zero, ignore: *ignore })
@@ -344,7 +349,7 @@ mod tests {
         assert_eq!(sidecar.columns.len(), 2);
         assert_eq!(sidecar.columns[0].line, 11);
         assert_eq!(sidecar.columns[0].which, ColumnReference::Index(3));
-        assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
+        assert_eq!(sidecar.columns[0].meaning, quantity_unit_meaning("heading_rad"));
         let particulars = sidecar.conditions.particulars.expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
         approx::assert_relative_eq!(sidecar.noise.rudder.expect("declared"), from_deg(0.2));

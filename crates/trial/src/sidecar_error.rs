@@ -81,4 +81,4 @@ pub enum SidecarProblem {
 }
 
 /// Problem with its position in the text.
-pub(crate) type Fault = (Option<Range<usize>>, SidecarProblem);
+pub(crate) type LocatedProblem = (Option<Range<usize>>, SidecarProblem);

@@ -4,7 +4,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use toml::Value;
 
-use crate::clock::day;
+use crate::clock::parse_date;
 
 /// Ship, day and draughts of a trial, as declared in a sidecar under `[trial]`; `None` if undeclared. In
 /// brackets, the kind of value of the sidecar key.
@@ -26,7 +26,7 @@ pub struct TrialParticulars {
 
 impl TrialParticulars {
     /// The same, with missing entries from `other`.
-    pub fn or(self, other: &Self) -> Self {
+    pub fn with_missing_from(self, other: &Self) -> Self {
         let text = |given: Option<String>, other: &Option<String>| given.or_else(|| other.clone());
         Self {
             ship_name: text(self.ship_name, &other.ship_name),
@@ -63,7 +63,7 @@ fn date<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<String>, D:
         Value::String(text) => text,
         value => value.to_string(),
     };
-    day(&text)
+    parse_date(&text)
         .map(Some)
         .ok_or_else(|| D::Error::custom(format!("`{text}` is no day, expected a date such as 2026-11-20")))
 }
@@ -108,7 +108,7 @@ mod tests {
             date: date.map(str::to_owned),
             ..TrialParticulars::default()
         };
-        let given = of(Some("Kempf"), None).or(&of(Some("Yukun"), Some("2026-11-20")));
+        let given = of(Some("Kempf"), None).with_missing_from(&of(Some("Yukun"), Some("2026-11-20")));
         assert_eq!(given, of(Some("Kempf"), Some("2026-11-20")));
     }
 }

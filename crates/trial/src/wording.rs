@@ -27,23 +27,24 @@ pub(crate) fn counted(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Time rounded to a millisecond, s, without the digits of rounding errors.
-pub(crate) fn instant(time: f64) -> ShortNumber {
+/// Number rounded to a thousandth, such as a time in s, without the digits of rounding errors.
+pub(crate) fn rounded_to_thousandth(time: f64) -> ShortNumber {
     ShortNumber((1e3 * time).round() / 1e3)
 }
 
 /// End of a part of a record, as ` from 12 s`; empty for an end that is not given (infinite).
-pub(crate) fn end(word: &str, time: f64) -> String {
-    if time.is_finite() { format!(" {word} {} s", instant(time)) } else { String::new() }
+pub(crate) fn interval_end(word: &str, time: f64) -> String {
+    if time.is_finite() { format!(" {word} {} s", rounded_to_thousandth(time)) } else { String::new() }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::instant;
+    use super::rounded_to_thousandth;
 
     #[test]
     fn a_time_has_the_digits_that_were_read() {
-        let shown = [0.1 + 0.2, 6.0 * 0.2, 12.3455, 7.0, 1.7e9 + 0.25].map(|time| instant(time).to_string());
+        let shown =
+            [0.1 + 0.2, 6.0 * 0.2, 12.3455, 7.0, 1.7e9 + 0.25].map(|time| rounded_to_thousandth(time).to_string());
         assert_eq!(shown, ["0.3", "1.2", "12.346", "7", "1700000000.25"]);
     }
 }

@@ -26,12 +26,12 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     table.write_record(
         std::iter::once(TIME_COLUMN.to_owned())
             .chain(names)
-            .chain(trial.unknown().iter().map(|(name, _)| name.clone())),
+            .chain(trial.unknown_columns().iter().map(|(name, _)| name.clone())),
     )?;
     let mut cell = Vec::new();
     for (row, &time) in trial.time().iter().enumerate() {
         let readings = channels.iter().map(|(_, factor, values)| values[row] / factor);
-        let unknown = trial.unknown().iter().map(|(_, values)| values[row]);
+        let unknown = trial.unknown_columns().iter().map(|(_, values)| values[row]);
         for value in std::iter::once(time).chain(readings).chain(unknown) {
             cell.clear();
             if !value.is_nan() {
@@ -46,7 +46,7 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
 
 /// Sidecar of a record, as TOML: the declared calm, length and speed of the ship, and the declared noise of its
 /// instruments. `None` without any of these.
-pub fn sidecar(trial: &Trial) -> Option<String> {
+pub fn sidecar_toml(trial: &Trial) -> Option<String> {
     let ship = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
     let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
     let Noise { heading, yaw_rate, rudder } = trial.noise();
@@ -71,7 +71,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::reader::read_bytes;
+    use crate::reader::read_from;
     use crate::record::{Columns, Origin};
     use crate::{Conditions, DeclaredWeather, Sidecar};
 
@@ -113,7 +113,7 @@ mod tests {
             let mut bytes = Vec::new();
             write_csv(&trial, &mut bytes).expect("a vector takes all bytes");
             let back =
-                read_bytes(Path::new("writer.csv"), &bytes[..], None, None).expect("a written record is readable");
+                read_from(Path::new("writer.csv"), &bytes[..], None, None).expect("a written record is readable");
             let back = back.trial;
             assert_eq!(back.len(), trial.len());
             assert_eq!(back.heading_from_yaw_rate(), without_heading);
@@ -128,17 +128,17 @@ mod tests {
                 let missing = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count();
                 assert_eq!(missing(read), missing(expected), "{channel:?}");
             }
-            assert_eq!(back.unknown(), trial.unknown());
+            assert_eq!(back.unknown_columns(), trial.unknown_columns());
         }
     }
 
     #[test]
     fn a_sidecar_has_the_ship_and_the_calm() {
         let trial = trial(false);
-        assert_eq!(sidecar(&trial), None);
+        assert_eq!(sidecar_toml(&trial), None);
         let particulars = Particulars { length: 7.0, speed: 1.18 };
         let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
-        let text = sidecar(&trial.with_particulars(particulars).with_conditions(calm)).expect("a sidecar");
+        let text = sidecar_toml(&trial.with_particulars(particulars).with_conditions(calm)).expect("a sidecar");
         let back = Sidecar::parse(&text, Path::new("writer.trial.toml")).expect(&text).conditions;
         assert_eq!((back.particulars, back.weather), (Some(particulars), Some(DeclaredWeather::Calm)));
     }

@@ -18,7 +18,7 @@ use ship::{EffectReal, MeasuredChannels, Tangent};
 use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
-use trial::clock::{Stamp, Stamps};
+use trial::clock::{Stamp, StampConverter};
 use trial::reader::{self, ReadRecord};
 use trial::sidecar::Sidecar;
 use trial::{Channel, Trial};
@@ -47,7 +47,7 @@ static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
 /// Target of a measured record, read by its header alone and passed to every method.
 pub fn record(data: &[u8]) -> bool {
     let name = Path::new("case.csv");
-    match reader::read_bytes(name, data, Some(data.len() as u64), None) {
+    match reader::read_from(name, data, Some(data.len() as u64), None) {
         Ok(reading) => {
             is_a_reading(&reading);
             identified(&reading.trial);
@@ -58,7 +58,7 @@ pub fn record(data: &[u8]) -> bool {
 }
 
 fn read(name: &str, data: &[u8]) -> Result<ReadRecord, reader::ReadError> {
-    reader::read_bytes(Path::new(name), data, None, None)
+    reader::read_from(Path::new(name), data, None, None)
 }
 
 /// Target of a log of sentences.
@@ -98,7 +98,7 @@ pub fn gzip(data: &[u8]) -> bool {
 /// Target of time stamps, one a line, on one clock.
 pub fn stamp(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
-    let mut stamps = Stamps::default();
+    let mut stamps = StampConverter::default();
     let mut read = false;
     for line in text.lines() {
         let Some(stamp) = Stamp::parse(line) else { continue };
@@ -145,7 +145,7 @@ pub fn sidecar(data: &[u8]) -> bool {
         Ok(sidecar) => sidecar,
         Err(error) => return is_one_message(&error.to_string()),
     };
-    match reader::read_bytes(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
+    match reader::read_from(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
         Ok(reading) => {
             is_a_reading(&reading);
             true
@@ -260,7 +260,7 @@ fn is_a_reading(ReadRecord { trial, warnings }: &ReadRecord) {
 /// Target of an effect as a line of text; a valid formula is evaluated at various instants.
 pub fn formula(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
-    match effects::formula(&text) {
+    match effects::parse_formula(&text) {
         Ok(formula) => {
             worked_out(&formula);
             true

@@ -87,7 +87,8 @@ pub fn section() -> Section {
 #[expect(clippy::approx_constant, reason = "T2' of the S175 happens to be near 1/π")]
 fn linear_indices() -> Vec<Check> {
     let particulars = mariner::hull().particulars.expect("the Mariner has particulars");
-    let found = mariner::equations().linearised().indices().expect("the Mariner is course-stable").at(particulars);
+    let found =
+        mariner::equations().linearised().indices().expect("the Mariner is course-stable").to_dimensional(particulars);
     let mut checks = Vec::new();
     let simulator = "Marine Systems Simulator (Fossen), from Chislett and Strøm-Tejsen (1965)";
     let mut push = |id: &str, what: &str, published, decimals: usize, ours, unit| {
@@ -109,7 +110,7 @@ fn linear_indices() -> Vec<Check> {
         let what = format!("S175 (Son and Nomoto 1982), linearised: {symbol}");
         push(&format!("s175/{symbol}"), &what, published, 3, ours, "");
     }
-    let at_7 = prime.at(Particulars { length: 175.0, speed: 7.0 });
+    let at_7 = prime.to_dimensional(Particulars { length: 175.0, speed: 7.0 });
     for (symbol, published, decimals, ours, unit) in [
         ("K", 0.109, 3, at_7.K, "1/s"),
         ("T1 + T2 − T3", 99.0, 0, at_7.first_order_T(), "s"),
@@ -120,7 +121,7 @@ fn linear_indices() -> Vec<Check> {
     }
     let particulars = kvlcc2::full_scale().particulars.expect("KVLCC2 has particulars");
     let hull = Mmg::at_speed(kvlcc2::FULL_SCALE, particulars.speed).expect("KVLCC2 balances");
-    let tanker = hull.linearised().indices().expect("KVLCC2 is not exactly neutral").at(particulars);
+    let tanker = hull.linearised().indices().expect("KVLCC2 is not exactly neutral").to_dimensional(particulars);
     push("kvlcc2/K-over-T", "KVLCC2, linearised: K/T1", 3.0e-4, 5, tanker.K / tanker.T1, "1/s²");
     let what = "KVLCC2, linearised: size of T1";
     checks.push(Check::new("hulls/kvlcc2/T", what, (1e5, 0), tanker.T1.abs(), Tolerance::AtLeast, "s"));

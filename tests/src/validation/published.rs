@@ -3,7 +3,7 @@
 
 use ship::Particulars;
 use ship::ships::kvlcc2;
-use ship::vessel::prior::{HullParticulars, priors};
+use ship::vessel::prior::{HullParticulars, hull_prior};
 use trial::imo;
 
 use super::{Check, Section, Tolerance};
@@ -57,12 +57,12 @@ pub fn limits() -> Section {
 
 /// Checks of the priors of a hull: priors of KVLCC2 from its particulars alone against its published coefficients.
 pub fn hull_coefficients() -> Section {
-    let prior = priors(&KVLCC2).expect("KVLCC2 is a ship");
+    let prior = hull_prior(&KVLCC2).expect("KVLCC2 is a ship");
     let mut published = kvlcc2::FULL_SCALE;
     let mut checks = Vec::new();
     // Values taken from KVLCC2 itself would agree by construction.
     for coefficient in prior.coefficients.iter().filter(|coefficient| !coefficient.formula.source.contains("KVLCC2")) {
-        let Some(&mut value) = published.named(coefficient.formula.key) else { continue };
+        let Some(&mut value) = published.coefficient_mut(coefficient.formula.key) else { continue };
         let what = format!("KVLCC2 from her particulars: {}", coefficient.formula.symbol);
         let tolerance = Tolerance::Absolute(DEVIATIONS * coefficient.sd);
         let id = format!("priors/kvlcc2/{}", coefficient.formula.key);

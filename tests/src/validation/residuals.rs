@@ -12,7 +12,7 @@ use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
 use trace::fit::{FittedRecords, StoppingRule, StructureFit};
-use trace::full::start;
+use trace::full::start_point;
 use trace::model::Structure;
 use trace::record::PreparedRecord;
 use trace::weights::NoiseLaw;
@@ -144,7 +144,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let weights = problem.weights(&NoiseLaw::white(1, from_deg(NOISE).powi(2)));
     let starts = [term.priors.iter().map(|prior| prior.mean).collect(), term.neutral()];
     let fits = starts.map(|values: Vec<f64>| {
-        let theta = start(&own, &base, values.into_iter());
+        let theta = start_point(&own, &base, values.into_iter());
         problem.fit(&structure, theta, vec![replay.initial()], &weights, EFFORT)
     });
     let height = |fit: &StructureFit| fit.misfit + fit.penalty;

@@ -31,7 +31,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
         coefficients.anchor = track.last_state_from(a, &coefficients);
     }
     let (mut columns, mut by_inverse_time) = (MotionColumns::default(), Vec::new());
-    track.fill(a, &mut columns);
+    track.fill_columns(a, &mut columns);
     track.sensitivity(a, &coefficients, &mut by_inverse_time);
     let MotionColumns { homogeneous, rudder, constant, .. } = columns;
     let mut sensitivities = [by_inverse_time, rudder, constant, vec![1.0; track.len()], homogeneous];

@@ -125,7 +125,7 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
 /// Fails unless [`encode`] wrote the file for this block of this study and program.
 pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
     let damaged = || Damage::Changed("it is damaged".to_owned());
-    let rows = trial::decoder::guarded(|| read_file(bytes, expected, layout)).unwrap_or_else(|| Err(damaged()))?;
+    let rows = trial::decoder::catch_panic(|| read_file(bytes, expected, layout)).unwrap_or_else(|| Err(damaged()))?;
     let methods = layout.methods();
     let is_next = |(place, row): (usize, &StudyRow)| {
         let replicate = expected.block * Block::REPLICATES + (place / methods) as u64;

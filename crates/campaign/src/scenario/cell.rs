@@ -60,7 +60,7 @@ pub struct TrialSpecification<'a> {
     pub drawn: Vec<f64>,
 }
 
-/// Refusal of sampled values that specify no trial.
+/// Error of sampled values with which no trial can be simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
 pub struct Refusal(String);
@@ -141,7 +141,7 @@ impl DesignCell {
 
     /// `true` if its trials make an assumption.
     pub(crate) fn assumes(&self, assumption: Assumption) -> bool {
-        self.specification().is_some_and(|spec| assumption.holds(&spec.simulation))
+        self.specification().is_some_and(|spec| assumption.is_made_by(&spec.simulation))
     }
 
     /// Labels of the points joined by commas; empty without axes.

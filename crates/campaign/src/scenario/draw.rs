@@ -58,7 +58,7 @@ struct RangeWire {
     to: f64,
 }
 
-/// Random key with its distribution.
+/// Scenario key that is sampled for every trial, with its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RandomKey {
     /// Key.
@@ -173,7 +173,7 @@ impl DrawWire {
 }
 
 impl RandomKey {
-    /// Sample for one trial, in the unit of the key.
+    /// Sampled value of the key for the trial of `key`, in the unit of the key.
     pub fn value(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
         let [low, high] = self.between;

@@ -109,7 +109,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
     number_table::refuse_incomplete(&values, &keys, place)?;
     for constant in formula.parameters() {
         let value = values[constant.key];
-        if !constant.holds(value) {
+        if !constant.is_in_range(value) {
             let expected =
                 format!("expected a number from {} to {}", ShortNumber(constant.lowest), ShortNumber(constant.highest));
             return Err(KeyFault::of(place.child(constant.key), ShortNumber(value), expected, "change the value"));
@@ -144,7 +144,7 @@ pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault
 
 /// Effect from a line `name = formula`; faults refer to `key`.
 pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
-    ship::effects::formula(line).map_err(|error| {
+    ship::effects::parse_formula(line).map_err(|error| {
         let advice = "docs/src/howto/own-effect.md says what a formula may hold";
         KeyFault::within(error.at, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
     })
@@ -201,7 +201,7 @@ pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Resul
         }
         let settings = settings(form, numbers, inverse_time);
         for (description, setting) in effect.parameters().iter().zip(&settings) {
-            if !description.holds(setting.value) {
+            if !description.is_in_range(setting.value) {
                 let key = key.child(setting.key);
                 let mut ends =
                     [description.lowest, description.highest].map(|end| ShortNumber::rounded(end / setting.unit, 4));

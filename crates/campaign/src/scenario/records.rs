@@ -265,7 +265,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
             return Err(KeyFault::value(place, problem, "expected records", advice));
         }
         files.paths.extend(paths.into_iter().map(|path| {
-            let sidecar = Sidecar::describing(&path, sidecar.as_deref());
+            let sidecar = Sidecar::path_for(&path, sidecar.as_deref());
             (path, sidecar)
         }));
     }

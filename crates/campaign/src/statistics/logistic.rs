@@ -66,7 +66,7 @@ struct ShareLine<'a> {
 }
 
 impl ShareLine<'_> {
-    /// For every size: its logarithm relative to a place, trials, detections, and logit of the line through that place.
+    /// Per size: log size minus `place`, trials, detections, and logit of the detection probability.
     fn points(&self, place: f64, slope: f64) -> impl Iterator<Item = [f64; 4]> {
         self.tried.iter().map(move |level| {
             let after = level.size.ln() - place;
@@ -89,7 +89,7 @@ impl ShareLine<'_> {
         self.points(place, slope).map(|[_, trials, seen, logit]| seen - trials * chance(logit)).sum()
     }
 
-    /// Penalised profile log likelihood of a place.
+    /// Log likelihood, maximised over the slope with its ridge penalty, if the share is reached at log size `place`.
     fn height(&self, place: f64) -> f64 {
         let slope = self.slope(place);
         // ln p = −ln(1 + e^−logit), without overflow.
@@ -102,7 +102,7 @@ impl ShareLine<'_> {
     }
 }
 
-/// Probability of a logit.
+/// Logistic function: the probability of a logit.
 fn chance(logit: f64) -> f64 {
     1.0 / (1.0 + (-logit).exp())
 }

@@ -1,6 +1,6 @@
 //! Statistic over replicates, and shares, with their intervals.
 
-use estimation::statistics::wilson;
+use estimation::statistics::wilson_interval;
 use serde::{Deserialize, Serialize};
 
 /// Statistic with its 95 % interval.
@@ -40,7 +40,7 @@ pub fn share(count: u64, cases: u64) -> Option<Statistic> {
         return None;
     }
     let value = count as f64 / cases as f64;
-    Some(Statistic { value, ci95: Some(wilson(value, cases as f64, Z95)) })
+    Some(Statistic { value, ci95: Some(wilson_interval(value, cases as f64, Z95)) })
 }
 
 #[cfg(test)]

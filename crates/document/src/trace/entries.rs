@@ -36,7 +36,7 @@ pub struct PrimeIndices {
 impl PrimeIndices {
     /// K' and T' from K and T of a ship of these particulars.
     pub fn of([k, t]: [Quantity; 2], ship: Particulars) -> Self {
-        Self { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) }
+        Self { K: k.scaled(ship.prime_factor([-1, 0])), T: t.scaled(ship.prime_factor([1, 0])) }
     }
 }
 

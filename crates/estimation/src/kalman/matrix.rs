@@ -23,7 +23,7 @@ pub fn product<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [
 }
 
 /// Congruence F P Fᵀ of a symmetric P.
-pub fn sandwich<const N: usize>(f: &[[f64; N]; N], p: &[[f64; N]; N]) -> [[f64; N]; N] {
+pub fn congruence<const N: usize>(f: &[[f64; N]; N], p: &[[f64; N]; N]) -> [[f64; N]; N] {
     let half = product(f, p);
     let mut result = [[0.0; N]; N];
     for (j, f) in f.iter().enumerate() {

@@ -2,7 +2,7 @@
 //!
 //! Source: Bryson and Frazier (1963), whose smoother inverts no matrix.
 
-use super::{Filter, GAIN_TOLERANCE, Reading, Sensor, System, identity, sandwich};
+use super::{Filter, GAIN_TOLERANCE, Reading, Sensor, System, congruence, identity};
 
 /// Smoother of a system: the filter with the predicted covariance of every gain.
 #[derive(Debug, Clone)]
@@ -81,7 +81,7 @@ impl<const N: usize> Smoother<N> {
             // Transposed, since N = Aᵀ N A.
             let through: [[f64; N]; N] =
                 std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] - gain.gain[j] * seen(i)));
-            information = sandwich(&through, &information);
+            information = congruence(&through, &information);
             for (i, row) in information.iter_mut().enumerate() {
                 row.iter_mut().enumerate().for_each(|(j, x)| *x += seen(i) * seen(j) / gain.variance);
             }
@@ -92,7 +92,7 @@ impl<const N: usize> Smoother<N> {
             if let Some(step) = step {
                 let f = &self.filter.system.steps[step].transition;
                 let back: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f[j][i]));
-                information = sandwich(&back, &information);
+                information = congruence(&back, &information);
             }
         }
         variances

@@ -37,7 +37,7 @@ fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2
 
 /// Solution at instants one window apart, so that no row serves two instants. ψ(0) + T r(0) is an unknown of every
 /// trial, which avoids the one-sided slope at the first row.
-pub(super) fn identify_spread(
+pub(super) fn identify_at_spaced_instants(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
     condition_limit: f64,
@@ -61,7 +61,7 @@ pub(super) fn identify_spread(
 }
 
 /// Solution of the equation as printed, at the heading extrema: r(t) = 0, so that T multiplies only r(0).
-pub(super) fn identify_at_vertices(
+pub(super) fn identify_at_extrema(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
     condition_limit: f64,

@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::curve::FourierFit;
+use super::curve::FourierSeries;
 use super::nodes::{dot, has_even_steps};
 use crate::error::IdentifyError;
 
@@ -280,7 +280,7 @@ impl Basis {
     }
 
     /// Curve of a projection, with coefficients in the time of the record.
-    pub fn curve(&self, projection: &Projection) -> FourierFit {
+    pub fn curve(&self, projection: &Projection) -> FourierSeries {
         let (n, fundamental) = (self.harmonics, self.series.fundamental);
         let theta = &projection.coefficients;
         let (mut cosine, mut sine) = (Vec::with_capacity(n), Vec::with_capacity(n));
@@ -290,7 +290,7 @@ impl Basis {
             cosine.push(a * c - b * s);
             sine.push(a * s + b * c);
         }
-        FourierFit {
+        FourierSeries {
             fundamental,
             mean: theta[0],
             cosine,

@@ -2,7 +2,7 @@
 
 /// Fitted Fourier curve of the heading; time runs from the first observed row of the record.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FourierFit {
+pub struct FourierSeries {
     /// Fundamental w, rad/s.
     pub fundamental: f64,
     /// a₀, rad; not the mean of the record unless it holds whole periods.
@@ -17,7 +17,7 @@ pub struct FourierFit {
     pub condition: f64,
 }
 
-impl FourierFit {
+impl FourierSeries {
     /// Heading ψ(t), rad.
     pub fn heading(&self, t: f64) -> f64 {
         self.mean + self.sum(t, |_, c, s, a, b| a * c + b * s)

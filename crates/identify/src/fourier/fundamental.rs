@@ -72,7 +72,7 @@ impl Fundamental {
     pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<ChosenFundamental, IdentifyError> {
         let length = time[time.len() - 1] - time[0];
         let direct = |fundamental| ChosenFundamental { fundamental, stop: StopReason::Direct, evaluations: 0 };
-        let peak = || peak_of_transform(time, heading);
+        let peak = || spectral_peak(time, heading);
         Ok(match self {
             Self::RecordAndPeriods(periods) => direct(TAU / (length + periods * zero_crossing_period(time, heading)?)),
             Self::ZeroCrossings => direct(TAU / zero_crossing_period(time, heading)?),
@@ -176,7 +176,7 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
 /// Lowest RSS on a grid of fundamentals, refined.
 fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let length = time[time.len() - 1] - time[0];
-    let peak = peak_of_transform(time, heading);
+    let peak = spectral_peak(time, heading);
     let lowest = (MIN_PERIODS * TAU / length).max(MIN_REACH * peak / harmonics as f64);
     let step = SCAN_STEP * PI / (harmonics as f64 * length);
     let last = ((MAX_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize;
@@ -192,7 +192,7 @@ fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental 
 
 /// Angular frequency, rad/s, of the highest peak of the transform of the heading about its mean, from one period per
 /// record upwards. Headings are first interpolated to even steps, so that gaps are admissible.
-pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
+pub fn spectral_peak(time: &[f64], heading: &[f64]) -> f64 {
     let rows = time.len();
     let step = (time[rows - 1] - time[0]) / (rows - 1) as f64;
     let mut even = Vec::with_capacity(rows);

@@ -24,7 +24,7 @@ pub mod regression;
 pub(crate) mod triples;
 
 pub use basis::{Basis, Projection};
-pub use curve::FourierFit;
+pub use curve::FourierSeries;
 pub use fundamental::Fundamental;
 pub use profile::MAX_HARMONICS;
 
@@ -34,13 +34,13 @@ use crate::error::IdentifyError;
 use crate::estimate::StopReason;
 
 /// Maximum condition number of the basis for the use of derivatives of the curve.
-pub const TRUSTED_CONDITION: f64 = 1e4;
+pub const MAX_TRUSTED_CONDITION: f64 = 1e4;
 
 /// Fourier fit of a heading: the curve with its basis and projection.
 #[derive(Debug, Clone)]
-pub struct Fitted {
+pub struct FittedSeries {
     /// Fitted curve.
-    pub curve: FourierFit,
+    pub curve: FourierSeries,
     /// Basis, for the projection of other signals of the record.
     pub basis: Basis,
     /// Coefficients and residual of the heading on the basis.
@@ -60,7 +60,7 @@ pub fn fit(
     heading: &[f64],
     harmonics: usize,
     fundamental: &Fundamental,
-) -> Result<Fitted, IdentifyError> {
+) -> Result<FittedSeries, IdentifyError> {
     let (needed, count) = (2 * harmonics + 2, time.len());
     if count < needed {
         return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
@@ -69,11 +69,11 @@ pub fn fit(
     let basis = Basis::new(time, choice.fundamental, harmonics)?;
     let projection = basis.project(heading);
     let curve = basis.curve(&projection);
-    Ok(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
+    Ok(FittedSeries { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
 }
 
 /// Diagnostics of the fits: w and N of the first trial, minimum R² and maximum condition number of all trials.
-pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
+pub(crate) fn diagnostics(fits: &[FittedSeries]) -> Vec<(&'static str, f64)> {
     let first = fits.first().map(|fit| &fit.curve);
     let r_squared = fits.iter().fold(1.0f64, |least, fit| least.min(fit.curve.r_squared));
     let condition = fits.iter().fold(1.0f64, |most, fit| most.max(fit.curve.condition));
@@ -86,16 +86,16 @@ pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
 }
 
 /// Warnings on a fundamental at the edge of the search and on ill-conditioned bases.
-pub(crate) fn warnings(fits: &[Fitted]) -> Vec<Warning> {
+pub(crate) fn warnings(fits: &[FittedSeries]) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    for Fitted { curve, stop, .. } in fits {
+    for FittedSeries { curve, stop, .. } in fits {
         if *stop == StopReason::RangeLimit {
             warnings.push(WarningCode::AtBound.warning(format!(
                 "the best fundamental, {:.5} rad/s, lies at the edge of the search range",
                 curve.fundamental
             )));
         }
-        if curve.condition > TRUSTED_CONDITION {
+        if curve.condition > MAX_TRUSTED_CONDITION {
             warnings.push(WarningCode::IllConditioned.warning(format!(
                 "the Fourier basis is ill-conditioned (condition number {:.1e}, period of the series {:.0} s): its \
                  coefficients cancel each other and its derivatives are poor near the ends",

@@ -61,7 +61,7 @@ pub struct TripleEstimate {
 
 /// Estimates of the kept triples, and counts of the other triples.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct DrawnTriples {
+pub struct SampledTriples {
     /// Estimate of every kept triple.
     pub answers: Vec<TripleEstimate>,
     /// Number of sampled triples.
@@ -78,19 +78,19 @@ pub struct DrawnTriples {
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] if there are fewer than three instants or if a thousand draws per triple
 /// do not give `count` triples.
-pub fn draw(
+pub fn sample_triples(
     instants: &[RegressionPoint],
     selection: Selection,
     count: usize,
     seed: u64,
-) -> Result<DrawnTriples, IdentifyError> {
+) -> Result<SampledTriples, IdentifyError> {
     if instants.len() < 3 {
         let what = "instants with the rudder at rest";
         return Err(IdentifyError::TooFewPoints { what, needed: 3, count: instants.len() });
     }
     let scale = [standard_deviation(instants, |i| i.yaw_acceleration), standard_deviation(instants, |i| i.rudder)];
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut drawn = DrawnTriples { answers: Vec::with_capacity(count), ..DrawnTriples::default() };
+    let mut drawn = SampledTriples { answers: Vec::with_capacity(count), ..SampledTriples::default() };
     while drawn.answers.len() < count {
         if drawn.tried == count * DRAWS_PER_TRIPLE {
             let (needed, count) = (count, drawn.answers.len());
@@ -173,7 +173,7 @@ mod tests {
     fn the_algebra_is_exact() {
         for heading_deg in [10.0, 20.0] {
             let case = Case { heading_deg, bias_deg: 0.7, ..Case::default() };
-            let drawn = draw(&exact(&case), Selection::Uniform, 4000, 1).expect("most triples are usable");
+            let drawn = sample_triples(&exact(&case), Selection::Uniform, 4000, 1).expect("most triples are usable");
             assert!(drawn.singular > 0 && drawn.negative == 0);
             for answer in &drawn.answers {
                 assert_relative_eq!(answer.K, case.K, max_relative = 1e-6);
@@ -189,7 +189,7 @@ mod tests {
     fn the_share_of_singular_triples_is_that_of_a_count() {
         for (heading_deg, counted) in [(10.0, 0.162), (20.0, 0.190)] {
             let instants = exact(&Case { heading_deg, ..Case::default() });
-            let drawn = draw(&instants, Selection::Uniform, 4000, 1).expect("most triples are usable");
+            let drawn = sample_triples(&instants, Selection::Uniform, 4000, 1).expect("most triples are usable");
             let share = drawn.singular as f64 / drawn.tried as f64;
             assert!((share - counted).abs() < 0.02, "{share} singular in 10/{heading_deg}");
         }
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn the_condition_holds_for_what_is_kept() {
         let instants = exact(&Case::default());
-        let drawn = draw(&instants, Selection::default(), 200, 2).expect("enough good triples");
+        let drawn = sample_triples(&instants, Selection::default(), 200, 2).expect("enough good triples");
         assert!(drawn.ill_conditioned > 0);
         assert_eq!(drawn.tried, 200 + drawn.ill_conditioned + drawn.singular);
     }
@@ -207,7 +207,7 @@ mod tests {
     fn one_rudder_angle_gives_no_triple() {
         let mut instants = exact(&Case::default());
         instants.retain(|i| (i.rudder - 10f64.to_radians()).abs() < 1e-12);
-        let error = draw(&instants, Selection::Uniform, 10, 1).expect_err("one rudder angle");
+        let error = sample_triples(&instants, Selection::Uniform, 10, 1).expect_err("one rudder angle");
         assert_eq!(error, IdentifyError::TooFewPoints { what: "usable triples of instants", needed: 10, count: 0 });
     }
 }

@@ -27,7 +27,7 @@ fn uniform_triples_are_useless() {
     let samples = Samples::new(&trial, 18).expect("long enough");
     let fitted = method.fit(&samples).expect("fits");
     let instants = method.instants(&trial, &samples, &fitted);
-    let drawn = triples::draw(&instants, Selection::Uniform, 2000, 0).expect("most are usable");
+    let drawn = triples::sample_triples(&instants, Selection::Uniform, 2000, 0).expect("most are usable");
     let share = |holds: &dyn Fn(&TripleEstimate) -> bool| {
         drawn.answers.iter().filter(|answer| holds(answer)).count() as f64 / drawn.answers.len() as f64
     };

@@ -40,7 +40,7 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
 /// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
 /// deviations of the prior of her particulars.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
-    let expected = FormPrior::of_ship(Some(ship), all);
+    let expected = FormPrior::candidates(Some(ship), all);
     let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
     let place = expected.coefficients.iter().position(|own| own.key == key).expect("known");
     let (own, generic) = (expected.coefficients[place], expected.form.coefficients()[place]);
@@ -103,7 +103,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
     assert_eq!(Likeness::of(&SHIP, &ballast), Likeness::OtherHull);
     let of = |ship: &HullParticulars, all: &[EarlierHull]| {
-        let expected = FormPrior::of_ship(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
+        let expected = FormPrior::candidates(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
         *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
     };
     let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
@@ -120,7 +120,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
 #[test]
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
-    let expected = FormPrior::of_ship(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
+    let expected = FormPrior::candidates(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
     let [covariance, gain] = expected.covariance_and_gain().expect("trials are in it");
     let own = expected.form.coefficients();
     let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
@@ -129,7 +129,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     near(of("epsilon"), [11.0 / 12.0, 1.0 / 12.0]);
     near(of("R0"), [0.0, 1.0]);
     near(of("delta_r"), [0.0, 1.0]);
-    assert!(FormPrior::of_ship(Some(&ballast), &[])[0].covariance_and_gain().is_none());
+    assert!(FormPrior::candidates(Some(&ballast), &[])[0].covariance_and_gain().is_none());
 }
 
 /// Particulars that only one ship declares are used for both ships.
@@ -137,7 +137,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
     let of = |ship: &HullParticulars| {
-        let all = FormPrior::of_ship(Some(ship), &[earlier(SHIP, "mmg")]);
+        let all = FormPrior::candidates(Some(ship), &[earlier(SHIP, "mmg")]);
         all.into_iter().find(|own| own.form.as_str() == "mmg").expect("known").mean()
     };
     assert!((of(&bare) - of(&SHIP)).amax() < 1e-12);
@@ -153,7 +153,7 @@ fn left_by(estimate: &HullEstimate) -> EarlierHull {
 }
 
 fn quadratic(all: &[EarlierHull]) -> FormPrior {
-    FormPrior::of_ship(Some(&SHIP), all).remove(0)
+    FormPrior::candidates(Some(&SHIP), all).remove(0)
 }
 
 /// Mean square heading error of the replays of other records, rad².
@@ -184,16 +184,16 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     let third = sailed([15.0, 15.0]);
     let others = [[20.0, 10.0], [-15.0, 10.0], [25.0, 20.0]].map(sailed);
     let mut squares = [0.0; 2];
-    for (place, expected) in FormPrior::of_ship(Some(&SHIP), &[]).iter().enumerate() {
+    for (place, expected) in FormPrior::candidates(Some(&SHIP), &[]).iter().enumerate() {
         let earlier = left_by(&fit(&two, expected).expect("a fit"));
         let whole = fit(std::slice::from_ref(&third), expected).expect("a fit");
-        let after_trials = FormPrior::of_ship(Some(&SHIP), &[earlier]).swap_remove(place);
+        let after_trials = FormPrior::candidates(Some(&SHIP), &[earlier]).swap_remove(place);
         let half = fit(&[half_of(&third)], &after_trials).expect("a fit");
         let [half_square, whole_square] = [&half, &whole].map(|own| error_on(own, &others));
         squares = [squares[0] + half_square, squares[1] + whole_square];
         let ratio = (half_square / whole_square).sqrt();
         assert!(ratio < 1.3, "{}: {ratio}", expected.form.as_str());
-        let check = half.check().expect("a record tells something");
+        let check = half.prior_check().expect("a record tells something");
         assert!(!check.is_conflict(), "{}: {check:?}", expected.form.as_str());
     }
     assert!(squares[0] < 1.05 * 1.05 * squares[1], "{squares:?}");
@@ -207,7 +207,7 @@ fn another_ship_contradicts_the_prior() {
     let expected = quadratic(&[left_by(&fit(&two, &quadratic(&[])).expect("a fit"))]);
     let check = |truth: &[f64; 19]| {
         let found = fit(&[sailed(&hull(truth), [15.0, 15.0])], &expected).expect("a fit");
-        found.check().expect("a record tells something")
+        found.prior_check().expect("a record tells something")
     };
     let own = check(&TRUTH);
     assert!(own.p_value > 0.05, "{own:?}");

@@ -23,7 +23,7 @@ const FROUDE_TOLERANCE: f64 = 0.1;
 /// Minimum information of an earlier trial in a direction, relative to its prior, that is used.
 const MIN_INFORMATION: f64 = 1e-6;
 
-/// Prior of the coefficients of a form: a normal law.
+/// Normal prior distribution of the coefficients of one hull form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormPrior {
     /// Hull form.
@@ -59,18 +59,18 @@ pub fn differs_in_froude_number(earlier: &HullParticulars, ship: &HullParticular
 
 impl FormPrior {
     /// Prior from the form alone.
-    pub fn of_form(form: HullForm) -> Self {
+    pub fn from_form(form: HullForm) -> Self {
         let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
         Self { form, particulars: None, coefficients, precision, has_trials: false }
     }
 
     /// Priors of all forms that can be fitted to a ship, updated with earlier trials. Missing particulars are taken
     /// from the earlier ships.
-    pub fn of_ship(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
+    pub fn candidates(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
         let particulars = particulars
             .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.with_missing_from(&trial.particulars)));
         let after_trials = |form: HullForm| {
-            let mut expected = Self { particulars, ..Self::of_form(form) };
+            let mut expected = Self { particulars, ..Self::from_form(form) };
             let same_form = earlier.iter().filter(|hull| hull.form.as_str() == expected.form.as_str());
             if let Some(ship) = particulars {
                 let all: Vec<&EarlierHull> = same_form.collect();

@@ -47,7 +47,7 @@ pub use error::HullFitError;
 pub use expected::{EarlierHull, FormPrior, differs_in_froude_number};
 pub use moment::FormMoment;
 pub use objective::HullDeviations;
-use objective::{HullObjective, variances};
+use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
 pub use weighed::combined;
@@ -152,7 +152,7 @@ const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
-    let expected = FormPrior::of_ship(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    let expected = FormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 
@@ -166,7 +166,7 @@ pub fn supported_hulls(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate
 
 impl HullEstimate {
     /// Hull, ready for replay.
-    pub fn ship<R: Real>(&self) -> ScaledHull<R> {
+    pub fn scaled_hull<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
         let hull = self.expected.form.with_coefficients(&values).expect("the fit has replayed it");
@@ -178,7 +178,7 @@ impl HullEstimate {
     /// deviation exceeds half a turn, beyond the range of a linear law.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::of(trial, &self.reference).ok()?;
-        let [time, mut variance] = variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
+        let [time, mut variance] = heading_variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
         let residual = self.mean_square();
         variance.iter_mut().for_each(|value| *value += residual);
         if variance.iter().any(|value| *value > PI * PI) {
@@ -188,7 +188,7 @@ impl HullEstimate {
     }
 
     /// Check of the prior against the records; `None` if the records add no information.
-    pub fn check(&self) -> Option<PriorCheck> {
+    pub fn prior_check(&self) -> Option<PriorCheck> {
         PriorCheck::of(&self.expected, &self.values, &self.covariance)
     }
 

@@ -6,8 +6,8 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use ship::vessel::prime::PrimeHull;
 
-use super::objective::{Misfit, window_mean};
-use super::replayed::replayed;
+use super::objective::{Misfit, window_mean_square};
+use super::replayed::replay_rows;
 use super::track::HullTrack;
 
 /// Correlation time, in L/U₀: the error of a form changes with the manoeuvre and not with a gust.
@@ -21,7 +21,7 @@ const SCALINGS: usize = 2;
 const DRAWS: u64 = 6;
 const SEED: u64 = 2_210_105;
 
-/// Random yaw moment of a form: an Ornstein–Uhlenbeck process.
+/// Random yaw moment that a hull form leaves unexplained: an Ornstein–Uhlenbeck process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormMoment {
     /// Standard deviation as the rudder angle of equal moment at approach speed, rad.
@@ -63,9 +63,9 @@ fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed:
         *value = moment;
     }
     let start = [track.start[0], track.start[1], 0.0].map(Dual::from);
-    let rows = replayed(hull, &disturbed, track.whole, start).rows;
+    let rows = replay_rows(hull, &disturbed, track.whole, start).rows;
     let heading = rows.iter().zip(&track.heading);
     let heading = heading.map(|(row, read)| if read.is_finite() { row[0].value } else { f64::NAN }).collect();
     let mut rates = vec![0.0; track.cuts.len() - 1];
-    window_mean(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
+    window_mean_square(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
 }

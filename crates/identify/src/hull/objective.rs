@@ -8,7 +8,7 @@ use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
 use super::expected::FormPrior;
-use super::replayed::{Replayed, replayed};
+use super::replayed::{ReplayedWindow, replay_rows};
 use super::track::HullTrack;
 use super::turn::HardTurn;
 
@@ -78,7 +78,7 @@ struct WindowFit {
 
 fn window(hull: &PrimeHull<Dual<1>>, track: &HullTrack, ends: [usize; 2], [u, v]: [f64; 2], rate: f64) -> WindowFit {
     let start = [Dual::from(u), Dual::from(v), Dual::variable(rate, 0, 1.0)];
-    let Replayed { rows, end } = replayed(hull, track, ends, start);
+    let ReplayedWindow { rows, end } = replay_rows(hull, track, ends, start);
     let pairs = || {
         let measured = &track.heading[ends[0]..ends[1]];
         measured.iter().zip(&rows).filter(|(measured, _)| measured.is_finite())
@@ -146,7 +146,12 @@ fn replay_windows(
 }
 
 /// Mean square heading residual of the windows of a record; `rates` are the yaw rates at their starts.
-pub(super) fn window_mean(hull: &PrimeHull<Dual<1>>, track: &HullTrack, rates: &mut [f64], is_begun: bool) -> f64 {
+pub(super) fn window_mean_square(
+    hull: &PrimeHull<Dual<1>>,
+    track: &HullTrack,
+    rates: &mut [f64],
+    is_begun: bool,
+) -> f64 {
     let (mut square, mut read) = (0.0, 0);
     replay_windows(hull, track, &track.cuts, rates, is_begun, |replay| {
         (square, read) = (square + replay.square, read + replay.read);
@@ -177,7 +182,7 @@ impl<'a> HullObjective<'a> {
                 misfit.speed = squares.sum::<f64>() / replay.rows.len() as f64;
             });
             misfit.initial_yaw_rate = starts.whole[0];
-            misfit.window = window_mean(&hull, track, &mut starts.windows, is_begun);
+            misfit.window = window_mean_square(&hull, track, &mut starts.windows, is_begun);
             misfit
         };
         Some(self.tracks.iter().zip(&mut self.starts).map(misfit).collect())
@@ -272,7 +277,7 @@ fn add(
         // Surge and sway at this start do not depend on its yaw rate.
         start.iter_mut().for_each(|velocity| velocity.by[unknowns] = 0.0);
         let variable = Dual::variable(rate, unknowns, 1.0);
-        let Replayed { rows, end } = replayed(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
+        let ReplayedWindow { rows, end } = replay_rows(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
         start = [end[0], end[1]];
         let (columns, shares) = heading_columns(&rows, &track.heading[ends[0]..ends[1]], unknowns);
         add_squares(normal, &columns, unknowns + 1, weight);
@@ -314,7 +319,7 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 
 /// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
 /// coefficients are not valid.
-pub(super) fn variances(
+pub(super) fn heading_variances(
     expected: &FormPrior,
     track: &HullTrack,
     values: &[f64],
@@ -326,7 +331,8 @@ pub(super) fn variances(
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
-    let Replayed { rows, .. } = replayed(&expected.form.with_coefficients(&variables)?, track, track.whole, start);
+    let ReplayedWindow { rows, .. } =
+        replay_rows(&expected.form.with_coefficients(&variables)?, track, track.whole, start);
     let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;

@@ -9,19 +9,19 @@ use super::track::HullTrack;
 const MAX_STEP_LENGTHS: f64 = 0.08;
 
 /// Replay of a window: rows of states, each (ψ, u, v).
-pub(super) struct Replayed<R> {
+pub(super) struct ReplayedWindow<R> {
     pub rows: Vec<[R; 3]>,
     /// State at the first row after the window.
     pub end: [R; 3],
 }
 
 /// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
-pub(super) fn replayed<R: Real>(
+pub(super) fn replay_rows<R: Real>(
     hull: &PrimeHull<R>,
     track: &HullTrack,
     [from, to]: [usize; 2],
     start: [R; 3],
-) -> Replayed<R> {
+) -> ReplayedWindow<R> {
     let mut state = start;
     let mut heading = R::from(0.0);
     let mut rows = Vec::with_capacity(to - from);
@@ -49,5 +49,5 @@ pub(super) fn replayed<R: Real>(
             rows.push([heading, state[0], state[1]]);
         }
     }
-    Replayed { rows, end: state }
+    ReplayedWindow { rows, end: state }
 }

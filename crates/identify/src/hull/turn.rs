@@ -5,7 +5,7 @@ use estimation::number::Real;
 use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
-use super::replayed::replayed;
+use super::replayed::replay_rows;
 use super::track::HullTrack;
 
 /// Rudder, rad, and the time for which it is held, in L/U₀: two circles, after which a turn is steady or diverges.
@@ -37,7 +37,7 @@ impl HardTurn {
     /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.
     pub fn departures<R: Real>(&self, hull: &PrimeHull<R>) -> [R; 2] {
         let [starboard, port] = self.0.each_ref().map(|track| {
-            let [u, v, r] = replayed(hull, track, track.whole, [1.0, 0.0, 0.0].map(R::from)).end;
+            let [u, v, r] = replay_rows(hull, track, track.whole, [1.0, 0.0, 0.0].map(R::from)).end;
             [r / u.hypot(v), -v / r]
         });
         let mean = [(starboard[0] - port[0]) * 0.5, (starboard[1] + port[1]) * 0.5];

@@ -24,7 +24,7 @@ pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(Earlie
     both.add(&fitted.particulars, &of_form);
     let [covariance, _] = both.covariance_and_gain()?;
     let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
-    let before = FormPrior::of_ship(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
+    let before = FormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
     let check = before.and_then(|before| PriorCheck::of(&before, &after.values, &after.covariance));
     Some((after, check))
 }

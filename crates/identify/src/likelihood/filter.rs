@@ -6,7 +6,7 @@ use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseParameters;
 use super::schedule::Schedule;
-use super::transition::step;
+use super::transition::transition_step;
 
 /// Whitening filter for columns of one record, in units of the compass error, with variances of the initial heading and
 /// yaw rate in units of the compass variance.
@@ -33,6 +33,6 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
         Sensor { state: 0, beside: compass, variance: white },
         Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },
     ];
-    let steps = schedule.spans.iter().map(|span| step(parameters, span)).collect();
+    let steps = schedule.spans.iter().map(|span| transition_step(parameters, span)).collect();
     System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }
 }

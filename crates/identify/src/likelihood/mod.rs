@@ -39,7 +39,7 @@ pub use track::{MotionColumns, Track};
 pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
-    let parameters = NoiseVector::of(noise, ship).parameters(ship.inverse_T);
+    let parameters = NoiseVector::from_model(noise, ship).parameters(ship.inverse_T);
     let unit = noise.heading_sd;
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns start from rest at the first row, where the prior applies.

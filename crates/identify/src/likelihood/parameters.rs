@@ -6,7 +6,7 @@ use ship::FirstOrder;
 use trial::noise_model::{MomentKind, NoiseModel};
 
 /// Number of entries of a [`NoiseVector`].
-pub const ENTRIES: usize = 5;
+pub const NOISE_ENTRIES: usize = 5;
 
 /// Noise vector: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time of the
 /// compass error and of σ_r/σ, with flags for the active entries. The default is a white compass error alone.
@@ -19,7 +19,7 @@ pub struct NoiseVector {
     /// `true` if the compass error has a correlation time.
     pub coloured: bool,
     /// Logarithms, in the order above; inactive entries are ignored.
-    pub log: [f64; ENTRIES],
+    pub log: [f64; NOISE_ENTRIES],
 }
 
 /// Index of q/σ.
@@ -35,7 +35,7 @@ pub const GYRO: usize = 4;
 
 impl NoiseVector {
     /// Noise vector of a noise law for a ship.
-    pub fn of(noise: &NoiseModel, ship: &FirstOrder) -> Self {
+    pub fn from_model(noise: &NoiseModel, ship: &FirstOrder) -> Self {
         let unit = noise.heading_sd;
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
         Self {
@@ -53,7 +53,7 @@ impl NoiseVector {
     }
 
     /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
-    pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
+    pub fn to_model(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
@@ -72,7 +72,7 @@ impl NoiseVector {
     }
 
     /// Indices of the active entries.
-    pub fn entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
+    pub fn active_entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
         let active = [
             self.moment != MomentKind::None,
             self.moment == MomentKind::OrnsteinUhlenbeck,
@@ -80,7 +80,7 @@ impl NoiseVector {
             self.coloured,
             gyro,
         ];
-        (0..ENTRIES).filter(move |&entry| active[entry])
+        (0..NOISE_ENTRIES).filter(move |&entry| active[entry])
     }
 
     /// Noise parameters for this 1/T.

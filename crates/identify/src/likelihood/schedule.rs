@@ -19,7 +19,7 @@ pub struct Span {
 
 impl Span {
     /// Length of the span, s.
-    pub fn length(&self) -> f64 {
+    pub fn duration(&self) -> f64 {
         self.pieces.iter().sum()
     }
 
@@ -28,7 +28,7 @@ impl Span {
     }
 }
 
-/// Readings of a record in order.
+/// Sequence of the compass and gyro readings of a record, with the time spans between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// Kinds of steps.

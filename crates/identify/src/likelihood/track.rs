@@ -14,7 +14,7 @@ use trial::Trial;
 /// Relative tolerance of equal step lengths: far below the resolution of a clock.
 const STEP_TOLERANCE: f64 = 1e-9;
 
-/// Track of one trial, from the first to the last row with a heading.
+/// Rudder, heading and yaw rate of one trial, from the first to the last row with a heading.
 #[derive(Debug, Clone)]
 pub struct Track {
     /// Time of every row, s.
@@ -245,7 +245,7 @@ impl Track {
     }
 
     /// Fills the columns for a = `inverse_time`, 1/s.
-    pub fn fill(&self, inverse_time: f64, columns: &mut MotionColumns) {
+    pub fn fill_columns(&self, inverse_time: f64, columns: &mut MotionColumns) {
         self.fill_from(is_backward(inverse_time), inverse_time, columns);
     }
 

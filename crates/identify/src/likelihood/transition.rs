@@ -1,7 +1,7 @@
 //! Exact transition and noise covariance of the state over a time step, by a power series. Source: Van Loan (1978),
 //! Computing integrals involving the matrix exponential, IEEE Transactions on Automatic Control 23, 395–404.
 
-use estimation::kalman::{Step, identity, product, sandwich, sum};
+use estimation::kalman::{Step, congruence, identity, product, sum};
 use ship::first_order::Transition;
 use trial::noise_model::MomentKind;
 
@@ -29,9 +29,9 @@ const NODES: [(f64, f64); 8] = [
 type Small = [[f64; 3]; 3];
 
 /// Step over the time between two readings.
-pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
+pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
     let mut whole = match parameters.rudder {
-        None => undisturbed(parameters, span.length()),
+        None => undisturbed(parameters, span.duration()),
         Some(size) => {
             let piece = |&length: &f64| with_rudder(undisturbed(parameters, length), parameters, size, length);
             let mut pieces = span.pieces.iter().map(piece);
@@ -40,7 +40,7 @@ pub(crate) fn step<const N: usize>(parameters: &NoiseParameters, span: &Span) ->
         }
     };
     if let (Some(place), Some(rate)) = (parameters.compass_state(), parameters.compass_rate) {
-        let decay = (-rate * span.length()).exp();
+        let decay = (-rate * span.duration()).exp();
         whole.transition[place][place] = decay;
         whole.added[place][place] = 1.0 - decay * decay;
     }
@@ -53,7 +53,7 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, length: f64) -> Ste
     let doublings = (rates * length / MAX_SCALED_STEP).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, length / doublings.exp2());
     for _ in 0..doublings as usize {
-        q = sum(&q, &sandwich(&f, &q));
+        q = sum(&q, &congruence(&f, &q));
         f = product(&f, &f);
     }
     let mut step = Step { transition: identity(), added: [[0.0; N]; N] };

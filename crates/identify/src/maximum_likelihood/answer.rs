@@ -8,7 +8,7 @@ use ship::first_order::State;
 use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
-use super::choice::Chosen;
+use super::choice::ChosenLaw;
 use super::outliers::Suspects;
 use super::point::{Point, Record, SHARED};
 use super::search::Maximum;
@@ -70,7 +70,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
     let mut first = SHARED;
     for (number, (record, vector)) in records.iter().zip(vectors).enumerate() {
         let readings = parts[number].readings as f64;
-        let entries: Vec<usize> = vector.entries(record.has_gyro()).collect();
+        let entries: Vec<usize> = vector.active_entries(record.has_gyro()).collect();
         let by_entry: Vec<Matrix3<f64>> = (entries.iter())
             .map(|&entry| {
                 let moved = |by: f64| {
@@ -108,7 +108,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
 
 /// Covariance of (1/T, b, b δ_r) and degrees of freedom of the variances, averaged over the plausible noise laws, about
 /// the estimate of the most plausible law.
-fn averaged_covariance(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
+fn averaged_covariance(chosen: &ChosenLaw, freedom: f64) -> (Matrix3<f64>, f64) {
     let estimate_of = |point: &Point| Vector3::new(point.inverse_time, point.gain, point.offset);
     let here = estimate_of(&chosen.maxima[0].1.point);
     let (mut total, mut weights, mut per_freedom) = (Matrix3::zeros(), 0.0, 0.0);
@@ -123,8 +123,8 @@ fn averaged_covariance(chosen: &Chosen, freedom: f64) -> (Matrix3<f64>, f64) {
 }
 
 /// Estimate under the selected noise law.
-pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, IdentifyError> {
-    let Chosen { records, maxima, at_bound, .. } = &chosen;
+pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, IdentifyError> {
+    let ChosenLaw { records, maxima, at_bound, .. } = &chosen;
     let maximum = &maxima[0].1;
     let Point { inverse_time, gain, offset, deviance, ref vectors, ref parts, .. } = maximum.point;
     let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
@@ -151,7 +151,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
     warnings.extend(at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))
-        .map(|(record, (vector, part))| vector.noise(gain, part.variance.sqrt(), record.has_gyro()))
+        .map(|(record, (vector, part))| vector.to_model(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
     warnings.extend(trials.iter().zip(&noises).filter_map(|(trial, noise)| noise_warning(trial, noise, gain)));
     warnings.extend(outlier_warnings(trials, &chosen));
@@ -179,7 +179,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
 }
 
 /// Warnings on the outliers of the compass.
-fn outlier_warnings(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
+fn outlier_warnings(trials: &[Trial], chosen: &ChosenLaw) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for ((trial, record), suspects) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
         let (name, time) = (trial.title(), &record.track.time);
@@ -206,7 +206,7 @@ fn outlier_warnings(trials: &[Trial], chosen: &Chosen) -> Vec<Warning> {
 }
 
 /// Diagnostics of the noise of the first record, of the outliers, and of the kinds of moment that were fitted.
-fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &Chosen) -> Vec<(&'static str, f64)> {
+fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &ChosenLaw) -> Vec<(&'static str, f64)> {
     let count = |suspects: fn(&Suspects) -> usize| chosen.outliers.iter().map(suspects).sum::<usize>() as f64;
     let mut diagnostics = vec![
         ("heading_sd_deg", to_deg(noise.heading_sd)),
@@ -294,7 +294,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noi
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }
     let record = Record::new(track, noise.rudder_sd > 0.0);
-    let information = record.information(truth.inverse_T, &NoiseVector::of(noise, truth), &coefficients)?;
+    let information = record.information(truth.inverse_T, &NoiseVector::from_model(noise, truth), &coefficients)?;
     let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);
     Some(Covariance { degrees_of_freedom: None, ..response_covariance(&covariance, truth, 1.0) })

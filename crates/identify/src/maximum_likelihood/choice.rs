@@ -5,7 +5,7 @@ use ship::FirstOrder;
 use trial::Trial;
 
 use super::outliers::{self, MAX_OUTLIER_SHARE, Suspects};
-use super::point::{Point, Record, evaluate, readings};
+use super::point::{Point, Record, evaluate, reading_count};
 use super::search::{Maximum, Ranges, Search, Start, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
@@ -16,7 +16,7 @@ use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::output_error::{self, CONDITION_LIMIT, MIN_ROWS};
 use crate::replay::best_start;
 use crate::robust;
-use crate::samples::track;
+use crate::samples::checked_track;
 use trial::noise_model::MomentKind;
 
 /// Maximum number of rounds of outlier search and refit.
@@ -47,7 +47,7 @@ pub(super) struct PreparedRecords {
 }
 
 /// Selected noise law and its fit.
-pub(super) struct Chosen {
+pub(super) struct ChosenLaw {
     pub records: Vec<Record>,
     /// Fits under the plausible noise laws with their weights, the most plausible first.
     pub maxima: Vec<(f64, Maximum)>,
@@ -65,13 +65,14 @@ pub(super) struct Chosen {
 impl PreparedRecords {
     /// Finds the outliers of the records and fits `output-error` to the other readings. Fails as `output-error` does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
-        let whole = trials.iter().map(|trial| track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let whole =
+            trials.iter().map(|trial| checked_track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
         // Readings far from any possible course would spoil the first fit: a very quick ship could follow a sentinel in
         // the first row by its initial yaw rate.
         let gross = |track: &Track| match settings.outliers {
-            true => Suspects { jumps: Vec::new(), ..outliers::find(track, &track.heading, &[]) },
+            true => Suspects { jumps: Vec::new(), ..outliers::find_suspects(track, &track.heading, &[]) },
             false => Suspects::default(),
         };
         let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
@@ -84,7 +85,7 @@ impl PreparedRecords {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
             let fitted = first.as_ref().ok();
             let again = |(track, excluded): (&Track, &Suspects)| {
-                outliers::find(track, &residual(track, fitted, &excluded.spikes), &excluded.spikes)
+                outliers::find_suspects(track, &residual(track, fitted, &excluded.spikes), &excluded.spikes)
             };
             let next: Vec<Suspects> = whole.iter().zip(&suspects).map(again).collect();
             let share = |(track, rows): (&Track, &Suspects)| rows.spikes.len() as f64 / track.len() as f64;
@@ -130,7 +131,7 @@ impl PreparedRecords {
     }
 
     /// Fits every noise law and selects the law with the lowest BIC.
-    pub fn choose(self, settings: &Settings) -> Result<Chosen, IdentifyError> {
+    pub fn choose(self, settings: &Settings) -> Result<ChosenLaw, IdentifyError> {
         let Self { mut records, start, outliers, too_many, evaluations } = self;
         let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
         let a = start.inverse_T;
@@ -164,7 +165,7 @@ impl PreparedRecords {
             all.into_iter().map(weigh).filter(|(weight, _)| *weight > MIN_WEIGHT).collect();
         let end = maxima[0].1.point.inverse_time;
         let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
-        Ok(Chosen { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })
+        Ok(ChosenLaw { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })
     }
 }
 
@@ -174,7 +175,7 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
     let Some(estimate) = fitted else { return track.heading.clone() };
     let ship = estimate.response;
     let mut columns = MotionColumns::default();
-    track.fill(ship.inverse_T, &mut columns);
+    track.fill_columns(ship.inverse_T, &mut columns);
     let Coefficients { gain, offset, .. } = Coefficients::of(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
     let free: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
@@ -208,10 +209,13 @@ fn bic(records: &[Record], point: &Point) -> f64 {
         .zip(&point.vectors)
         .map(|(record, vector)| {
             // The entry of a declared rudder error represents the size of the compass error, which all laws count.
-            vector.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
+            vector
+                .active_entries(record.has_gyro())
+                .filter(|&entry| entry != RUDDER || record.declared.is_none())
+                .count()
         })
         .sum();
-    point.restricted + noise as f64 * (readings(records) as f64).ln()
+    point.restricted + noise as f64 * (reading_count(records) as f64).ln()
 }
 
 /// Fits of all noise laws, each with its BIC.
@@ -292,7 +296,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         };
         if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_unseen)) {
             let entries = search.records.len() as f64;
-            search.unseen.push((kind, bic + entries * (readings(search.records) as f64).ln()));
+            search.unseen.push((kind, bic + entries * (reading_count(search.records) as f64).ln()));
             continue;
         }
         let fitted = start.and_then(|start| search.highest(start));

@@ -53,7 +53,7 @@ pub(super) struct Suspects {
 ///
 /// Spikes spoil the fit and so enlarge other residuals: in addition to the spikes `excluded` from the fit only the
 /// largest are selected in a round.
-pub(super) fn find(whole: &Track, residual: &[f64], excluded: &[usize]) -> Suspects {
+pub(super) fn find_suspects(whole: &Track, residual: &[f64], excluded: &[usize]) -> Suspects {
     let (lowest, highest) = extremes(&whole.heading);
     // The range may include a sentinel.
     let floor = MIN_OUTLIER_SHARE * (highest - lowest).min(std::f64::consts::PI);
@@ -166,16 +166,16 @@ mod tests {
         // Noise alone, as in the residual of a good fit.
         let truth = Case::default().truth();
         let noise: Vec<f64> = track.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
-        assert_eq!(find(&track, &noise, &[]), Suspects::default());
+        assert_eq!(find_suspects(&track, &noise, &[]), Suspects::default());
         let mut spoilt = noise.clone();
         for (row, by) in [(0, 1.0), (60, -0.05), (100, 4.9), (101, 4.9), (102, 4.9), (270, 0.03)] {
             spoilt[row] += by;
         }
-        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).spikes, [0, 60, 100, 101, 102, 270]);
-        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).jumps, [0usize; 0]);
+        assert_eq!(find_suspects(&track, &spoilt, &[0, 60, 270]).spikes, [0, 60, 100, 101, 102, 270]);
+        assert_eq!(find_suspects(&track, &spoilt, &[0, 60, 270]).jumps, [0usize; 0]);
         let jumped: Vec<f64> =
             noise.iter().enumerate().map(|(row, x)| x + if row >= 130 { 0.07 } else { 0.0 }).collect();
-        assert_eq!(find(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
+        assert_eq!(find_suspects(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
     }
 
     /// A smooth misfit without noise has no outliers, whatever its beginning.
@@ -185,6 +185,6 @@ mod tests {
         let smooth: Vec<f64> = (0..track.heading.len())
             .map(|k| 0.05 * (-(k as f64) / 6.0).exp() + 0.01 * (k as f64 / 40.0).sin())
             .collect();
-        assert_eq!(find(&track, &smooth, &[]).spikes, [0usize; 0]);
+        assert_eq!(find_suspects(&track, &smooth, &[]).spikes, [0usize; 0]);
     }
 }

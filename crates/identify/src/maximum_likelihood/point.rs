@@ -120,7 +120,7 @@ impl Record {
     /// not finite.
     fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<WhitenedColumns> {
         let mut motion = MotionColumns::default();
-        self.track.fill(inverse_time, &mut motion);
+        self.track.fill_columns(inverse_time, &mut motion);
         let MotionColumns { homogeneous, rudder, constant, rates } = &motion;
         let ones = self.schedule.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
         let mut nuisance = vec![ones, self.schedule.stacked(homogeneous, &rates.homogeneous)];
@@ -320,7 +320,7 @@ impl RecordAtPoint {
 }
 
 /// Number of readings of all records.
-pub(super) fn readings(records: &[Record]) -> usize {
+pub(super) fn reading_count(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
 
@@ -329,7 +329,7 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVe
     let columns =
         |(record, vector): (&Record, &NoiseVector)| record.white(inverse_time, &vector.parameters(inverse_time));
     let columns = records.iter().zip(vectors).map(columns).collect::<Option<Vec<WhitenedColumns>>>()?;
-    let all = readings(records);
+    let all = reading_count(records);
     let weight = |((record, vector), white): ((&Record, &NoiseVector), &WhitenedColumns)| {
         Weight::new(record, vector, white, all)
     };

@@ -8,7 +8,7 @@ use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use trial::noise_model::MomentKind;
 
-use super::point::{Point, Record, RecordAtPoint, SHARED, readings};
+use super::point::{Point, Record, RecordAtPoint, SHARED, reading_count};
 
 /// Step of a logarithm, and of 1/T as a share of itself and of one over the length of the record: wide enough for the
 /// digits of the likelihood, and far below the uncertainty of the noise.
@@ -30,7 +30,7 @@ pub(super) struct Linearised {
 
 /// Score and information at a point.
 pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
-    let count = |(record, vector): (&Record, &NoiseVector)| vector.entries(record.has_gyro()).count();
+    let count = |(record, vector): (&Record, &NoiseVector)| vector.active_entries(record.has_gyro()).count();
     let counts: Vec<usize> = records.iter().zip(&point.vectors).map(count).collect();
     let unknowns = SHARED + counts.iter().sum::<usize>();
     let mut all = Linearised {
@@ -78,7 +78,7 @@ impl Linearised {
     /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {
         let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);
-        let (all, a, steering) = (readings(records), point.inverse_time, [point.gain, point.offset]);
+        let (all, a, steering) = (reading_count(records), point.inverse_time, [point.gain, point.offset]);
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
         let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
@@ -91,7 +91,7 @@ impl Linearised {
             Slope { innovation: none.clone(), log_variance: none, score: [0.0; 2], tied: 0.0 }
         };
         let mut slopes = vec![by_ship];
-        for entry in vector.entries(record.has_gyro()) {
+        for entry in vector.active_entries(record.has_gyro()) {
             let mut moved = *vector;
             moved.log[entry] += DIFFERENCE;
             let there = RecordAtPoint::new(record, a, steering, &moved, a, all)?;

@@ -81,7 +81,7 @@ pub(super) struct Search<'a> {
     pub unseen: Vec<(MomentKind, f64)>,
 }
 
-/// End of a search.
+/// Maximum of the likelihood that a search found.
 pub(super) struct Maximum {
     pub point: Point,
     pub linearised: Linearised,
@@ -211,7 +211,7 @@ impl Search<'_> {
         let mut free = vec![0];
         let mut index = SHARED;
         for ((record, vector), ranges) in self.records.iter().zip(&point.vectors).zip(self.ranges) {
-            for entry in vector.entries(record.has_gyro()) {
+            for entry in vector.active_entries(record.has_gyro()) {
                 let [low, high] = ranges.range(vector, entry);
                 let log = vector.log[entry];
                 let outward = (log <= low && score[index] > 0.0) || (log >= high && score[index] < 0.0);
@@ -230,7 +230,7 @@ impl Search<'_> {
         let mut index = SHARED;
         let mut vectors = point.vectors.clone();
         for ((record, vector), ranges) in self.records.iter().zip(&mut vectors).zip(self.ranges) {
-            for entry in vector.entries(record.has_gyro()) {
+            for entry in vector.active_entries(record.has_gyro()) {
                 *vector = ranges.with(vector, entry, vector.log[entry] + by(index));
                 index += 1;
             }

@@ -7,9 +7,9 @@ use ship::first_order::{State, TangentTransition};
 
 use super::record::{FilterRow, Record};
 
-/// Unknowns that all records share; linear in the regression except for the filter.
+/// Parameters common to all records: 1/T, K/T and K/T δ_r. The regression is linear in them, except for the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shared {
+pub(super) struct SharedParameters {
     /// a = 1/T, 1/s.
     pub a: f64,
     /// b = K/T, 1/s².
@@ -21,7 +21,7 @@ pub(super) struct Shared {
 /// Point of the iteration: the shared unknowns and the state at the first row of each record.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Point {
-    pub shared: Shared,
+    pub shared: SharedParameters,
     pub starts: Vec<State>,
 }
 
@@ -30,7 +30,8 @@ impl Point {
     pub fn towards(&self, other: &Self, share: f64) -> Self {
         let between = |from: f64, to: f64| from + share * (to - from);
         let (from, to) = (&self.shared, &other.shared);
-        let shared = Shared { a: between(from.a, to.a), b: between(from.b, to.b), bias: between(from.bias, to.bias) };
+        let shared =
+            SharedParameters { a: between(from.a, to.a), b: between(from.b, to.b), bias: between(from.bias, to.bias) };
         let start = |(from, to): (&State, &State)| State {
             heading: between(from.heading, to.heading),
             yaw_rate: between(from.yaw_rate, to.yaw_rate),
@@ -46,7 +47,7 @@ impl Point {
 /// heading x of `shared` with ∂x/∂a in `motion` and `sensitivity`. Since (s + a) ∂x/∂a = −(x − x(0)), the sensitivity
 /// is the noise-free counterpart of −lp (ψ − ψ(0)): the instrument.
 pub(super) struct Filters {
-    shared: Shared,
+    shared: SharedParameters,
     transition: TangentTransition,
     unit: State,
     steered: State,
@@ -57,7 +58,7 @@ pub(super) struct Filters {
 
 impl Filters {
     /// Filters with pole −a of `shared`, before the first row.
-    fn new(shared: Shared, start: State) -> Self {
+    fn new(shared: SharedParameters, start: State) -> Self {
         Self {
             shared,
             transition: TangentTransition::new(shared.a, 0.0),
@@ -71,7 +72,7 @@ impl Filters {
 
     /// Runs over `record` and calls `visit` at every observed row.
     #[inline]
-    pub fn run(record: &Record, shared: Shared, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
+    pub fn run(record: &Record, shared: SharedParameters, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
         let mut filters = Self::new(shared, start);
         let mut before: Option<&FilterRow> = None;
         for row in &record.rows {
@@ -92,7 +93,7 @@ impl Filters {
         if h != self.transition.value.h {
             self.transition = TangentTransition::new(self.shared.a, h);
         }
-        let Shared { b, bias, .. } = self.shared;
+        let SharedParameters { b, bias, .. } = self.shared;
         let exact = &self.transition.value;
         let rate = 1.0 / h;
         let slope = (row.rudder - before.rudder) * rate;
@@ -123,7 +124,7 @@ impl Filters {
     }
 }
 
-/// Columns on the left of the normal equations.
+/// Choice of Z in the normal equations ZᵀX θ = Zᵀψ: regressors (least squares) or instruments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LeftColumns {
     /// Regressors: least squares.
@@ -150,7 +151,7 @@ pub(super) struct InstrumentalEquations {
 
 impl InstrumentalEquations {
     /// One pass over `record` with the filters of `shared`; `None` if 1 and φ₁ are parallel, as after an overflow.
-    pub fn new(record: &Record, shared: Shared, start: State, left: LeftColumns) -> Option<Self> {
+    pub fn new(record: &Record, shared: SharedParameters, start: State, left: LeftColumns) -> Option<Self> {
         let mut gram = SMatrix::<f64, 5, 5>::zeros();
         let mut cross = SMatrix::<f64, 5, 2>::zeros();
         Filters::run(record, shared, start, |row, filters| {

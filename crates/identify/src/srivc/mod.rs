@@ -40,7 +40,7 @@ use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_iterations, require};
 use covariance::Residuals;
-use filter::{InstrumentalEquations, LeftColumns, Point, Shared};
+use filter::{InstrumentalEquations, LeftColumns, Point, SharedParameters};
 use record::Record;
 
 /// Minimum number of headings of a trial: twice its unknowns.
@@ -117,7 +117,7 @@ impl Identifier for Srivc {
             evaluations += 1;
         }
         let (solution, iterations) = self.iterate(&records, start)?;
-        let Shared { a, b, bias } = solution.point.shared;
+        let SharedParameters { a, b, bias } = solution.point.shared;
         let sign = if backwards { -1.0 } else { 1.0 };
         let inverse_time = sign * a;
         if !(b > 0.0 && b.is_finite() && a.is_finite()) {
@@ -162,8 +162,10 @@ impl Identifier for Srivc {
 impl Srivc {
     /// Start of the iteration: filters with their pole at 0 and the regressors as instruments.
     fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
-        let zero =
-            Point { shared: Shared { a: 0.0, b: 0.0, bias: 0.0 }, starts: vec![State::default(); records.len()] };
+        let zero = Point {
+            shared: SharedParameters { a: 0.0, b: 0.0, bias: 0.0 },
+            starts: vec![State::default(); records.len()],
+        };
         self.solve(records, &zero, LeftColumns::Regressors)
     }
 
@@ -231,7 +233,7 @@ impl Srivc {
             .solve(&target.component_mul(&scale))
             .ok_or_else(|| singular(f64::INFINITY))?
             .component_mul(&scale);
-        let shared = Shared { a: at.shared.a + theta[0], b: theta[1], bias: theta[2] };
+        let shared = SharedParameters { a: at.shared.a + theta[0], b: theta[1], bias: theta[2] };
         let starts = blocks.iter().map(|block| block.start(&theta)).collect();
         Ok(Solution { point: Point { shared, starts }, condition, blocks })
     }

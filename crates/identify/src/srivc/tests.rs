@@ -90,14 +90,16 @@ impl Spread {
         let ship = case.ship();
         let truth = [ship.K(), ship.T(), ship.rudder_bias];
         let (time, heading, rudder) = exact(case, &ship);
-        let true_filter =
-            Point { shared: Shared { a: ship.inverse_T, b: ship.K_over_T, bias: 0.0 }, starts: vec![State::default()] };
+        let true_filter = Point {
+            shared: SharedParameters { a: ship.inverse_T, b: ship.K_over_T, bias: 0.0 },
+            starts: vec![State::default()],
+        };
         for seed in 0..REPEATS {
             let noisy = heading.iter().zip(noise(seed)).map(|(psi, e)| psi + from_deg(case.noise_deg) * e).collect();
             let trial = record("noisy", time.clone(), noisy, rudder.clone());
             let least_squares =
                 srivc().solve(&[Record::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
-            let Shared { a, b, .. } = least_squares.point.shared;
+            let SharedParameters { a, b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
             let robust = estimate.robust.as_ref().expect("a robust covariance").indices(&estimate.response);
             let found = [estimate.K(), estimate.T(), estimate.rudder_bias()];

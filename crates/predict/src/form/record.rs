@@ -8,7 +8,9 @@ use trial::{Loading, Quantity, Trial, ZigZag as Measured};
 
 use crate::correction::Correction;
 use crate::helm_replay;
-use crate::imo::{CIRCLE_RUDDER, FormManoeuvre, TOLERANCE, TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
+use crate::imo::{
+    CIRCLE_RUDDER, CIRCLE_RUDDER_TOLERANCE, FormManoeuvre, TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20,
+};
 use crate::turn::{self, HeldTurn};
 
 /// Maximum yaw rate of a straight approach, relative to the maximum yaw rate of the record.
@@ -112,7 +114,9 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
         ZIG_ZAG_10_10 => &["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"],
         _ => &["first_overshoot_deg"],
     };
-    let show = |name: &&'static str| Some((*name, helm_replay::shown(trial, zigzag, name, None, trial.particulars())?));
+    let show = |name: &&'static str| {
+        Some((*name, helm_replay::measured_characteristic(trial, zigzag, name, None, trial.particulars())?))
+    };
     let stands_in =
         manoeuvre == ZIG_ZAG_10_10 && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
     let remarks = [
@@ -132,21 +136,21 @@ fn circle(trial: &Trial) -> Classified {
     let Particulars { length, speed } = trial.particulars().ok_or_else(|| {
         String::from("neither a zig-zag of the form nor, with an unknown length of the ship, a turning circle")
     })?;
-    let passage = turn::recorded(trial, length / speed, Some(length)).ok_or_else(neither)?;
+    let passage = turn::resampled_record(trial, length / speed, Some(length)).ok_or_else(neither)?;
     let shown = turn.figures(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
     let rudder = to_deg(turn.rudder);
-    if (turn.rudder - CIRCLE_RUDDER).abs() > TOLERANCE {
+    if (turn.rudder - CIRCLE_RUDDER).abs() > CIRCLE_RUDDER_TOLERANCE {
         return Err(format!("a turning circle with {rudder:.1}° of rudder; the form needs 35° or the largest angle"));
     }
-    if turn.before.abs() > TOLERANCE {
+    if turn.before.abs() > CIRCLE_RUDDER_TOLERANCE {
         let before = to_deg(turn.before);
         return Err(format!("the turning circle begins with the rudder at {before:.1}°, not from a straight course"));
     }
-    let approach = (turn.approach() / passage.period) as usize;
+    let approach = (turn.approach_duration() / passage.period) as usize;
     if approach >= MIN_APPROACH_ROWS {
         let rate = (passage.heading[approach - 1] - passage.heading[0]) / ((approach - 1) as f64 * passage.period);
-        if rate.abs() > MAX_STRAIGHT_RATE * passage.largest_rate() {
+        if rate.abs() > MAX_STRAIGHT_RATE * passage.max_yaw_rate() {
             let rate = to_deg(rate);
             return Err(format!("the turning circle begins at {rate:.2} deg/s, not from a straight course"));
         }

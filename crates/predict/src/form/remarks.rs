@@ -16,7 +16,7 @@ pub(crate) fn remarks(
     declared: Option<(&str, &Conditions)>,
     particulars: Option<Particulars>,
 ) -> Vec<String> {
-    let mut remarks: Vec<String> = particulars.and_then(imo::caution).into_iter().collect();
+    let mut remarks: Vec<String> = particulars.and_then(imo::short_ship_caution).into_iter().collect();
     // A remark on several files appears once.
     let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
     for manoeuvre in tested {

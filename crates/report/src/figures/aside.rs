@@ -1,4 +1,4 @@
-//! Names right of the frame, in place of a key: as near to their layers as possible without touching.
+//! Layer names right of the frame, in place of a legend: as near to their layers as possible without touching.
 
 use plotters::style::text_anchor::HPos;
 

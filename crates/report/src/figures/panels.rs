@@ -16,7 +16,7 @@ use crate::markup::symbol;
 use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
 use crate::theme::Theme;
 
-/// Axis: its title with the unit, its division and its reach.
+/// Specification of an axis: title with unit, tick division, and limits.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ruler {
     /// Title with the unit.
@@ -106,7 +106,7 @@ impl Pen {
         Self { dash: look.dash, ..Self::new(look.colour) }
     }
 
-    /// One of many lines: thin and pale.
+    /// Thin, pale line for one of many curves.
     pub const fn pale() -> Self {
         Self { width: 0.6, opacity: 0.35, ..Self::new(HEADING) }
     }
@@ -218,7 +218,7 @@ impl Layer {
         self
     }
 
-    /// The layer, cut if it leaves the range of all other data by more than this share of that range.
+    /// Layer that may widen the axes by the share `room` of the range of all other data, and is cut beyond.
     pub fn within(self, room: f64) -> Self {
         Self { room: Some(room), ..self }
     }

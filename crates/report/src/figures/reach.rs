@@ -4,7 +4,7 @@ use estimation::statistics::upper_median;
 
 use crate::axis;
 
-/// Limit of an axis for wild data: a multiple of the median extent from a centre.
+/// Limit of an axis against outliers: a multiple of the median extent from a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisReach {
     /// Multiple of the median extent.
@@ -106,7 +106,7 @@ const FAR: f64 = 0.005;
 /// Maximum distance of these points from the others on the axis, in ranges of the others.
 const ROOM: f64 = 0.5;
 
-/// Range of the values, with few far ones moved towards all others.
+/// Values that set the axis: minimum and maximum, after a few outliers are moved towards the rest.
 pub(super) fn robust(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let skipped = (FAR * values.len() as f64).ceil() as usize;

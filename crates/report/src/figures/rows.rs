@@ -71,7 +71,7 @@ impl RowItem {
         Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
     }
 
-    /// The item, cut if it is far from all other data.
+    /// Item that is cut where it is far from all other data, so that it cannot stretch the axis.
     pub fn softly(self) -> Self {
         Self { soft: true, ..self }
     }

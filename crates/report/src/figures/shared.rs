@@ -76,7 +76,7 @@ pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
     dense(heading, theme).map_or(KeySample::Dots(RECORD), KeySample::Line)
 }
 
-/// Places with neighbours nearer than `gap` spread about their common middle: zig-zags of one rudder angle would
+/// Positions of marks, where those nearer than `gap` are spread about their mean: zig-zags of one rudder angle would
 /// otherwise overlap.
 pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     let mut order: Vec<(usize, f64)> =

@@ -55,7 +55,7 @@ impl<R: Real> Action<R> for Backlash {
     /// Play operator: for a monotone rudder, the previous angle clamped to [δ − g, δ + g]; exact within a step.
     fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
         let g = p[0].at_least(0.0);
-        z[0].between(rudder - g, rudder + g)
+        z[0].clamped(rudder - g, rudder + g)
     }
 
     fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, rate: &mut [R]) {

@@ -80,7 +80,7 @@ impl Parameter {
     }
 
     /// `true` if a value lies within the physical range.
-    pub fn holds(&self, value: f64) -> bool {
+    pub fn is_in_range(&self, value: f64) -> bool {
         (self.lowest..=self.highest).contains(&value)
     }
 }
@@ -115,7 +115,7 @@ pub struct BaseFactors<R = f64> {
 
 impl<R: Real> BaseFactors<R> {
     /// Factors equal to one.
-    pub fn none() -> Self {
+    pub fn unity() -> Self {
         Self { damping: R::from(1.0), gain: R::from(1.0) }
     }
 }
@@ -263,7 +263,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Shortest time constant of the effect, s, which steps must resolve.
-    fn shortest_time(&self, _p: &[f64]) -> f64 {
+    fn min_time_constant(&self, _p: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -300,7 +300,7 @@ pub trait Action<R: Real> {
 
     /// Factors on damping and gain.
     fn base_factors(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>) -> BaseFactors<R> {
-        BaseFactors::none()
+        BaseFactors::unity()
     }
 
     /// Addition to the yaw acceleration, rad/s².

@@ -2,7 +2,7 @@
 
 use super::effect::Parameter;
 
-/// Instant t₀, s.
+/// Parameter t₀ of a step: the instant at which a moment sets in, s.
 pub const INSTANT: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
 
 /// Width w of an edge, in rows.

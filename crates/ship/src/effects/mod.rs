@@ -44,8 +44,8 @@ use crate::particulars::Dimension;
 /// `; k from 1 to 20`.
 ///
 /// Fails with the position and the expected symbols, and for the name of an effect of the list.
-pub fn formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
-    let formula = Formula::read(line)?;
+pub fn parse_formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
+    let formula = Formula::parse(line)?;
     if all().iter().any(|effect| effect.id() == formula.id()) {
         let problem = format!("`{}` is on the list of effects; give the formula another name", formula.id());
         return Err(FormulaError { text: line.to_owned(), at: 0, problem });

@@ -48,7 +48,7 @@ impl Effect for SecondOrder {
         1
     }
 
-    fn shortest_time(&self, p: &[f64]) -> f64 {
+    fn min_time_constant(&self, p: &[f64]) -> f64 {
         p[0]
     }
 }

@@ -164,7 +164,7 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn shortest_time(&self, p: &[f64]) -> f64 {
+    fn min_time_constant(&self, p: &[f64]) -> f64 {
         match self {
             Self::Modelled => p[1],
             _ => f64::INFINITY,
@@ -196,7 +196,7 @@ impl<R: Real> Action<R> for SpeedLoss {
                     let q = R::from((speed / approach_speed).max(MIN_SPEED_RATIO));
                     BaseFactors { damping: q.powf(p[0]), gain: q.powf(p[1]) }
                 }
-                None => BaseFactors::none(),
+                None => BaseFactors::unity(),
             },
             Self::Inflow { approach_speed, approach_rate } => {
                 let change = |measured: Option<f64>, base: f64| measured.map_or(0.0, |value| value / base - 1.0);
@@ -210,7 +210,7 @@ impl<R: Real> Action<R> for SpeedLoss {
                     let q = R::from((rate / approach_rate).max(MIN_SPEED_RATIO));
                     BaseFactors { damping: R::from(1.0), gain: q.powf(p[0]) }
                 }
-                None => BaseFactors::none(),
+                None => BaseFactors::unity(),
             },
         }
     }

@@ -67,7 +67,7 @@ impl Effect for SteeringLag {
         }
     }
 
-    fn shortest_time(&self, p: &[f64]) -> f64 {
+    fn min_time_constant(&self, p: &[f64]) -> f64 {
         match self {
             Self::DeadTime => f64::INFINITY,
             Self::FirstOrder => p[0].max(MIN_LAG_S),

@@ -96,7 +96,7 @@ impl Effect for TransientDisturbance {
         Targets::MOMENT
     }
 
-    fn shortest_time(&self, p: &[f64]) -> f64 {
+    fn min_time_constant(&self, p: &[f64]) -> f64 {
         match self {
             Self::Passing => EDGE_SHARE * p[2],
             Self::Lasting { edge } => *edge,

@@ -123,7 +123,7 @@ fn an_effect_acts_where_it_says() {
         let acts = f64::action(effect.as_ref());
         let acted_on = Targets {
             rudder: acts.rudder(&p, &z, 0.2) != 0.2,
-            scale: acts.base_factors(&p, &z, &now) != BaseFactors::none(),
+            scale: acts.base_factors(&p, &z, &now) != BaseFactors::unity(),
             moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
         };
         assert_eq!(acted_on, effect.targets(), "{} ({})", effect.id(), effect.form());
@@ -137,7 +137,7 @@ fn a_replay_carries_its_derivatives() {
     let times: Vec<f64> = (0..=100).map(f64::from).collect();
     let end = |model: &ResponseModel, values: &[Tangent]| {
         let response = model.clone().with_parameters(values.to_vec());
-        let recorded = RecordedSignals::rudder(&signal);
+        let recorded = RecordedSignals::from_rudder(&signal);
         let mut state = vec![Tangent::default(); response.dimension()];
         let zero = Tangent::default();
         response.initialise(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
@@ -176,7 +176,7 @@ fn small_steps_are_taken_where_motion_is_fast() {
         let headings = |step: &dyn Fn(f64, f64) -> f64| {
             let mut state = vec![0.0; response.dimension()];
             let mut headings = Vec::new();
-            let recorded = RecordedSignals::rudder(&signal);
+            let recorded = RecordedSignals::from_rudder(&signal);
             replay_states(response, &recorded, &times, step, &mut state, |_, state, _| headings.push(state[0]));
             headings
         };
@@ -203,7 +203,7 @@ fn an_effect_is_what_it_says() {
             let times: Vec<f64> = (0..=100).map(|k| from + f64::from(k)).collect();
             let mut state = vec![0.0; response.dimension()];
             response.approach(heading, 0.0, &mut state);
-            replay(response, &RecordedSignals::rudder(&signal), &times, 0.1, &mut state, |_, _| {});
+            replay(response, &RecordedSignals::from_rudder(&signal), &times, 0.1, &mut state, |_, _| {});
             state[0] - heading
         };
         assert_eq!(
@@ -238,7 +238,7 @@ fn second_order_has_the_declared_transfer_function() {
     response.approach(0.0, 0.0, &mut state);
     let signal = Polyline::constant(delta);
     let times = [0.0, 1.0, 5.0, 20.0, 60.0];
-    replay(&response, &RecordedSignals::rudder(&signal), &times, 0.01, &mut state, |k, motion| {
+    replay(&response, &RecordedSignals::from_rudder(&signal), &times, 0.01, &mut state, |k, motion| {
         // Step response of K (1 + T₃ s)/((1 + T₁ s)(1 + T₂ s)) by partial fractions.
         let t = times[k];
         let exact =

@@ -9,7 +9,7 @@ use super::user::second_order_response;
 use super::{Model, Ship};
 use crate::linear::SecondOrderIndices;
 use crate::particulars::Particulars;
-use crate::vessel::abkowitz::{Abkowitz, Derivatives, Lateral};
+use crate::vessel::abkowitz::{Abkowitz, Derivatives, LateralDerivatives};
 
 const PARTICULARS: Particulars = Particulars { length: 160.93, speed: 7.7175 };
 /// Unit of the printed table.
@@ -35,7 +35,7 @@ pub const DERIVATIVES: Derivatives = Derivatives {
     Xrv: 798.0 * E5,
     Xvd: 93.0 * E5,
     Xuvd: 93.0 * E5,
-    Y: Lateral {
+    Y: LateralDerivatives {
         v: -1160.0 * E5,
         r: -499.0 * E5,
         vvv: -8078.0 * E5,
@@ -52,7 +52,7 @@ pub const DERIVATIVES: Derivatives = Derivatives {
         zero_u: -8.0 * E5,
         zero_uu: -4.0 * E5,
     },
-    N: Lateral {
+    N: LateralDerivatives {
         v: -264.0 * E5,
         r: -166.0 * E5,
         vvv: 1636.0 * E5,

@@ -43,7 +43,7 @@ pub struct TankerHull {
 
 impl TankerHull {
     /// Tanker hull without the asymmetry of the thrust.
-    pub fn evened(self) -> Self {
+    pub fn without_thrust_asymmetry(self) -> Self {
         Self { by_thrust: [0.0; 2], ..self }
     }
 

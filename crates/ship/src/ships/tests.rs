@@ -26,9 +26,14 @@ fn held_rudder(dynamics: &dyn Dynamics, delta_deg: f64, duration: f64, largest_s
     let mut state = vec![0.0; dynamics.dimension()];
     dynamics.approach(0.0, 0.0, &mut state);
     let mut end = Motion::default();
-    replay(dynamics, &RecordedSignals::rudder(&rudder), &[0.0, duration], largest_step, &mut state, |_, motion| {
-        end = *motion
-    });
+    replay(
+        dynamics,
+        &RecordedSignals::from_rudder(&rudder),
+        &[0.0, duration],
+        largest_step,
+        &mut state,
+        |_, motion| end = *motion,
+    );
     (state, end)
 }
 
@@ -146,7 +151,7 @@ fn heading_after_reversals(dynamics: &dyn Dynamics, unit: f64, largest_step: f64
     dynamics.approach(0.0, 0.0, &mut state);
     let mut heading = 0.0;
     let times = [0.0, 24.0 * unit];
-    replay(dynamics, &RecordedSignals::rudder(&rudder), &times, largest_step, &mut state, |_, motion| {
+    replay(dynamics, &RecordedSignals::from_rudder(&rudder), &times, largest_step, &mut state, |_, motion| {
         heading = motion.heading
     });
     heading

@@ -65,7 +65,7 @@ fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> 
 fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), ShipError> {
     let values = response.model().parameters().zip(response.parameters()).zip(symbols);
     for ((parameter, &value), symbol) in values {
-        if !parameter.holds(value) {
+        if !parameter.is_in_range(value) {
             return Err(ShipError::Range { symbol, parameter, value });
         }
     }
@@ -128,7 +128,7 @@ pub enum HullError {
 ///
 /// Fails for particulars outside the range of ships.
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
-    let hull = Mmg::at_speed(prior::priors(particulars)?.parameters, particulars.speed)?;
+    let hull = Mmg::at_speed(prior::hull_prior(particulars)?.parameters, particulars.speed)?;
     let HullParticulars { length, speed, .. } = *particulars;
     let name = format!("MMG hull by particulars, L = {length} m, U = {speed} m/s");
     let scale = Some(Particulars { length, speed });

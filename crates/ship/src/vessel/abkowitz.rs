@@ -40,14 +40,14 @@ pub struct Derivatives {
     pub Xrv: f64,
     pub Xvd: f64,
     pub Xuvd: f64,
-    pub Y: Lateral,
-    pub N: Lateral,
+    pub Y: LateralDerivatives,
+    pub N: LateralDerivatives,
 }
 
 /// Derivatives of the sway force or of the yaw moment, with the same terms for either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the index of a derivative: vvr multiplies v'² r'")]
-pub struct Lateral {
+pub struct LateralDerivatives {
     pub v: f64,
     pub r: f64,
     pub vvv: f64,
@@ -66,7 +66,7 @@ pub struct Lateral {
     pub zero_uu: f64,
 }
 
-impl Lateral {
+impl LateralDerivatives {
     fn at(&self, u: f64, v: f64, r: f64, d: f64) -> f64 {
         self.v * v
             + self.r * r

@@ -25,7 +25,7 @@ use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
 pub use self::equations::{CalmHull, MAX_SPEED, PrimeHull};
 pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
-use super::prior::{HullParticulars, HullPrior, priors};
+use super::prior::{HullParticulars, HullPrior, hull_prior};
 
 /// Coefficient of a hull with its prior.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,8 +112,8 @@ pub fn is_trial_specific(key: &str) -> bool {
 }
 
 /// `true` for the coefficient of the wind.
-pub fn is_windage(key: &str) -> bool {
-    key == wind::WINDAGE.key
+pub fn is_wind_coefficient(key: &str) -> bool {
+    key == wind::WIND_COEFFICIENT.key
 }
 
 /// `true` if a coefficient depends on friction (resistance and wake) and therefore on the scale (Reynolds number).
@@ -144,10 +144,10 @@ impl HullForm {
     /// Candidate forms for a ship, with priors from the particulars: the two polynomials, and the MMG model. Without
     /// particulars, only the polynomials with the priors of any ship.
     pub fn candidates(particulars: Option<&HullParticulars>) -> Vec<Self> {
-        let prior = particulars.and_then(|particulars| priors(particulars).ok());
+        let prior = particulars.and_then(|particulars| hull_prior(particulars).ok());
         let polynomials = prior.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
             // Any ship at a usual Froude number, because the forms are nondimensional.
-            let any = priors(&HullParticulars { length: 100.0, speed: 6.0, ..HullParticulars::default() });
+            let any = hull_prior(&HullParticulars { length: 100.0, speed: 6.0, ..HullParticulars::default() });
             Self::polynomials(&any.expect("a ship")).expect("a ship")
         });
         polynomials.into_iter().chain(prior.as_ref().map(Self::mmg)).collect()
@@ -156,7 +156,7 @@ impl HullForm {
     /// The two polynomials with priors from the particulars; `None` if these are not valid for a ship. A ship and
     /// its mirror image are equally probable, so coefficients of asymmetry have prior mean 0.
     fn polynomials(prior: &HullPrior) -> Option<[Self; 2]> {
-        let [quadratic, cubic] = nearest::polynomials(prior)?;
+        let [quadratic, cubic] = nearest::polynomial_priors(prior)?;
         let form = |equations, terms: &[PolynomialTerm], (mut values, mut covariance): (DVector<f64>, DMatrix<f64>)| {
             let terms = [&COMMON[..], terms].concat();
             for place in (0..terms.len()).filter(|&place| is_of_side(terms[place].key)) {
@@ -202,8 +202,8 @@ impl HullForm {
 
     /// Form with the wind coefficient Y_w appended.
     fn with_windage(mut self, prior: &HullPrior) -> Self {
-        let PolynomialTerm { key, symbol, ends } = wind::WINDAGE;
-        let ([mean, sd], calm) = (wind::windage(&prior.parameters), self.coefficients.len());
+        let PolynomialTerm { key, symbol, ends } = wind::WIND_COEFFICIENT;
+        let ([mean, sd], calm) = (wind::wind_coefficient_prior(&prior.parameters), self.coefficients.len());
         self.covariance = self.covariance.resize(calm + 1, calm + 1, 0.0);
         self.covariance[(calm, calm)] = sd * sd;
         self.coefficients.push(HullCoefficient { key, symbol, mean, sd, ends });
@@ -239,7 +239,7 @@ impl HullForm {
                 let mut parameters = about.to_real::<R>();
                 let (bias, free) = values.split_last()?;
                 for (coefficient, value) in self.coefficients.iter().zip(free) {
-                    *parameters.named(coefficient.key)? = *value;
+                    *parameters.coefficient_mut(coefficient.key)? = *value;
                 }
                 CalmHull::Mmg(Box::new(Mmg::at_speed(parameters, 1.0).ok()?), *bias)
             }

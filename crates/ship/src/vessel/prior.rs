@@ -61,10 +61,10 @@ pub struct HullPrior {
 /// Prior of the hull with these particulars.
 ///
 /// Fails for particulars outside the range of ships, or that contradict each other.
-pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
+pub fn hull_prior(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
     given.check()?;
     let typical = RATIOS.map(|ratio| ratio.mean);
-    let form = given.form(&typical);
+    let form = given.complete_dimensions(&typical);
     let shifted: Vec<[HullDimensions; 2]> = RATIOS
         .iter()
         .enumerate()
@@ -72,7 +72,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
             [ratio.sd, -ratio.sd].map(|shift| {
                 let mut ratios = typical;
                 ratios[place] += shift;
-                given.form(&ratios)
+                given.complete_dimensions(&ratios)
             })
         })
         .collect();
@@ -102,7 +102,7 @@ pub fn priors(given: &HullParticulars) -> Result<HullPrior, ParticularsError> {
 
 /// Parameters with one coefficient replaced.
 fn with(mut parameters: Parameters, formula: &CoefficientFormula, value: f64) -> Parameters {
-    *parameters.named(formula.key).expect("every coefficient has its place") = value;
+    *parameters.coefficient_mut(formula.key).expect("every coefficient has its place") = value;
     parameters
 }
 

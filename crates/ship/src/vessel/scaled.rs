@@ -71,7 +71,7 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
         state.copy_from_slice(&[heading, yaw_rate, R::from(surge), R::from(sway)]);
     }
 
-    fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
+    fn reset_motion(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         (state[0], state[1]) = (heading, yaw_rate);
     }
 

@@ -39,7 +39,7 @@ pub(crate) fn first_crossing(
 
 /// Characteristics of a turning circle; `None` for a characteristic that was not reached.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TurningCircleFigures {
+pub struct TurningCircleCharacteristics {
     /// Advance, m: distance in the direction of the approach from the execute to a heading change of 90°.
     pub advance: Option<f64>,
     /// Transfer, m: distance across the approach, to the side of the turn, from the execute to a heading change of 90°.
@@ -72,8 +72,8 @@ pub fn turning_circle(
     [time, heading, yaw_rate]: [&[f64]; 3],
     [track, velocity]: [&[[f64; 2]]; 2],
     execute: f64,
-) -> TurningCircleFigures {
-    let none = TurningCircleFigures::default();
+) -> TurningCircleCharacteristics {
+    let none = TurningCircleCharacteristics::default();
     let rows = time.len();
     let has_track = !track.is_empty();
     let lengths = [heading.len(), if has_track { track.len() } else { rows }, velocity.len(), yaw_rate.len()];
@@ -111,7 +111,7 @@ pub fn turning_circle(
         Some([surge?, sway?, mean(&mut yaw_rate[row..].iter().copied())?])
     });
     let [surge, sway] = at(velocity, begin, share);
-    TurningCircleFigures {
+    TurningCircleCharacteristics {
         advance: quarter.map(|way| way[0]),
         transfer: quarter.map(|way| way[1]),
         tactical_diameter: way(PI).map(|way| way[1]),

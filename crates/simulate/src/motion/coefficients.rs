@@ -67,7 +67,7 @@ impl PlanarCoefficients {
 
     /// Coefficients from values in the order of [`SYMBOLS`], clamped to their bounds.
     pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
-        let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = within(values, BOUNDS);
+        let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = clamped(values, BOUNDS);
         Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d }
     }
 
@@ -91,6 +91,6 @@ impl PlanarCoefficients {
 }
 
 /// Values clamped to their bounds.
-pub(crate) fn within<const N: usize>(values: [f64; N], bounds: [[f64; 2]; N]) -> [f64; N] {
+pub(crate) fn clamped<const N: usize>(values: [f64; N], bounds: [[f64; 2]; N]) -> [f64; N] {
     std::array::from_fn(|i| values[i].clamp(bounds[i][0], bounds[i][1]))
 }

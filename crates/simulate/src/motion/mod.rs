@@ -24,7 +24,7 @@ mod planar_ship;
 #[cfg(test)]
 mod tests;
 
-pub use circle::{TurningCircleFigures, dead_reckoning, turning_circle};
+pub use circle::{TurningCircleCharacteristics, dead_reckoning, turning_circle};
 pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
 pub use current::{Current, current};
 pub use planar::{MotionError, Planar};

@@ -4,7 +4,7 @@ use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
 use crate::gear::{RudderMotion, RudderPath, Segment};
-use crate::propagate::propagator::{Limits, Propagator, acting_segment, has_diverged};
+use crate::propagate::propagator::{Propagator, RowLimits, acting_segment, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
@@ -126,7 +126,7 @@ impl Propagator for ClosedForm {
         self.sample_under(u0)
     }
 
-    fn coast(&mut self, path: &RudderPath, limits: &Limits, rows: &mut Sampler) {
+    fn record_rows(&mut self, path: &RudderPath, limits: &RowLimits, rows: &mut Sampler) {
         let segment = acting_segment(path, &mut self.cursor, self.time, 0.0);
         let still = segment.motion == RudderMotion::Hold && self.weather.cell().end == f64::INFINITY;
         if !still {

@@ -12,4 +12,4 @@ mod propagator;
 pub(crate) use closed_form::ClosedForm;
 pub(crate) use exposed::ShipInWeather;
 pub(crate) use integrated::Integrated;
-pub(crate) use propagator::{AwaitedHeading, Limits, Propagator, has_diverged};
+pub(crate) use propagator::{AwaitedHeading, Propagator, RowLimits, has_diverged};

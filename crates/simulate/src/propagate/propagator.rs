@@ -29,12 +29,12 @@ pub(crate) trait Propagator {
 
     /// Records rows up to the first event, bit for bit equal to single steps; stops before the first row that requires
     /// the stepwise search, which can be the next row.
-    fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Sampler) {}
+    fn record_rows(&mut self, _path: &RudderPath, _limits: &RowLimits, _rows: &mut Sampler) {}
 }
 
-/// Events that end a sequence of rows.
+/// Time, awaited heading and base course that limit how far rows are recorded in one call.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+pub(crate) struct RowLimits {
     /// Latest end, s.
     pub before: f64,
     /// Awaited heading whose crossing ends the sequence.
@@ -91,12 +91,12 @@ impl AwaitedHeading {
         let mut after = (h, self.excess(end.heading));
         if after.1 < 0.0 && self.side * from.yaw_rate > 0.0 && self.side * end.yaw_rate < 0.0 {
             let rate = |h| probe(h).yaw_rate;
-            let peak = root::bracketed(rate, (0.0, from.yaw_rate), (h, end.yaw_rate), EVENT_TOLERANCE);
+            let peak = root::bracketed_root(rate, (0.0, from.yaw_rate), (h, end.yaw_rate), EVENT_TOLERANCE);
             after = (peak, self.excess(probe(peak).heading));
         }
         if after.1 < 0.0 {
             return None;
         }
-        Some(root::bracketed(|h| self.excess(probe(h).heading), before, after, EVENT_TOLERANCE))
+        Some(root::bracketed_root(|h| self.excess(probe(h).heading), before, after, EVENT_TOLERANCE))
     }
 }

@@ -181,7 +181,7 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
              a sidecar with [ship] as --columns",
         ));
     }
-    let prior = prior::priors(&hull).map_err(|error| match columns {
+    let prior = prior::hull_prior(&hull).map_err(|error| match columns {
         Some(file) => Failure::about(file, error),
         None => Failure::input(error),
     })?;

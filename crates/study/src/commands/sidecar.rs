@@ -27,7 +27,7 @@ pub struct SidecarRequest {
 pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(), Failure> {
     if log == Path::new(STDIN) {
         // Standard input has no folder for the description.
-        return tell(&reader::describe(log).map_err(Failure::input)?, None, common);
+        return tell(&reader::draft_sidecar(log).map_err(Failure::input)?, None, common);
     }
     let path = match &common.out {
         Some(folder) => folder.join(Sidecar::beside(log).file_name().unwrap_or_default()),
@@ -39,7 +39,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
             "this description is there already; remove it, or write another one elsewhere with `--out DIR`",
         ));
     }
-    let text = reader::describe(log).map_err(Failure::input)?;
+    let text = reader::draft_sidecar(log).map_err(Failure::input)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     ResultFolder::make(path.parent().unwrap_or(Path::new("")))?.write(&name, &text)?;
     tell(&text, Some((&path, log)), common)

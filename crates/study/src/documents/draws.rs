@@ -6,7 +6,7 @@ use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use campaign::parquet_table::{self, Values};
 use document::IdentifiedShip;
-use predict::{DrawnEstimate, DrawnParameters, EstimateDraws, PredictDocument};
+use predict::{EstimateSampler, PredictDocument, SampledEstimate, SampledParameters};
 
 /// Name of the file.
 pub const DRAWS: &str = "draws.parquet";
@@ -15,9 +15,9 @@ pub const DRAWS: &str = "draws.parquet";
 /// a structure or a ship lacks them.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
-    let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
-    let texts = |pick: &dyn Fn(&DrawnParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
-    let file = |draw: &DrawnParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
+    let numbers = |pick: fn(&SampledParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
+    let texts = |pick: &dyn Fn(&SampledParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
+    let file = |draw: &SampledParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
     let parameters = parameter_columns(drawn.iter().map(|ship| &ship.parameters[..]).collect());
     let figures = predicted.manoeuvres.iter().flat_map(|manoeuvre| {
         let name = move |figure: &String| format!("figure.{}.{figure}", manoeuvre.kind);
@@ -54,7 +54,7 @@ fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (Strin
 struct EstimateRow<'a> {
     number: u32,
     method: &'a str,
-    drawn: DrawnEstimate,
+    drawn: SampledEstimate,
 }
 
 impl EstimateRow<'_> {
@@ -95,8 +95,8 @@ pub fn keep_estimates<'a>(
 ) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for (method, answer) in answers {
-        let of_answer = EstimateDraws::new(answer, seed).map_err(|error| Failure::about(method, error))?;
-        rows.extend((0..draws).map(|number| EstimateRow { number, method, drawn: of_answer.draw(number.into()) }));
+        let of_answer = EstimateSampler::new(answer, seed).map_err(|error| Failure::about(method, error))?;
+        rows.extend((0..draws).map(|number| EstimateRow { number, method, drawn: of_answer.sample(number.into()) }));
     }
     keep_columns(folder, estimate_columns(&rows))
 }

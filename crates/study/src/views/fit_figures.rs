@@ -128,7 +128,7 @@ fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
 
 /// Factors of K and T in a figure: to prime values if length and speed are known.
 fn factors(ship: Option<Particulars>) -> [f64; 2] {
-    ship.map_or([1.0; 2], |ship| [ship.prime([-1, 0]), ship.prime([1, 0])])
+    ship.map_or([1.0; 2], |ship| [ship.prime_factor([-1, 0]), ship.prime_factor([1, 0])])
 }
 
 /// Titles of axes of K and T: prime if length and speed are known.

@@ -133,7 +133,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
                     indices::of_records(all)
                 )
             }
-            _ if !document.methods.iter().any(|entry| identify::verdict::USUAL.contains(&entry.id())) => {
+            _ if !document.methods.iter().any(|entry| identify::verdict::REFERENCE_METHODS.contains(&entry.id())) => {
                 String::from("Leave out --method to ask the usual methods, too.")
             }
             _ => String::from(

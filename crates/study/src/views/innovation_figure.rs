@@ -2,7 +2,7 @@
 //! chance, and their autocorrelation with the test of whiteness. Moments on the ship are not part of it.
 
 use ::trace::SIGNIFICANCE_LEVEL;
-use estimation::residuals::{GappedSeries, autocorrelation, whiteness, whiteness_lags};
+use estimation::residuals::{GappedSeries, autocorrelation, whiteness_lags, whiteness_test};
 use estimation::statistics::upper_median;
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
@@ -49,7 +49,7 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     }
     sorted.sort_by(f64::total_cmp);
     let series = GappedSeries::new(time, values, spacing);
-    let p_value = whiteness(std::slice::from_ref(&series)).p_value;
+    let p_value = whiteness_test(std::slice::from_ref(&series)).p_value;
     let judged = match p_value < SIGNIFICANCE_LEVEL {
         true => format!("innovations are not white, p < {SIGNIFICANCE_LEVEL}"),
         false => format!("innovations, p = {} if they are white", significant(p_value, 2)),

@@ -220,7 +220,7 @@ fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
     Some((if outer > 0 { median(&mut values)? } else { mean }, ends))
 }
 
-/// Mark on its range.
+/// Row items of a prediction: the range as a bar, and the value as a mark beside it.
 fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<RowItem> {
     let look = origin.look();
     let range = RowItem::new(origin.label(), RowKind::Range(look.colour, ends));

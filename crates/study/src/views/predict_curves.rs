@@ -2,7 +2,7 @@
 
 use campaign::curves::degrees;
 use predict::PredictDocument;
-use predict::prediction::Bands;
+use predict::prediction::BandedCurve;
 use predict::steady::SteadyCurve;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
@@ -47,7 +47,7 @@ fn steady_turns(ships: &[SteadyCurve]) -> String {
     table.text()
 }
 
-fn bands(bands: &Bands, measured: Option<&[f64]>) -> String {
+fn bands(bands: &BandedCurve, measured: Option<&[f64]>) -> String {
     let mut table = CurveTable::default();
     table.push("t_s", bands.time.clone());
     table.push("heading_deg", degrees(&bands.most_probable));

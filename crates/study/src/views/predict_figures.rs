@@ -5,7 +5,7 @@ use campaign::curves::degrees;
 use document::names;
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::prediction::{Bands, Predicted};
+use predict::prediction::{BandedCurve, Predicted};
 use predict::replay::{Compared, RecordReplay};
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
@@ -142,7 +142,7 @@ fn diameter(replayed: &RecordReplay) -> String {
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band is cut if it needs too much room.
-fn bands(heading: &Bands, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
+fn bands(heading: &BandedCurve, recorded: Option<PlotCurve>, rudder_deg: PlotCurve) -> Panels {
     let curve = |values: Vec<f64>| PlotCurve::new(heading.time.as_slice(), values);
     let quantile = |place: usize| curve(heading.quantiles.iter().map(|row| to_deg(row[place])).collect());
     let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);

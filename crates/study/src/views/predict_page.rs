@@ -85,7 +85,10 @@ pub fn below_table(document: &PredictDocument) -> String {
 
 /// Caution on the IMO limits for a ship shorter than 100 m.
 fn caution(document: &PredictDocument) -> Option<String> {
-    document.length_m.zip(document.speed_m_s).and_then(|(length, speed)| imo::caution(Particulars { length, speed }))
+    document
+        .length_m
+        .zip(document.speed_m_s)
+        .and_then(|(length, speed)| imo::short_ship_caution(Particulars { length, speed }))
 }
 
 /// Agreement of a record with its replay: coverage of the 90 % band, heading error, current removed.

@@ -43,7 +43,7 @@ struct StudiesPage {
     sections: Vec<Section>,
 }
 
-/// Fails if a folder is not that of a study, or if the page would replace a file that this program did not make.
+/// Checks that all folders are those of studies, and that the page replaces no file of another program.
 pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
         let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);

@@ -38,7 +38,7 @@ fn primed(symbol: &str) -> String {
     symbol.split('/').map(part).collect::<Vec<String>>().join("/")
 }
 
-/// Effect with its form and the only record in which it acts.
+/// Text of an effect: its name, its form, and the record if it acts in only one.
 pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
     let only = only.map_or_else(String::new, |only| format!(", in {}", names::record(only)));
     names::effect_form(id, form) + &only

@@ -62,7 +62,7 @@ impl EarlierModel {
             records: self.records.clone(),
             likeness,
             factor: likeness.factor(),
-            differing: ship.differing(&earlier_ship).into_iter().map(str::to_owned).collect(),
+            differing: ship.differing_keys(&earlier_ship).into_iter().map(str::to_owned).collect(),
             length_m: earlier_ship.length,
             speed_m_s: earlier_ship.speed,
         }

@@ -6,7 +6,7 @@ use identify::{Estimate, Identifier, Uncertainty};
 use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::to_deg;
-use trial::scale::scaling;
+use trial::scale::compare_scales;
 use trial::{Quantity, Trial};
 
 use crate::records::file_of;
@@ -52,7 +52,7 @@ fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> 
         ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
     ];
     let compared = |&(symbol, unit, dimension, quantity_of): &(&str, &str, [i32; 2], Of)| {
-        let prime = |estimate: &Estimate| quantity_of(estimate).scaled(ship.prime(dimension));
+        let prime = |estimate: &Estimate| quantity_of(estimate).scaled(ship.prime_factor(dimension));
         let at_scales = by_scale.iter().map(|estimate| estimate.as_ref().map(prime)).collect();
         term([symbol, unit], prime(joint), at_scales)
     };
@@ -62,7 +62,7 @@ fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> 
 /// Term of this symbol and unit: its joint value, its values at each scale, and whether it scales.
 pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Quantity>>) -> ComparedTerm {
     let values: Vec<Quantity> = at_scales.iter().map(|value| value.unwrap_or(Quantity::bare(f64::NAN))).collect();
-    let (difference_sd, verdict) = scaling(&values);
+    let (difference_sd, verdict) = compare_scales(&values);
     ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own: at_scales, difference_sd, verdict }
 }
 

@@ -71,7 +71,7 @@ impl FitResult {
         let regions = self.answers.iter().filter_map(|(entry, estimate)| {
             let estimate = estimate.as_ref()?;
             let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
-            let outline = covariance.outline(&estimate.response)?;
+            let outline = covariance.joint_region_outline(&estimate.response)?;
             let (x, y): (Vec<f64>, Vec<f64>) = outline.into_iter().map(|[k, t]| (k, t)).unzip();
             Some((entry.method.clone(), PlotCurve { x, y }))
         });
@@ -223,7 +223,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
         overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
         period_s: zigzag.period.map(|period| period.value),
         imo: criteria.iter().map(criterion).collect(),
-        imo_caution: trial.particulars().and_then(imo::caution),
+        imo_caution: trial.particulars().and_then(imo::short_ship_caution),
     }
 }
 

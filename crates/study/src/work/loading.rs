@@ -11,7 +11,7 @@ use document::{IdentifiedShip, WarningCode, WarningSource, Warnings};
 use identify::hull::FormPrior;
 use predict::drawable_hull;
 use ship::ShortNumber;
-use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, priors};
+use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, hull_prior};
 use trial::{Sidecar, file};
 
 /// Hull form that is made from particulars.
@@ -79,7 +79,7 @@ impl DescribedLoading {
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
-        let expected = FormPrior::of_ship(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
+        let expected = FormPrior::candidates(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
         let at_loading = |expected: FormPrior| {
             let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.covariance_and_gain()?);
             Some(IdentifiedHull { propeller_per_s: self.given.propeller_rate, ..hull })
@@ -126,7 +126,7 @@ impl DescribedLoading {
         if self.given.propeller_rate.is_none() {
             to.propeller_rate = at_trials.propeller_rate.map(|rate| rate * to.speed / at_trials.speed);
         }
-        let differing = to.differing(at_trials);
+        let differing = to.differing_keys(at_trials);
         let cure = match () {
             () if !to.has_length_of(at_trials) => "length-m differs; give it at the scale of that model",
             () if differing.contains(&"beam-m") => "beam-m differs; give a loading of the same ship",
@@ -179,7 +179,7 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
 /// Particulars with typical values for missing ones, and the block coefficient from the displacement.
 fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsError> {
     let mut all = *given;
-    for assumed in priors(given)?.assumed {
+    for assumed in hull_prior(given)?.assumed {
         if let Some(particular) = Particular::find(assumed.key) {
             particular.set(&mut all, assumed.value);
         }
@@ -203,7 +203,7 @@ mod tests {
 
     /// Coefficients by the formulas at some particulars.
     fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
-        HullForm::mmg(&priors(at).expect("a ship")).coefficients().to_vec()
+        HullForm::mmg(&hull_prior(at).expect("a ship")).coefficients().to_vec()
     }
 
     /// Hull at a loading, and the warnings. At the trial the coefficients are half a standard deviation above the

@@ -238,7 +238,10 @@ pub fn predict(
         schema: SCHEMA.into(),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight: 1.0 / models.len() as f64 }).collect(),
         draws,
-        drawn: (0..draws as u64).filter(|_| request.draws_file).map(|number| mixture.parameters(number)).collect(),
+        drawn: (0..draws as u64)
+            .filter(|_| request.draws_file)
+            .map(|number| mixture.sample_parameters(number))
+            .collect(),
         calm: request.calm,
         length_m: particulars.map(|ship| ship.length),
         speed_m_s: particulars.map(|ship| ship.speed),
@@ -363,7 +366,7 @@ impl ReplayedModels<'_> {
             warnings.push(WarningCode::Correction, source_of(record), text);
             return Ok((replayed, None));
         }
-        let mut of_models = correction::differences(&full[0].ship, &ballast[0].ship, loading);
+        let mut of_models = correction::difference_warnings(&full[0].ship, &ballast[0].ship, loading);
         if full[0].method != ballast[0].method {
             of_models.push(correction::difference_warning("methods", &full[0].method, &ballast[0].method, loading));
         }

@@ -87,7 +87,7 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
         let truth = truth(scenario, task, simulated, truths)?;
         let truth = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
-        let sidecar = trial::writer::sidecar(&simulated.trial);
+        let sidecar = trial::writer::sidecar_toml(&simulated.trial);
         Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })
     };
     simulated.iter().enumerate().map(files).collect::<Result<_, String>>().map_err(refuse)

@@ -225,7 +225,7 @@ pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
 /// Records of a request without the withheld channels.
 pub fn without(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Trial> {
     let withheld: Vec<Channel> = request.without.iter().flat_map(|channel| channels(*channel)).copied().collect();
-    trials.into_iter().map(|trial| trial.without(&withheld)).collect()
+    trials.into_iter().map(|trial| trial.without_channels(&withheld)).collect()
 }
 
 fn channels(channel: Withheld) -> &'static [Channel] {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use document::identified_hull::{IdentifiedHull, by_keys};
 use serde_json::{Value, json};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
-use ship::vessel::prior::{HullParticulars, priors};
+use ship::vessel::prior::{HullParticulars, hull_prior};
 use ship::vessel::scaled::ScaledHull;
 use simulate::Vessel;
 
@@ -34,7 +34,7 @@ fn particulars(draught: f64, block_coefficient: f64) -> HullParticulars {
 
 /// Values of her coefficients at a loading.
 fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
-    let [form, ballast] = [at, &particulars(6.5, 0.7)].map(|own| HullForm::mmg(&priors(own).expect("a ship")));
+    let [form, ballast] = [at, &particulars(6.5, 0.7)].map(|own| HullForm::mmg(&hull_prior(own).expect("a ship")));
     let departs = |(place, (own, trial)): (usize, (&HullCoefficient, f64))| {
         let is_ship = !is_frictional(own.key) && !is_trial_specific(own.key);
         own.mean + if is_ship { [0.5, -0.3, 0.4][place % 3] * trial } else { 0.0 }

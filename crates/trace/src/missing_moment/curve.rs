@@ -38,7 +38,11 @@ const LEVELS: [f64; 2] = [1e-3, 1e13];
 const GRID: usize = 12;
 
 /// Maximum likelihood estimate of log λ; `value` is −2 log L of a filter.
-pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilter) -> Option<f64>) -> f64 {
+pub(super) fn maximum_likelihood_level(
+    rows: &MomentRows,
+    gain: f64,
+    value: impl Fn(&MomentFilter) -> Option<f64>,
+) -> f64 {
     let length = rows.time[rows.count() - 1] - rows.time[0];
     let unit = 20.0 / (length.powi(5) * gain * gain);
     let [low, high] = LEVELS.map(|level| (level * unit).ln());
@@ -48,7 +52,7 @@ pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilt
 /// Deviance −2 log L up to a constant, with σ² at its estimate.
 pub(super) fn deviance(square: f64, filter: &MomentFilter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
-    n * (square / n + MIN_HEADING_SD * MIN_HEADING_SD).ln() + filter.log_variance()
+    n * (square / n + MIN_HEADING_SD * MIN_HEADING_SD).ln() + filter.log_determinant()
 }
 
 /// Estimate of σ² (rad²) from a whitened sum of squares after a fit of `coefficients`.
@@ -160,7 +164,7 @@ impl MomentCurve {
             let (_, square) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
             Some(deviance(square, filter, count))
         };
-        let intensity = likeliest(rows, gain, value).exp();
+        let intensity = maximum_likelihood_level(rows, gain, value).exp();
         let filter = rows.filter(intensity);
         let normal = CurveEquations::new(&filter, &splines)?;
         let (coefficients, square) = normal.solve(&filter.whitened(record));

@@ -13,7 +13,7 @@ mod tests;
 use ship::{FirstOrder, Polyline};
 
 use crate::record::PreparedRecord;
-use curve::{MIN_ROWS, deviance, likeliest, variance};
+use curve::{MIN_ROWS, deviance, maximum_likelihood_level, variance};
 use smoother::{HeadingRows, MomentFilter, MomentRows};
 
 pub use curve::MomentCurve;
@@ -52,9 +52,9 @@ impl MomentChannel {
     }
 }
 
-/// Heading response of another model of a record, relative to the base.
+/// Replayed heading of another model minus that of the base, as an explanation of the missing moment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Explanation {
+pub struct RelativeResponse {
     /// Effects of the model with their forms.
     pub effects: Vec<(&'static str, &'static str)>,
     /// Replayed heading of the model minus that of the base at the observed rows, rad.
@@ -86,7 +86,7 @@ pub struct MissingMoment {
     /// Values of the recorded channels at the rows with a heading.
     pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
-    pub explanations: Vec<Explanation>,
+    pub explanations: Vec<RelativeResponse>,
     /// Moment of every explanation after the same smoother, rad of rudder.
     pub explained: Vec<Vec<f64>>,
     /// Curves over the channels that vary: first those whose band excludes zero, by increasing deviance.
@@ -109,7 +109,12 @@ const MIN_VARIANCE: f64 = 1e-12;
 impl MissingMoment {
     /// Missing moment of the base on a record with heading noise of about `sd` (rad); `None` for a record with too few
     /// headings, and for a rudder without effect.
-    pub fn new(record: &PreparedRecord, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
+    pub fn new(
+        record: &PreparedRecord,
+        base: &FirstOrder,
+        sd: f64,
+        explanations: Vec<RelativeResponse>,
+    ) -> Option<Self> {
         let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
         let count = time.len();
         if count < MIN_ROWS || !base.K_over_T.is_normal() {
@@ -123,7 +128,8 @@ impl MissingMoment {
         let column = HeadingRows { heading, forced: rows.rudder_response(&record.rudder) };
         let square = |filter: &MomentFilter| filter.whitened(&column).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
-        let intensity = likeliest(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
+        let intensity =
+            maximum_likelihood_level(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
         let filter = rows.filter(intensity);
         let unit = variance(square(&filter), count, 0);
         let states = filter.smoothed(&column);

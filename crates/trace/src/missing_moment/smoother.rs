@@ -113,8 +113,8 @@ pub(super) struct MomentFilter(Smoother<STATES>);
 
 impl MomentFilter {
     /// Σ log S, the log determinant of the covariance over σ².
-    pub fn log_variance(&self) -> f64 {
-        self.0.filter.log_variance()
+    pub fn log_determinant(&self) -> f64 {
+        self.0.filter.log_determinant()
     }
 
     /// Innovations over the square root of S.

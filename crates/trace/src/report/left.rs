@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 
 use super::TraceParts;
 use crate::model::TermName;
-use crate::remainder::squares;
+use crate::remainder::sums_of_squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {
@@ -15,7 +15,7 @@ impl TraceParts<'_> {
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
         let rudder_deg = to_deg(self.location.moment(self.rudder_errors)?.rudder);
-        let [_, after] = squares(self.identification);
+        let [_, after] = sums_of_squares(self.identification);
         let rows = || self.identification.iter().map(|comparison| comparison.after.errors.rows as f64);
         let of_row = self.problem.records.iter().zip(&shapes.heading_sd);
         let noise = of_row.zip(rows()).map(|((record, sd), rows)| sd * sd * record.full_readings as f64 * rows);
@@ -46,7 +46,7 @@ impl TraceParts<'_> {
                 formula: shape.formula().map(|formula| format!("located = {formula}")),
             }
         };
-        shapes.named(|only| self.span(only)[1]).iter().map(entry).collect()
+        shapes.named_shapes(|only| self.span(only)[1]).iter().map(entry).collect()
     }
 
     /// Start and duration (s) of a record, or of the longest record.

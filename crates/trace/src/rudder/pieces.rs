@@ -15,7 +15,7 @@ const MAX_SHIFT_ROWS: usize = 2;
 /// Maximum number of iterations of ends and pooled rates.
 const MAX_ROUNDS: usize = 3;
 
-/// Rest or stroke.
+/// Segment of a recorded rudder: a rest (constant angle) or a stroke (constant rate).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RudderPiece {
     /// First row.

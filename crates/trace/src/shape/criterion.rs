@@ -10,7 +10,7 @@
 use estimation::column::dot;
 
 use crate::linear::{HeadingSensitivities, Linearisation};
-use crate::weights::Weights;
+use crate::weights::RecordWhitening;
 
 /// Minimum share of the square of a usable column that is linearly independent of the columns before.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-7;
@@ -96,7 +96,7 @@ struct Extension {
 
 impl WhitenedStructure {
     /// Structure under a law with `law_freedom` parameters; `None` if its columns are dependent.
-    pub fn new(structure: &LinearisedStructure, weights: &Weights, law_freedom: usize) -> Option<Self> {
+    pub fn new(structure: &LinearisedStructure, weights: &RecordWhitening, law_freedom: usize) -> Option<Self> {
         let blocks = structure.linear.blocks.iter().enumerate();
         let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, weights)).collect();
         let count = structure.linear.unknowns;

@@ -94,7 +94,7 @@ pub fn smooth(gain: f64, longest: f64) -> Vec<RandomLaw> {
 
 /// Indices of the laws under which all shapes are screened: white noise, the law `best` without shapes and weaker laws
 /// of its kind by half decades, walks by decades, and one compass error.
-pub fn screening(laws: &[RandomLaw], best: usize) -> Vec<usize> {
+pub fn screening_laws(laws: &[RandomLaw], best: usize) -> Vec<usize> {
     let kind = |law: &RandomLaw| law.colour.correlated.map(|(kind, _)| kind);
     let is_step_below = |size: f64, weaker: f64, step: f64| {
         let count = (size / weaker).log10() / step;

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::fit::{FittedRecords, StructureFit};
 use crate::noise::{CorrelatedNoise, NoiseColour};
-use crate::weights::{NoiseLaw, Weights};
+use crate::weights::{NoiseLaw, RecordWhitening};
 use criterion::{LinearisedStructure, WhitenedStructure};
 use laws::RandomLaw;
 use motion::PredictedMotion;
@@ -34,7 +34,7 @@ pub use search::{Candidate, Explanation};
 pub const MIN_GAIN: f64 = 4.0;
 
 /// Maximum difference of two equivalent explanations, nats.
-pub const EQUIVALENT_GAIN: f64 = 3.0;
+pub const MAX_EQUIVALENT_GAIN: f64 = 3.0;
 
 /// Minimum significant gain of a smooth moment of unknown shape, nats.
 const MIN_SMOOTH_GAIN: f64 = 1.5;
@@ -47,7 +47,7 @@ const TIME_TOLERANCE: f64 = 0.02;
 const UNIT: f64 = 1.0 / 16.0;
 const MAX_TIME_S: f64 = 1000.0;
 
-/// Significant shape.
+/// Shape of a missing moment with its loss of likelihood if it is omitted and its size.
 #[derive(Debug, Clone)]
 pub struct NamedShape {
     /// Shape.
@@ -78,7 +78,7 @@ pub struct MomentSize {
 pub struct ShapeAnalysis {
     /// Best explanation; without shapes if none is significant.
     pub best: Explanation,
-    /// Equivalent explanations, within [`EQUIVALENT_GAIN`] of the best.
+    /// Equivalent explanations, within [`MAX_EQUIVALENT_GAIN`] of the best.
     pub equivalent: Vec<Explanation>,
     /// Coefficients of the best, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
@@ -110,7 +110,7 @@ impl ShapeAnalysis {
     }
 
     /// Shapes of the best with a clear loss, the clearest first; `duration` (s) is that of a record.
-    pub fn named(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
+    pub fn named_shapes(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
         let size = |coefficients: &Vec<f64>| coefficients.iter().map(|x| x * x).sum::<f64>().sqrt();
         let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
         let all =
@@ -157,7 +157,7 @@ impl ShapeAnalysis {
 }
 
 /// Shape analysis of the residual of a fit, with the waves of the noise law; `None` if its columns are dependent.
-pub fn analysis(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
+pub fn analyse_shapes(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLaw) -> Option<ShapeAnalysis> {
     let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..MAX_ROUNDS {
         let (before, colour) = (current.point.theta[0], current.laws[current.law].colour);
@@ -179,7 +179,7 @@ struct ShapeProblem<'a> {
     motions: Vec<PredictedMotion<'a>>,
     linearised: LinearisedStructure,
     laws: Vec<RandomLaw>,
-    weights: Vec<Weights>,
+    weights: Vec<RecordWhitening>,
     structure: Vec<Option<WhitenedStructure>>,
     /// Criterion and index of the best law without shapes.
     criterion: f64,
@@ -198,7 +198,7 @@ impl<'a> ShapeProblem<'a> {
             (WhitenedStructure::new(&linearised, &weights, law.freedom), weights)
         };
         let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
-        let (criterion, law) = search::best(&structure)?;
+        let (criterion, law) = search::best_of_laws(&structure)?;
         Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 
@@ -232,7 +232,7 @@ impl<'a> ShapeProblem<'a> {
         }
         tried.retain(|other| {
             other.shapes.len() <= best.shapes.len()
-                && power * (other.criterion - best.criterion) < 2.0 * EQUIVALENT_GAIN
+                && power * (other.criterion - best.criterion) < 2.0 * MAX_EQUIVALENT_GAIN
         });
         let whole = search.whole(&best)?;
         let step = whole.step();
@@ -240,7 +240,8 @@ impl<'a> ShapeProblem<'a> {
             losses: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),
             coefficients: search::coefficients(&best.shapes, &step),
             mean_square: (!best.shapes.is_empty()).then(|| {
-                search::residual_square(&self.linearised.linear, &best.shapes, &step) / self.linearised.rows() as f64
+                search::residual_sum_of_squares(&self.linearised.linear, &best.shapes, &step)
+                    / self.linearised.rows() as f64
             }),
             heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
             moment: self.moment(&best, whole.sd(), [longest, problem.time]),

@@ -10,7 +10,7 @@ use ship::dynamics::Dynamics;
 use ship::first_order::{State, Transition};
 use ship::replay::replay_states;
 
-use crate::model::{Structure, step};
+use crate::model::{Structure, solver_step};
 use crate::record::PreparedRecord;
 
 /// Solver steps per minimum time constant.
@@ -53,11 +53,11 @@ impl<'a> PredictedMotion<'a> {
         predicted: Option<&[[f64; MAX_STATES]]>,
     ) -> Self {
         let response = structure.response(Some(number), theta);
-        let recorded = record.recorded(&response);
+        let recorded = record.replay_signals(&response);
         let mut state = vec![0.0; response.dimension()];
         response.initialise(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
         let (mut heading, mut rate) = (Vec::new(), Vec::new());
-        let step = step(&response, record.spacing, STEPS);
+        let step = solver_step(&response, record.spacing, STEPS);
         replay_states(&response, &recorded, &record.time, step, &mut state, |_, state, _| {
             heading.push(state[0]);
             rate.push(state[1]);

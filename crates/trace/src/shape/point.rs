@@ -1,10 +1,10 @@
 //! Point of a structure in the shape analysis, and its linearisation there.
 
-use crate::fit::{FittedRecords, StructureFit, curvature, deviation};
+use crate::fit::{FittedRecords, StructureFit, prior_deviation, prior_precision};
 use crate::law;
 use crate::linear::HeadingSensitivities;
 use crate::noise::{NoiseColour, RecordNoise};
-use crate::weights::{NoiseLaw, Weights};
+use crate::weights::{NoiseLaw, RecordWhitening};
 
 use super::criterion::LinearisedStructure;
 use super::motion::PredictedMotion;
@@ -36,9 +36,9 @@ impl<'a> StructurePoint<'a> {
     }
 
     /// Whitening weights under a colour.
-    pub fn weights(&self, colour: &NoiseColour) -> Weights {
+    pub fn weights(&self, colour: &NoiseColour) -> RecordWhitening {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(colour)).collect();
-        Weights { whiteners, scale: self.sd.iter().map(|sd| sd.recip()).collect() }
+        RecordWhitening { whiteners, scale: self.sd.iter().map(|sd| sd.recip()).collect() }
     }
 
     /// One-step-ahead predicted motions of the records under a colour.
@@ -48,7 +48,8 @@ impl<'a> StructurePoint<'a> {
         let is_of_moment = colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading());
         let motion = |number: usize| {
             let (record, initial) = (&self.problem.records[number], self.initial[number]);
-            let predicted = is_of_moment.then(|| self.noise[number].whitener(colour).predicted(&residual[number]));
+            let predicted =
+                is_of_moment.then(|| self.noise[number].whitener(colour).predicted_states(&residual[number]));
             PredictedMotion::new(record, number, structure, &self.theta, initial, predicted.as_deref())
         };
         (0..self.problem.records.len()).map(motion).collect()
@@ -57,7 +58,7 @@ impl<'a> StructurePoint<'a> {
     /// Number of fitted parameters of the base, and of the terms.
     fn counts(&self) -> [usize; 2] {
         let base = self.fit.structure.base_count();
-        let fitted = self.fit.structure.fitted();
+        let fitted = self.fit.structure.fitted_indices();
         let of_base = fitted.iter().filter(|place| **place < base).count();
         [of_base, fitted.len() - of_base]
     }
@@ -66,7 +67,7 @@ impl<'a> StructurePoint<'a> {
     /// terms (penalised).
     pub fn linearised(&self, motions: &[PredictedMotion]) -> LinearisedStructure {
         let structure = &self.fit.structure;
-        let mut linear = self.problem.linear(structure, &self.theta, &self.initial);
+        let mut linear = self.problem.linearise(structure, &self.theta, &self.initial);
         let [of_base, of_terms] = self.counts();
         let gaps: Vec<Vec<[Vec<f64>; 2]>> = motions.iter().map(restarts).collect();
         let states = linear.unknowns - of_terms;
@@ -89,13 +90,13 @@ impl<'a> StructurePoint<'a> {
             }
         }
         linear.unknowns = integrated + of_terms;
-        let (entries, fitted) = (structure.entries(), structure.fitted());
+        let (entries, fitted) = (structure.entries(), structure.fitted_indices());
         let mut prior = vec![(0.0, 0.0); integrated];
         // Deviations of the rudder bias from record to record are expected to be small.
         for (place, prior) in prior.iter_mut().enumerate().take(of_base).skip(ship::response::BASE_PARAMETERS) {
             let (expected, value) = (entries[fitted[place]].prior, self.theta[fitted[place]]);
-            let precision = curvature(expected);
-            *prior = (precision, deviation(expected, value) / precision.sqrt());
+            let precision = prior_precision(expected);
+            *prior = (precision, prior_deviation(expected, value) / precision.sqrt());
         }
         let neutral: Vec<f64> = structure.terms.iter().flat_map(|term| term.neutral()).collect();
         let size = |&place: &usize| match entries[place].prior.is_shape {
@@ -125,7 +126,7 @@ impl<'a> StructurePoint<'a> {
         let mut next = self.clone();
         let [of_base, of_terms] = self.counts();
         let entries = self.fit.structure.entries();
-        for (k, place) in self.fit.structure.fitted().into_iter().enumerate() {
+        for (k, place) in self.fit.structure.fitted_indices().into_iter().enumerate() {
             let by = if k < of_base { step[k] } else { step[step.len() - of_terms + k - of_base] };
             let prior = &entries[place].prior;
             next.theta[place] = (self.theta[place] + by).clamp(prior.lowest, prior.highest);

@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 use super::criterion::{GramProducts, HeadingColumn, WhitenedStructure, product};
 use super::dictionary::Shape;
-use super::laws::{RandomLaw, screening};
+use super::laws::{RandomLaw, screening_laws};
 use super::library::shapes;
 use super::motion::PredictedMotion;
 use crate::linear::{HeadingSensitivities, Linearisation};
-use crate::weights::Weights;
+use crate::weights::RecordWhitening;
 
 /// Number of classes of shapes, for the penalty of the choice among them.
 const CLASSES: f64 = 11.0;
@@ -59,7 +59,7 @@ pub struct ShapeSearch<'a> {
     /// Random laws.
     pub laws: &'a [RandomLaw],
     /// Whitening weights under each law.
-    pub weights: &'a [Weights],
+    pub weights: &'a [RecordWhitening],
     /// Structure under each law; `None` if its columns are dependent.
     pub structure: &'a [Option<WhitenedStructure>],
     /// Number of unknowns of the structure.
@@ -224,8 +224,8 @@ impl ShapeSearch<'_> {
     /// Best explanation with the criteria without each shape, and all explanations that were tried.
     pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
         let library = self.library(unit);
-        let (criterion, law) = best(self.structure).unwrap_or(NONE);
-        let laws = screening(self.laws, law);
+        let (criterion, law) = best_of_laws(self.structure).unwrap_or(NONE);
+        let laws = screening_laws(self.laws, law);
         let mut current = Explanation { shapes: Vec::new(), criterion, law };
         let mut all = vec![current.clone()];
         let mut products = self.products(&laws, &library);
@@ -274,8 +274,11 @@ impl ShapeSearch<'_> {
     /// Explanation by some shapes under their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (criterion, law) =
-            if all.is_empty() { best(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
+        let (criterion, law) = if all.is_empty() {
+            best_of_laws(self.structure).unwrap_or(NONE)
+        } else {
+            self.best_law(self.structure, &all)
+        };
         Explanation { shapes, criterion, law }
     }
 
@@ -327,7 +330,7 @@ pub fn coefficients(shapes: &[Arc<Candidate>], step: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Residual sum of squares (rad²) of a structure with shapes appended, after a step of all unknowns.
-pub fn residual_square(linear: &Linearisation, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
+pub fn residual_sum_of_squares(linear: &Linearisation, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
     let columns: Vec<&HeadingColumn> = shapes.iter().flat_map(|shape| &shape.columns).collect();
     let square = |(number, block): (usize, &HeadingSensitivities)| {
         let mut residual = block.residual.clone();
@@ -345,7 +348,7 @@ pub fn residual_square(linear: &Linearisation, shapes: &[Arc<Candidate>], step: 
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
 /// Criterion and index of the best law of structures; `None` if all are `None`.
-pub fn best(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
+pub fn best_of_laws(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
     let criteria = structures.iter().enumerate().filter_map(|(law, s)| Some((s.as_ref()?.criterion(), law)));
     criteria.min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -17,7 +17,7 @@ use super::*;
 use crate::base::Base;
 use crate::candidates::ship_time;
 use crate::fit::StoppingRule;
-use crate::full::start;
+use crate::full::start_point;
 use crate::linear::{HeadingSensitivities, Linearisation};
 use crate::model::Structure;
 use crate::noise::RecordNoise;
@@ -38,7 +38,7 @@ fn in_moment(seed: u64, moment_deg: impl Fn(f64) -> f64) -> Trial {
 
 /// Record of a ship with a moment given as a formula with coefficient `c`.
 fn with_formula(formula: &str, c: f64) -> Trial {
-    let effect: Arc<dyn Effect> = Formula::read(formula).expect("a formula");
+    let effect: Arc<dyn Effect> = Formula::parse(formula).expect("a formula");
     record(&ship(vec![(effect, vec![c])]), plan(5))
 }
 
@@ -51,14 +51,14 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let law = NoiseLaw::white(trials.len(), base.mean_square());
     let structure = Structure::base(trials.len(), time);
-    let theta = start(&structure, &response, std::iter::empty());
+    let theta = start_point(&structure, &response, std::iter::empty());
     let fit = problem.fit(&structure, theta, base.initial(), &problem.weights(&law), StoppingRule::FINE);
-    analysis(&problem, &fit, &law).expect("an analysis")
+    analyse_shapes(&problem, &fit, &law).expect("an analysis")
 }
 
 /// Clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
-    let named = analysis.named(|_| 300.0);
+    let named = analysis.named_shapes(|_| 300.0);
     named.first().map(|named| (named.candidate.shape, named.candidate.only)).expect("a shape")
 }
 
@@ -68,7 +68,7 @@ fn moments_that_depend_on_time_are_located() {
     let (shape, _) = clearest(&step);
     assert!(step.is_located() && shape.dependence() == Dependence::Time, "{shape:?}");
     assert!(shape.span(300.0).is_some_and(|[from, _]| (from - 150.0).abs() < 6.0), "{shape:?}");
-    let size = step.named(|_| 300.0)[0].size;
+    let size = step.named_shapes(|_| 300.0)[0].size;
     assert!((to_deg(size) - 0.5_f64.sqrt()).abs() < 0.15, "{} deg", to_deg(size));
 
     let periodic = analysed(&[in_moment(2, |t| (TAU * t / 70.0).sin())]);
@@ -80,7 +80,7 @@ fn moments_that_depend_on_time_are_located() {
         6.0 * (squall(90.0) - squall(210.0))
     })]);
     let spans: Vec<[f64; 2]> =
-        squalls.named(|_| 300.0).iter().filter_map(|named| named.candidate.shape.span(300.0)).collect();
+        squalls.named_shapes(|_| 300.0).iter().filter_map(|named| named.candidate.shape.span(300.0)).collect();
     let is_held = |middle: f64| spans.iter().any(|[from, until]| (from..=until).contains(&&middle));
     assert!(is_held(90.0) && is_held(210.0), "{spans:?}");
 }
@@ -142,7 +142,7 @@ fn criteria_are_those_of_dense_matrices() {
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
     let noise = RecordNoise::new(&PreparedRecord::whole(&made), 0.1, 40.0, 1);
-    let weights = Weights { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
+    let weights = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
     let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
     let dense = |count: usize| {
         let x = DMatrix::from_fn(rows, count, |i, k| 10.0 * columns[k][i]);
@@ -192,7 +192,7 @@ fn laws_have_the_sizes_they_say() {
     assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
     assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
     let walk = all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.freedom == 1).expect("a law");
-    let tried = laws::screening(&all, walk);
+    let tried = laws::screening_laws(&all, walk);
     assert!(tried.contains(&0) && tried.contains(&walk) && tried.len() < 16, "{tried:?}");
 }
 
@@ -202,7 +202,7 @@ fn shapes_can_be_moved_and_typed() {
     assert!(all.len() > 600, "{}", all.len());
     for (shape, _) in &all {
         if let Some(formula) = shape.formula() {
-            assert!(Formula::read(&format!("located = {formula}")).is_ok(), "{formula}");
+            assert!(Formula::parse(&format!("located = {formula}")).is_ok(), "{formula}");
         }
         for place in 0..shape.place_count() {
             let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|moved| moved.moved(place, -1.0, [300.0, 1.0]));
@@ -222,7 +222,7 @@ fn tried_beside_the_best_law_are_weaker_ones_walks_and_an_error_of_the_compass()
     let kind = |law: &RandomLaw| law.colour.correlated.map(|(kind, _)| kind);
     let sea = |law: &RandomLaw| law.colour.waves.map(|sea| sea.frequency);
     let tried = |best: &dyn Fn(&RandomLaw) -> bool| {
-        let places = laws::screening(&laws, laws.iter().position(best).expect("a law"));
+        let places = laws::screening_laws(&laws, laws.iter().position(best).expect("a law"));
         places.into_iter().map(|place| laws[place]).collect::<Vec<_>>()
     };
     let sizes = |among: &[RandomLaw], is: &dyn Fn(&RandomLaw) -> bool| -> Vec<f64> {

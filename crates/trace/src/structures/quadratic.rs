@@ -6,7 +6,7 @@ use estimation::subsets::{MAX_TERMS, RemovableTerm, condition_neutral, condition
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::fit::{deviation, log_normaliser};
+use crate::fit::{log_normaliser, prior_deviation};
 use crate::model::{Structure, Term};
 
 /// Number of structures refitted per round, and the maximum log odds against the best for a refit.
@@ -18,7 +18,7 @@ const MAX_ADDITIONS: usize = 2;
 
 /// Evidence for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
+pub struct TermEvidence {
     /// Log evidence of the best structure with the candidate minus that of the best without it.
     pub gain: f64,
     /// p value (χ²) of the coefficients with all other candidates present.
@@ -95,11 +95,11 @@ impl QuadraticPosterior {
 
     /// Support of every term from the log weights of all subsets. The gain is for the effect in any form; `effects`
     /// identifies the terms that are forms of one effect.
-    pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<Support> {
+    pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<TermEvidence> {
         let (kept, weights) = self.weighed();
         let support = |number: usize| {
             if !kept.contains(&number) {
-                return Support { gain: 0.0, p_value: 1.0 };
+                return TermEvidence { gain: 0.0, p_value: 1.0 };
             }
             let term = &self.removable[number];
             let p_value = chi_square_p_value(&term.sizes, &self.covariance).unwrap_or(1.0);
@@ -113,7 +113,7 @@ impl QuadraticPosterior {
                 let all = weights.iter().enumerate().filter(|(subset, _)| (subset & forms != 0) == with);
                 all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
             };
-            Support { gain: highest(true) - highest(false) - term.log_odds, p_value }
+            TermEvidence { gain: highest(true) - highest(false) - term.log_odds, p_value }
         };
         (0..self.removable.len()).map(support).collect()
     }
@@ -200,7 +200,7 @@ fn removable(
         let Some(unknown) = unknown else { continue };
         let at = if prior.is_shape { theta[place] } else { neutral };
         removable.log_prior += log_normaliser(*prior);
-        removable.log_prior -= 0.5 * deviation(*prior, at).powi(2);
+        removable.log_prior -= 0.5 * prior_deviation(*prior, at).powi(2);
         match prior.is_shape {
             true => removable.shapes.push(unknown),
             false => removable.sizes.push((unknown, mean[unknown] - neutral)),

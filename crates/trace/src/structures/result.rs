@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::quadratic::Support;
-use crate::candidates::PROBABILITY;
+use super::quadratic::TermEvidence;
+use crate::candidates::PRIOR_PROBABILITY;
 use crate::fit::StructureFit;
 use crate::model::{Structure, TermName};
 
@@ -32,7 +32,7 @@ pub struct Structures {
     /// a candidate of small visibility is unobservable.
     pub visibility: BTreeMap<TermName, f64>,
     /// Evidence for every candidate.
-    pub support: BTreeMap<TermName, Support>,
+    pub support: BTreeMap<TermName, TermEvidence>,
     /// Structures under other noise laws: weight, names of the terms.
     pub(super) rivals: Vec<(f64, Vec<TermName>)>,
 }
@@ -90,14 +90,14 @@ impl Structures {
     }
 
     /// Support of the best form of an effect.
-    pub fn support_of(&self, id: &str, only: Option<usize>) -> Support {
+    pub fn support_of(&self, id: &str, only: Option<usize>) -> TermEvidence {
         let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == only).map(|(_, form)| *form);
-        let none = Support { gain: 0.0, p_value: 1.0 };
+        let none = TermEvidence { gain: 0.0, p_value: 1.0 };
         let mut best = forms.max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap_or(none);
         // The refitted structures are more accurate than the quadratic approximation.
         let probability = self.probability_of(id, only).clamp(1e-12, 1.0 - 1e-12);
         if probability > 0.5 {
-            best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PROBABILITY.ln());
+            best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PRIOR_PROBABILITY.ln());
         }
         best.gain = best.gain.clamp(-1e6, 1e6);
         best

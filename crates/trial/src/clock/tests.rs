@@ -1,7 +1,7 @@
 use super::*;
 
 fn seconds(stamps: &[&str]) -> Result<Vec<f64>, StampFault> {
-    let mut clock = Stamps::default();
+    let mut clock = StampConverter::default();
     stamps.iter().map(|text| clock.seconds(Stamp::parse(text).expect(text))).collect()
 }
 
@@ -9,14 +9,26 @@ fn seconds(stamps: &[&str]) -> Result<Vec<f64>, StampFault> {
 fn the_calendar_agrees_with_known_days() {
     // Day numbers of the Unix epoch: 2000-03-01 is day 11017, 2026-11-20 day 20777 (POSIX formula).
     for (given, day) in [((1970, 1, 1), 0), ((2000, 3, 1), 11_017), ((2026, 11, 20), 20_777), ((1969, 12, 31), -1)] {
-        assert_eq!(days(given.0, given.1, given.2), Some(day));
+        assert_eq!(days_since_1970(given.0, given.1, given.2), Some(day));
     }
     assert_eq!(
         [date(20_777), date(-1), date(-719_528)].map(|day| day.to_string()),
         ["2026-11-20", "1969-12-31", "0000-01-01"]
     );
-    assert_eq!([days(2025, 2, 29), days(2024, 13, 1), days(2024, 4, 31), days(2024, 0, 1)], [None; 4]);
-    assert!(days(2024, 2, 29).is_some() && days(1900, 2, 29).is_none() && days(2000, 2, 29).is_some());
+    assert_eq!(
+        [
+            days_since_1970(2025, 2, 29),
+            days_since_1970(2024, 13, 1),
+            days_since_1970(2024, 4, 31),
+            days_since_1970(2024, 0, 1)
+        ],
+        [None; 4]
+    );
+    assert!(
+        days_since_1970(2024, 2, 29).is_some()
+            && days_since_1970(1900, 2, 29).is_none()
+            && days_since_1970(2000, 2, 29).is_some()
+    );
 }
 
 #[test]
@@ -35,7 +47,7 @@ fn one_moment_in_many_notations() {
         "Nov 20, 2026 2:03:05 pm",
     ];
     for text in same {
-        let mut stamps = Stamps::default();
+        let mut stamps = StampConverter::default();
         assert_eq!(stamps.seconds(Stamp::parse(text).expect(text)), Ok(0.0));
         let clock = stamps.clock().expect("a stamp was read");
         assert_eq!((clock.day, clock.second, clock.zone), (Some(20_777), 50_585.0, None), "{text}");
@@ -94,7 +106,7 @@ fn which_number_is_the_month_shows_where_the_date_changes() {
 
 #[test]
 fn a_clock_finds_its_times() {
-    let mut stamps = Stamps::default();
+    let mut stamps = StampConverter::default();
     stamps.seconds(Stamp::parse("2026-11-20 23:00:00").expect("a stamp")).expect("it has a time");
     let clock = stamps.clock().expect("a stamp was read");
     let at = |text| clock.time_of(&Stamp::parse(text).expect(text));

@@ -2,8 +2,8 @@
 //! rudder leaves its last hold or the propeller stops.
 
 use super::course::thinned_median;
-use super::detection::{Approach, DetectedManoeuvre, Quality, STEADY_SPEED};
-use super::pattern::{Pattern, Prepared};
+use super::detection::{Approach, DetectedManoeuvre, MAX_APPROACH_SPEED_CHANGE, Quality};
+use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
@@ -41,7 +41,7 @@ const MIN_RAMP_ROWS: usize = 3;
 const MEDIAN_ROWS: usize = 8;
 
 /// Manoeuvres of patterns, which are in order of time and do not overlap.
-pub(crate) fn bounded(record: &Prepared, patterns: &[Pattern]) -> Vec<DetectedManoeuvre> {
+pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<DetectedManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
@@ -89,7 +89,7 @@ fn spread(pattern: &Pattern) -> f64 {
 }
 
 /// Last row of a manoeuvre in which the propeller turns.
-fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
+fn before_stop(record: &PreparedLog, pattern: &Pattern) -> usize {
     let (first, last) = (pattern.first(), pattern.last());
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
     let stopped = STOPPED_SHARE * finite_median(propeller.iter().map(|n| n.abs()));
@@ -102,7 +102,7 @@ fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
 
 /// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale`
 /// seconds before the hold or, if the rudder is slow, somewhat earlier.
-pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free: usize) -> usize {
+pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(MAX_TIMING_HOLDS)];
     let hold = holds[0];
@@ -192,7 +192,7 @@ struct ApproachSegment {
 }
 
 impl ApproachSegment {
-    fn of(record: &Prepared, pattern: &Pattern, start: usize, free: usize) -> Self {
+    fn of(record: &PreparedLog, pattern: &Pattern, start: usize, free: usize) -> Self {
         let time = record.log.time;
         let earliest = time.partition_point(|&t| t < time[start] - pattern.scale).max(free).min(start);
         let speed_change = change(record.log.speed, earliest, start);
@@ -200,7 +200,7 @@ impl ApproachSegment {
         if earliest == start {
             return none(if start == 0 { Approach::Absent } else { Approach::Unsteady });
         }
-        let is_steady = |change: Option<f64>| change.is_none_or(|change| change.abs() <= STEADY_SPEED);
+        let is_steady = |change: Option<f64>| change.is_none_or(|change| change.abs() <= MAX_APPROACH_SPEED_CHANGE);
         if !is_steady(speed_change) || !is_steady(change(record.log.propeller, earliest, start)) {
             return none(Approach::Unsteady);
         }
@@ -225,7 +225,7 @@ impl ApproachSegment {
 }
 
 /// First row from which the rudder stays about amidships until row `start`; `None` if it is not amidships there.
-fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
+fn steady_rudder(record: &PreparedLog, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
     let (time, angle) = (record.log.time, &record.rudder.angle);
     let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
     let largest = lowest.abs().max(highest.abs());

@@ -6,7 +6,7 @@ use estimation::statistics::median;
 /// Maximum number of rows of a median: more rows slow the search without a better median.
 const MAX_MEDIAN_ROWS: usize = 64;
 
-/// Rows with a heading.
+/// Times and headings of the rows of a log that have a heading.
 #[derive(Debug)]
 pub(crate) struct HeadingReadings {
     /// Times, s.
@@ -24,7 +24,7 @@ impl HeadingReadings {
 
     /// Heading at a time, rad: the median within `half_width` of it, else interpolated between its neighbours if
     /// both are within `reach`.
-    pub fn near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
+    pub fn heading_near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
         // The window is symmetric: at the end of a record a one-sided median would lag behind a turn.
         let (begin, end) = (*self.time.first()?, *self.time.last()?);
         let half_width = half_width.min(time - begin).min(end - time).max(0.0);
@@ -49,7 +49,7 @@ impl HeadingReadings {
     /// Change of heading between two times, rad; each heading is a median over a twentieth of the time between them.
     pub fn change(&self, from: f64, to: f64) -> Option<f64> {
         let time = to - from;
-        let [before, after] = [from, to].map(|t| self.near(t, 0.05 * time, 0.25 * time));
+        let [before, after] = [from, to].map(|t| self.heading_near(t, 0.05 * time, 0.25 * time));
         Some(after? - before?)
     }
 

@@ -3,7 +3,7 @@
 
 use ship::angle::to_deg;
 
-use super::pattern::Prepared;
+use super::pattern::PreparedLog;
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::holds::conventional_deg;
 
@@ -18,7 +18,7 @@ const MAX_SPREAD_DEG: f64 = 1.5;
 
 /// Maximum change of speed and revolutions in a steady approach, as a share, from its first third to its last: 5 % over
 /// its full length.
-pub(crate) const STEADY_SPEED: f64 = 0.033;
+pub(crate) const MAX_APPROACH_SPEED_CHANGE: f64 = 0.033;
 
 /// Approach of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub struct Quality {
 
 impl Quality {
     /// Quality of the rows of a part, without its approach and holds.
-    pub(crate) fn of(record: &Prepared, first: usize, last: usize) -> Self {
+    pub(crate) fn of(record: &PreparedLog, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
         let (mut read, mut missing) = (time[0], 0);
@@ -77,7 +77,7 @@ impl Quality {
             Some(Approach::Absent) => Some("The log begins within the manoeuvre, without an approach.".into()),
             Some(Approach::Steady) | None => None,
         };
-        let speed = self.speed_change.filter(|change| change.abs() > STEADY_SPEED).map(|change| {
+        let speed = self.speed_change.filter(|change| change.abs() > MAX_APPROACH_SPEED_CHANGE).map(|change| {
             let verb = if change > 0.0 { "grew" } else { "fell" };
             format!("The speed {verb} by {:.0} % during the approach.", 100.0 * change.abs())
         });

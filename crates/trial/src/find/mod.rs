@@ -24,7 +24,7 @@ mod turns;
 mod zigzags;
 
 use course::HeadingReadings;
-use pattern::{Pattern, Prepared};
+use pattern::{Pattern, PreparedLog};
 use rudder::{Hold, RudderHolds};
 
 pub use detection::{Approach, DetectedManoeuvre, Quality};
@@ -40,7 +40,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     }
     let course = HeadingReadings::of(log.time, log.heading);
     let rudder = RudderHolds::of(log.time, log.rudder);
-    let record = Prepared { log, rudder: &rudder, course: &course };
+    let record = PreparedLog { log, rudder: &rudder, course: &course };
     let mut patterns = spirals::spirals(&record);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();
     patterns.extend(zigzags::zigzags(&record, &free));
@@ -50,8 +50,8 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     let turns = turns::turns(&record, &free).into_iter().filter(|turn| !overlaps(&patterns, &turn.holds[0]));
     patterns.extend(turns.collect::<Vec<_>>());
     patterns.sort_by_key(|pattern| pattern.holds[0].first);
-    let mut list = bounds::bounded(&record, &patterns);
-    straights::add(&record, &patterns, &mut list);
+    let mut list = bounds::with_bounds(&record, &patterns);
+    straights::add_straight_runs(&record, &patterns, &mut list);
     list
 }
 

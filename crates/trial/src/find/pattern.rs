@@ -33,15 +33,15 @@ impl Signals<'_> {
     }
 }
 
-/// Log with its rudder holds and its course.
+/// Log prepared for the search: its channels, the holds of its rudder and its headings.
 #[derive(Clone, Copy)]
-pub(crate) struct Prepared<'a> {
+pub(crate) struct PreparedLog<'a> {
     pub log: &'a Signals<'a>,
     pub rudder: &'a RudderHolds,
     pub course: &'a HeadingReadings,
 }
 
-/// Detected manoeuvre without the bounds of the part.
+/// Detected manoeuvre, before the start and end of its part of the log are determined.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
     pub manoeuvre: Manoeuvre,

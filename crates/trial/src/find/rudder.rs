@@ -39,7 +39,7 @@ const MIN_ROWS: usize = 3;
 /// Length of a gap that ends a hold, usual time steps.
 const GAP_STEPS: f64 = 30.0;
 
-/// Hold: rows with the rudder at rest.
+/// Interval of rows over which the rudder angle does not change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// First row.
@@ -67,7 +67,7 @@ impl Hold {
     }
 }
 
-/// Rudder of a log with its holds.
+/// Rudder angle of a log with the intervals over which it does not change.
 #[derive(Debug)]
 pub(crate) struct RudderHolds {
     /// Rudder angle without spikes of one row, rad.

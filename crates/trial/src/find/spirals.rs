@@ -3,7 +3,7 @@
 //!
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
-use super::pattern::{Pattern, Prepared};
+use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 
@@ -35,7 +35,7 @@ const MAX_RATE_CHANGE: f64 = 0.04;
 const MAX_RATE_REVERSAL: f64 = 0.15;
 
 /// Spirals of a log.
-pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
+pub(crate) fn spirals(record: &PreparedLog) -> Vec<Pattern> {
     let all = &record.rudder.holds;
     let is_pause = |index: usize| {
         let shorter = |x: Option<&Hold>| x.is_some_and(|x| all[index].duration() < PAUSE_SHARE * x.duration());
@@ -92,7 +92,7 @@ fn is_from_side_to_side(sweep: &[Hold]) -> bool {
 }
 
 /// `true` if the ship turns steadily in every hold, and faster to the side of the rudder from hold to hold.
-fn is_answered(record: &Prepared, sweep: &[Hold]) -> bool {
+fn is_answered(record: &PreparedLog, sweep: &[Hold]) -> bool {
     let usual = finite_median(sweep.iter().map(Hold::duration));
     if sweep.iter().any(|hold| hold.duration() < MIN_HOLD_SHARE * usual) {
         return false;

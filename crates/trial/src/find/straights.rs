@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::detection::{DetectedManoeuvre, Quality};
-use super::pattern::{Pattern, Prepared};
+use super::pattern::{Pattern, PreparedLog};
 use super::rudder::finite_median;
 
 /// Maximum range of headings on a course, rad: an autopilot keeps ±1°, in waves ±2°.
@@ -27,7 +27,7 @@ const MIN_ROWS: usize = 20;
 const AT_REST_SHARE: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<DetectedManoeuvre>) {
+pub(crate) fn add_straight_runs(record: &PreparedLog, patterns: &[Pattern], list: &mut Vec<DetectedManoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = finite_median(patterns.iter().map(|pattern| pattern.scale));
@@ -56,7 +56,7 @@ pub(crate) fn add(record: &Prepared, patterns: &[Pattern], list: &mut Vec<Detect
 
 /// Straight pieces in a range of rows; `is_straight` tests speed, propeller and rudder of a row, not its heading.
 fn pieces_in(
-    record: &Prepared,
+    record: &PreparedLog,
     is_straight: impl Fn(usize) -> bool,
     rows: Range<usize>,
     shortest: f64,
@@ -107,7 +107,7 @@ impl Piece {
         near
     }
 
-    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<DetectedManoeuvre> {
+    fn manoeuvre(&self, record: &PreparedLog, shortest: f64) -> Option<DetectedManoeuvre> {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
         (until - from >= shortest && self.last + 1 - self.first >= MIN_ROWS).then(|| DetectedManoeuvre {
             manoeuvre: None,

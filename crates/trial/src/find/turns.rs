@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::pattern::{Pattern, Prepared};
+use super::pattern::{Pattern, PreparedLog};
 use super::rudder::Hold;
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::Side;
@@ -32,7 +32,7 @@ const MIN_SCALES: f64 = 2.0;
 const MAX_RATE_CHANGE: f64 = 0.04;
 
 /// Turning circles and pull-outs among holds, which are in order of time.
-pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
+pub(crate) fn turns(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
     let mut patterns = Vec::new();
     for (index, hold) in holds.iter().enumerate() {
         let Some(turned) = turned(record, hold) else { continue };
@@ -48,7 +48,7 @@ pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
 }
 
 /// Change of heading in a turn, rad; `None` for a hold without a turn.
-fn turned(record: &Prepared, hold: &Hold) -> Option<f64> {
+fn turned(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let rudder = hold.level - record.rudder.neutral;
     let is_over = hold.level.abs() >= MIN_RUDDER && rudder.abs() >= MIN_RUDDER;
     let turned = record.course.change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
@@ -56,13 +56,13 @@ fn turned(record: &Prepared, hold: &Hold) -> Option<f64> {
 }
 
 /// `true` if a hold has no gap in which the rudder may have moved.
-fn is_whole(record: &Prepared, hold: &Hold) -> bool {
+fn is_whole(record: &PreparedLog, hold: &Hold) -> bool {
     let rows = &record.log.time[hold.first..=hold.last];
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
 }
 
 /// Pull-out after a turn: the rudder amidships until the yaw rate is steady or the rudder moves.
-fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
+fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT_TURN / rate;

@@ -5,7 +5,7 @@
 
 use super::bounds::first_execute;
 use super::course::thinned_median;
-use super::pattern::{Pattern, Prepared};
+use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 use crate::zigzag::Side;
@@ -63,7 +63,7 @@ const MAX_LAST_SWINGS: f64 = 4.0;
 const MIN_HOLDS: usize = 3;
 
 /// Zig-zags among holds, which are in order of time.
-pub(crate) fn zigzags(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
+pub(crate) fn zigzags(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
     let mut patterns: Vec<Pattern> = Vec::new();
     let mut start = 0;
     while start < holds.len() {
@@ -138,7 +138,7 @@ fn is_level(a: f64, b: f64) -> bool {
 }
 
 /// Parts of a chain in which the heading responds as in a zig-zag.
-fn answered(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
+fn answered(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
     if holds.len() < MIN_HOLDS {
         return Vec::new();
     }
@@ -184,13 +184,13 @@ fn side(holds: &[Hold], index: usize) -> f64 {
 }
 
 /// Heading at the end of a hold: between its last row and the next.
-fn heading_at_end(record: &Prepared, hold: &Hold) -> Option<f64> {
+fn heading_at_end(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
-    record.course.near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
+    record.course.heading_near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
 }
 
 /// Zig-zag of holds whose swings agree, with the headings at their ends; `None` if the holds are not a zig-zag.
-fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Option<Pattern> {
+fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Option<Pattern> {
     let mut sizes = Vec::new();
     for pair in headings[..headings.len() - 1].windows(2) {
         sizes.push((pair[1]? - pair[0]?).abs());
@@ -198,7 +198,7 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
     let swing = median(&mut sizes)?;
     let mut first = 0;
     let execute = record.log.time[first_execute(record, holds, holds[0].duration(), 0)];
-    let began = record.course.near(execute, 0.02 * holds[0].duration(), holds[0].duration());
+    let began = record.course.heading_near(execute, 0.02 * holds[0].duration(), holds[0].duration());
     if let (Some(began), Some(ended)) = (began, headings[0]) {
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == MIN_HOLDS { ONLY_SWING } else { FIRST_SWING };
@@ -232,7 +232,7 @@ fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Optio
 
 /// `true` if the ship went straight with the rudder about amidships before the first of three holds, which began at
 /// the time `from` (s) and the heading `began` (rad), and if the log does not contain the approach.
-fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, swing: f64) -> bool {
+fn is_straight_before(record: &PreparedLog, holds: &[Hold], from: f64, began: f64, swing: f64) -> bool {
     // In the second hold the change of heading is twice as large, and the ship first stops a turn.
     if holds[1].duration() <= holds[0].duration() {
         return false;
@@ -241,13 +241,13 @@ fn is_straight_before(record: &Prepared, holds: &[Hold], from: f64, began: f64, 
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
     let [a, b] = [holds[0].level, holds[1].level];
     let rudder = thinned_median(&record.rudder.angle[rows[0]..rows[1]]);
-    let heading = record.course.near(from - time, 0.1 * time, 0.5 * time);
+    let heading = record.course.heading_near(from - time, 0.1 * time, 0.5 * time);
     rudder.is_none_or(|rudder| (rudder - 0.5 * (a + b)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (a - b).abs())
         && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
 }
 
 /// `true` if the rudder is held for a sufficient share of the time and no gap of the log hides a hold.
-fn is_held(record: &Prepared, holds: &[Hold]) -> bool {
+fn is_held(record: &PreparedLog, holds: &[Hold]) -> bool {
     let held: f64 = holds.iter().map(Hold::duration).sum();
     let (first, last) = (holds[0], holds[holds.len() - 1]);
     let mean = held / holds.len() as f64;

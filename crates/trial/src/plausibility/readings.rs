@@ -8,7 +8,7 @@ use document::{Warning, WarningCode};
 use super::extremes;
 use crate::channel::Channel;
 use crate::record::Trial;
-use crate::wording::{counted, instant, shortened};
+use crate::wording::{counted, rounded_to_thousandth, shortened};
 use crate::zigzag::quantum;
 
 /// Minimum number of rows with one value that noise does not repeat.
@@ -38,7 +38,7 @@ const MIN_VALUES: usize = 5;
 const MIN_PAUSES: (usize, f64) = (3, 0.06);
 
 /// Warnings of channels that are clipped, frozen or coarse; `columns` are their names in the file.
-pub(crate) fn check(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning> {
+pub(crate) fn reading_warnings(trial: &Trial, columns: &[(Channel, String)]) -> Vec<Warning> {
     let angles = [Channel::Rudder, Channel::Heading];
     let warnings = angles.into_iter().flat_map(|channel| {
         let values = if channel == Channel::Rudder { trial.rudder() } else { trial.heading() };
@@ -94,7 +94,7 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let (low, high) = extremes(values.iter().copied());
     let at_end = |run: &&Range<usize>| values[run.start] == low || values[run.start] == high;
     let ends: Vec<&Range<usize>> = still.iter().filter(at_end).collect();
-    let shown = |run: &Range<usize>| instant(values[run.start].to_degrees());
+    let shown = |run: &Range<usize>| rounded_to_thousandth(values[run.start].to_degrees());
     if ends.len() >= 2 {
         let rows = ends.iter().map(|run| run.len()).sum::<usize>();
         let from = ends[0];
@@ -105,15 +105,15 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
              it is clipped at the end of its scale, which makes K too large; correct the range of the sensor or the logger, \
              or use the rudder order instead (`is = \"rudder_order_deg\"` for its column, in a sidecar NAME.trial.toml)",
             shown(from),
-            instant(time[from.start]),
+            rounded_to_thousandth(time[from.start]),
         ));
     }
     Some(format!(
         "{spoken} is frozen at {}° from t = {} s to {} s ({}), while it is noisy before and after, which makes K and T \
          wrong; use the part without it (--from, --until), or the rudder order instead",
         shown(&first),
-        instant(time[first.start]),
-        instant(time[first.end - 1]),
+        rounded_to_thousandth(time[first.start]),
+        rounded_to_thousandth(time[first.end - 1]),
         counted(first.len(), "row"),
     ))
 }
@@ -142,7 +142,7 @@ fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     (is_scale && next as f64 >= MIN_NEXT.1 * changes.len() as f64).then(|| {
         format!(
             "{spoken} comes in steps of {}°: it is rounded, and a reading may be wrong by half a step; record a decimal",
-            instant(step_deg)
+            rounded_to_thousandth(step_deg)
         )
     })
 }

@@ -23,7 +23,7 @@ pub(crate) struct PartialSlope {
 ///
 /// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
 /// and rudder bias may be unknown. `None` without residual variance, or if numbers overflow.
-pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
+pub(crate) fn first_order_gain(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice) = (0.0, vec![0.0]);
     for i in 1..time.len() {
@@ -41,9 +41,9 @@ pub(crate) fn rudder_on_heading(trial: &Trial) -> Option<PartialSlope> {
     partial_slope(thinned(observed).map(row).collect())
 }
 
-/// K (1/s) of a steadily turning ship, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
+/// Steady-turn estimate of K (1/s), ∫δ dψ / ∫δ² dt, with the share of ∫|δ dψ| of that sign. `None` without a
 /// rudder.
-pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
+pub(crate) fn steady_turn_gain(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let mut seen = (0..time.len()).filter(|&i| psi[i].is_finite());
     let (mut with, mut against, mut square) = (0.0, 0.0, 0.0);
@@ -66,7 +66,7 @@ pub(crate) fn turn_with_rudder(trial: &Trial) -> Option<PartialSlope> {
 
 /// Slope of the heading on the integral of the yaw rate: 1 if both agree in unit and sign.
 ///
-/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `rudder_on_heading`, or without a recorded yaw
+/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `first_order_gain`, or without a recorded yaw
 /// rate.
 pub(super) fn heading_on_yaw_rate(trial: &Trial) -> Option<PartialSlope> {
     if trial.heading_from_yaw_rate() {

@@ -98,7 +98,7 @@ pub(super) fn split_columns(columns: Columns, offset: f64) -> Vec<Series> {
 }
 
 /// Adds derived channels: the rudder order for a missing rudder angle, the speed from surge and sway.
-pub(super) fn complete(columns: &mut Columns) -> Option<Warning> {
+pub(super) fn add_derived_channels(columns: &mut Columns) -> Option<Warning> {
     let channels = &mut columns.channels;
     if !channels.contains_key(&Channel::Speed)
         && let (Some(surge), Some(sway)) = (channels.get(&Channel::Surge), channels.get(&Channel::Sway))
@@ -150,7 +150,7 @@ pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
 }
 
 /// Refuses channels without rudder or heading, and channels whose readings do not overlap in time.
-pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
+pub(super) fn check_channels(columns: &Columns) -> Result<(), Problem> {
     let Columns { time, channels, .. } = columns;
     let find = |wanted: [Channel; 2]| wanted.into_iter().find_map(|channel| channels.get(&channel));
     let rudder = find([Channel::Rudder, Channel::RudderOrder]);

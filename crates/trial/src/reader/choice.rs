@@ -82,7 +82,7 @@ impl Log {
             self.shown(until)
         );
         self.warnings.push(WarningCode::Part.warning(text));
-        self.part(from, until)
+        self.into_interval(from, until)
     }
 
     /// Time of the log as text: seconds, and the reading of the clock.

@@ -33,7 +33,7 @@ enum Numbers {
 }
 
 /// Refuses rudder and heading whose numbers are not angles in the unit of their columns.
-pub(super) fn check(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
+pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
     let column_of = |channel: Channel| {
         // Radians and columns with a scale in the sidecar are not checked.
         let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
@@ -108,7 +108,7 @@ fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
 }
 
 /// Gives the rudder its sign from a column of sides.
-pub(super) fn take_side(columns: &mut [RawColumn]) -> Option<Warning> {
+pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     let is_side = |column: &RawColumn| {
         let (low, high) = extremes(column.values.iter().copied());
         column.content == Content::Unknown

@@ -7,10 +7,10 @@ use super::head;
 use super::input::{self, Content};
 use super::limits::is_comment;
 use super::lines::Lines;
-use crate::cells::{Cell, Separator, cell};
+use crate::cells::{Cell, Separator, parse_cell};
 use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
-use crate::names::{ColumnMeaning, contract, meaning, with_unit};
+use crate::names::{ColumnMeaning, column_meaning, quantity_unit_meaning, with_unit};
 use crate::sidecar::Sidecar;
 use crate::wording::shortened;
 
@@ -21,7 +21,7 @@ const SUMMARISED_ROWS: usize = 1000;
 ///
 /// Fails as the reader does up to the header; for sentences, which require no sidecar; and for a line within the first
 /// thousand rows that cannot be read.
-pub fn describe(path: &Path) -> Result<String, ReadError> {
+pub fn draft_sidecar(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let open = || match input::open(path).map_err(fault)? {
         (Content::Table(table), _) => Ok(table),
@@ -59,7 +59,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
         return Ok(text + END);
     };
     for (index, name) in head.names.iter().enumerate() {
-        let meaning = meaning(name).map(|m| head.unit(index).and_then(|unit| with_unit(m, unit)).unwrap_or(m));
+        let meaning = column_meaning(name).map(|m| head.unit(index).and_then(|unit| with_unit(m, unit)).unwrap_or(m));
         let quoted = toml::Value::from(name.as_str());
         let (remark, is) = description(name, &quoted.to_string(), meaning);
         text.push_str(&format!("\n# {}\n# {remark}\n", summary(&texts, index, separator)));
@@ -76,7 +76,7 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
 fn description(name: &str, quoted: &str, meaning: Option<ColumnMeaning>) -> (String, Option<String>) {
     let recognised = || "Recognised by its name and unit; check it.".to_owned();
     match meaning {
-        _ if contract(name).is_some() => {
+        _ if quantity_unit_meaning(name).is_some() => {
             (format!("The name {quoted} states quantity and unit; no description is needed."), None)
         }
         Some(ColumnMeaning::Channel(channel, Some(unit))) => (recognised(), Some(channel.name_in(unit))),
@@ -130,7 +130,7 @@ fn summary(rows: &[String], index: usize, separator: Separator) -> String {
     for row in rows {
         separator.split(row, &mut ranges);
         let text = ranges.get(index).map_or("", |range| &row[range.clone()]);
-        match cell(text, separator) {
+        match parse_cell(text, separator) {
             Cell::Text => word = word.or_else(|| Some(shortened(text))),
             read => {
                 if let Some(value) = read.number() {
@@ -159,13 +159,13 @@ mod tests {
         let rows: String = (0..40).map(|t| format!("{t};350,{t};10;1,5;x\n")).collect();
         std::fs::write(&path, format!("Zeit [s];Heading;Ruderlage (Grad);SOG;\"my \\\\ load\"\n{rows}"))
             .expect("written");
-        let text = describe(&path).expect("a table");
+        let text = draft_sidecar(&path).expect("a table");
         let sidecar = Sidecar::parse(&text, Path::new("log.trial.toml")).expect(&text);
         assert_eq!(sidecar.columns.len(), 4, "{text}");
         assert!(text.contains("is = \"rudder_deg\"") && text.contains("GUESS"), "{text}");
         assert!(text.contains("Column 2 goes from 350 to 350.9"), "{text}");
         std::fs::write(&path, rows.replace(";x", "")).expect("written");
-        let text = describe(&path).expect("a table");
+        let text = draft_sidecar(&path).expect("a table");
         let sidecar = Sidecar::parse(&text, Path::new("log.trial.toml")).expect(&text);
         assert!(!sidecar.has_header() && text.contains("# index = 4"), "{text}");
     }

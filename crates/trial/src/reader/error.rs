@@ -10,7 +10,7 @@ use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
-use crate::wording::{end, instant, listed};
+use crate::wording::{interval_end, listed, rounded_to_thousandth};
 
 /// Error of reading a record.
 #[derive(Debug, Error)]
@@ -101,8 +101,8 @@ pub enum Problem {
     /// Rudder and heading without common times.
     #[error(
         "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; \
-         check that both belong to the same trial and count time from the same instant", instant(rudder_s[0]),
-        instant(rudder_s[1]), instant(heading_s[0]), instant(heading_s[1])
+         check that both belong to the same trial and count time from the same instant", rounded_to_thousandth(rudder_s[0]),
+        rounded_to_thousandth(rudder_s[1]), rounded_to_thousandth(heading_s[0]), rounded_to_thousandth(heading_s[1])
     )]
     NoOverlap { rudder_s: [f64; 2], heading_s: [f64; 2] },
     /// Two files with different kinds of time.
@@ -227,7 +227,7 @@ pub enum Problem {
     #[error(
         "no row lies{}{}; the rows lie between {} s and {} s: give another part (--from and --until, or `from-s` and \
          `until-s` under [part] in the sidecar)",
-        end("from", *from_s), end("until", *until_s), instant(*first_s), instant(*last_s)
+        interval_end("from", *from_s), interval_end("until", *until_s), rounded_to_thousandth(*first_s), rounded_to_thousandth(*last_s)
     )]
     EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Requested number without a manoeuvre.

@@ -4,9 +4,9 @@
 use std::io::Read;
 
 use super::error::Problem;
-use super::limits::{is_comment, no_rows};
+use super::limits::{is_comment, no_rows_problem};
 use super::lines::Lines;
-use crate::cells::{Cell, Separator, cell, detect_separator, unquoted};
+use crate::cells::{Cell, Separator, detect_separator, parse_cell, unquoted};
 use crate::channel::Unit;
 use crate::names;
 use crate::sidecar::{ColumnReference, Sidecar};
@@ -66,7 +66,7 @@ fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedL
     }
     match lines.number() {
         0 => Err(Problem::Empty),
-        last if begin.is_empty() => Err(no_rows(last)),
+        last if begin.is_empty() => Err(no_rows_problem(last)),
         _ => Ok((begin, comment)),
     }
 }
@@ -121,8 +121,8 @@ pub(super) fn find<R: Read>(
 /// Units of a row of units; `None` for a row of values.
 fn units_of(cells: &[&str], separator: Separator) -> Option<Vec<Option<Unit>>> {
     let filled = cells.iter().filter(|text| !text.is_empty()).count();
-    let units: Vec<Option<Unit>> = cells.iter().map(|text| names::unit(text)).collect();
-    let is_value = |text: &&str| cell(text, separator).number().is_some();
+    let units: Vec<Option<Unit>> = cells.iter().map(|text| names::parse_unit(text)).collect();
+    let is_value = |text: &&str| parse_cell(text, separator).number().is_some();
     let count = units.iter().flatten().count();
     (count > 0 && 2 * count >= filled && !cells.iter().any(is_value)).then_some(units)
 }
@@ -131,7 +131,7 @@ fn units_of(cells: &[&str], separator: Separator) -> Option<Vec<Option<Unit>>> {
 pub(super) fn separator_of_numbers(line: &str) -> Option<Separator> {
     let count = |separator: Separator| {
         let cells = split(line, separator);
-        let all = cells.iter().all(|text| cell(text, separator) != Cell::Text);
+        let all = cells.iter().all(|text| parse_cell(text, separator) != Cell::Text);
         if all { cells.len() } else { 0 }
     };
     // Ties go to the earlier separator, so the search runs from the last.
@@ -142,7 +142,7 @@ pub(super) fn separator_of_numbers(line: &str) -> Option<Separator> {
 /// `true` for a name with a meaning, or a name described in the sidecar.
 fn has_meaning(name: &str, sidecar: &Sidecar) -> bool {
     let is_described = || sidecar.columns.iter().any(|column| column.which == ColumnReference::Name(name.to_owned()));
-    names::meaning(name).is_some() || is_described()
+    names::column_meaning(name).is_some() || is_described()
 }
 
 pub(super) fn split(line: &str, separator: Separator) -> Vec<&str> {

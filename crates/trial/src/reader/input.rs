@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
 
-use super::columnar::Kind;
+use super::columnar::BinaryFormat;
 use super::error::Problem;
 use super::limits::RECORD;
 use super::lines::{Hash, Hashed};
@@ -53,7 +53,7 @@ pub(super) fn stem(path: &Path) -> String {
 /// Opens a file and recognises its content; with its size in bytes if that is the length of its text.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD)?;
-    let (size, content) = (file.size, recognise(Box::new(file))?);
+    let (size, content) = (file.size, detect_content(Box::new(file))?);
     let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
     let size = size.filter(|_| text.on_disk.is_none());
     Ok((content, size))
@@ -69,7 +69,7 @@ fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a
 /// Recognises the content of a file.
 ///
 /// Fails for formats that are recognised but not read, and for damaged compressed data.
-pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Problem> {
+pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Problem> {
     let (mut first, mut bytes) = peek(input)?;
     let mut on_disk = None;
     if first.starts_with(&[0x1f, 0x8b]) {
@@ -89,7 +89,7 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
     const CONVERTED: &str = "make it a log of candump with `can_logconvert LOG.csv LOG.log`, and decode that: NMEA 2000 with canboat \
                              (`candump2analyzer`, then `analyzer -json`), whose lines are read; another bus to a CSV with a column for \
                              each quantity";
-    if let Some(kind) = Kind::of(&first) {
+    if let Some(kind) = BinaryFormat::detect(&first) {
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
         let hash = on_disk.unwrap_or_else(|| Hash::of(&all));

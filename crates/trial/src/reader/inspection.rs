@@ -6,7 +6,7 @@ use ship::Polyline;
 use super::source::{ChannelReadings, Log};
 use crate::channel::Channel;
 use crate::plausibility::range;
-use crate::plausibility::regression::{partial_slope, rudder_on_heading, thinned, turn_with_rudder};
+use crate::plausibility::regression::{first_order_gain, partial_slope, steady_turn_gain, thinned};
 use crate::record::{Origin, Trial, integrate};
 
 /// Minimum share of a channel explained by its reference.
@@ -68,7 +68,7 @@ impl Log {
         let origin = Origin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("", origin, self.columns.clone()).ok()?;
         let is_circle = range(trial.heading()) > MAX_SWING;
-        let slope = if is_circle { turn_with_rudder(&trial) } else { rudder_on_heading(&trial) };
+        let slope = if is_circle { steady_turn_gain(&trial) } else { first_order_gain(&trial) };
         slope.filter(|slope| slope.share >= MIN_SHARE).map(|slope| slope.value > 0.0)
     }
 
@@ -130,7 +130,7 @@ mod tests {
             psi += 0.5 * (rate + rates[number]);
             rates.push(rate);
         }
-        Log::of_bytes("run.csv".as_ref(), text.as_bytes(), None, None).expect("a log")
+        Log::from_reader("run.csv".as_ref(), text.as_bytes(), None, None).expect("a log")
     }
 
     fn inspected(all: &[ChannelInspection], channel: Channel) -> &ChannelInspection {

@@ -8,10 +8,10 @@ use ship::effects::ColumnFormula;
 
 use super::error::{Problem, ReadError};
 use super::head::Head;
-use crate::cells::cell;
+use crate::cells::parse_cell;
 use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
-use crate::names::{ColumnMeaning, contract, meaning, with_unit};
+use crate::names::{ColumnMeaning, column_meaning, quantity_unit_meaning, with_unit};
 use crate::sidecar::{ColumnReference, Sidecar, SidecarProblem};
 use crate::wording::shortened;
 
@@ -301,7 +301,7 @@ impl Layout {
     fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
         let cells = head.first();
         let first = |index: usize| cells.get(index).copied().unwrap_or_default();
-        let is_number = |index: usize| cell(first(index), head.separator).number().is_some();
+        let is_number = |index: usize| parse_cell(first(index), head.separator).number().is_some();
         let stamp = |index: usize| Stamp::parse(first(index));
         let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
         // Order of preference: described or `quantity_unit`, a number with a unit, a stamp with its date, a time of
@@ -371,8 +371,8 @@ impl Layout {
 
 /// Meaning of a name with its certainty; a name without a unit has the unit below it.
 fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
-    let named = meaning(name)?;
-    let rank = if contract(name).is_some() { Rank::Contract } else { Rank::Usual };
+    let named = column_meaning(name)?;
+    let rank = if quantity_unit_meaning(name).is_some() { Rank::Contract } else { Rank::Usual };
     let open =
         matches!(named, ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::OverGround(None));
     let complete = match below.filter(|_| open) {

@@ -15,7 +15,7 @@ pub const MAX_CELLS: usize = 50_000_000;
 pub const RECORD: Kind = Kind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
 
 /// Problem of a table without rows after a line.
-pub(super) fn no_rows(line: usize) -> Problem {
+pub(super) fn no_rows_problem(line: usize) -> Problem {
     Problem::NoRows { line, needed: Trial::MIN_ROWS }
 }
 

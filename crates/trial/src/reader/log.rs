@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use document::{Warning, WarningCode};
 use ship::Particulars;
 
-use super::assemble::{check, complete, interpolate_rudder, merge_series, split_columns, without_duplicates};
+use super::assemble::{
+    add_derived_channels, check_channels, interpolate_rudder, merge_series, split_columns, without_duplicates,
+};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::lines::{self, Lines};
@@ -17,7 +19,7 @@ use super::source::{Log, Readings, Series};
 use super::table;
 use crate::channel::Channel;
 use crate::cleaning;
-use crate::clock::{Clock, DAY};
+use crate::clock::{Clock, SECONDS_PER_DAY};
 use crate::encoding::Encoding;
 use crate::file::display_path;
 use crate::plausibility;
@@ -48,7 +50,7 @@ impl Log {
             log.join(file)?;
         }
         if !joined.is_empty() {
-            check(&log.columns).map_err(|problem| log.fault(problem))?;
+            check_channels(&log.columns).map_err(|problem| log.fault(problem))?;
             log.complete()?;
         }
         Ok(log)
@@ -58,13 +60,13 @@ impl Log {
     /// too long.
     ///
     /// Fails as [`open`](Self::open) does, except for faults of the file system.
-    pub fn of_bytes(
+    pub fn from_reader(
         path: &Path,
         input: impl Read,
         size: Option<u64>,
         sidecar: Option<&Sidecar>,
     ) -> Result<Self, ReadError> {
-        let content = input::recognise(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
+        let content = input::detect_content(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
         Self::of_content(path, content, size, sidecar.cloned(), true)
     }
 
@@ -164,8 +166,8 @@ impl Log {
         }
         let RudderKeys { late_s, order_rate_deg_s } = self.sidecar.rudder;
         if let Some(late) = late_s {
-            self.columns = rudder::earlier(std::mem::take(&mut self.columns), late);
-            if check(&self.columns).is_err() {
+            self.columns = rudder::with_earlier_rudder(std::mem::take(&mut self.columns), late);
+            if check_channels(&self.columns).is_err() {
                 let expected = "less than the length of the log: rudder and heading would have no time in common";
                 let problem = SidecarProblem::Value { key: "late-s".into(), value: late.to_string(), expected };
                 return Err(SidecarError { file: self.sidecar.file.clone(), line: None, problem }.into());
@@ -179,7 +181,7 @@ impl Log {
             let text = format!("the rudder follows its order at {rate}°/s, as the sidecar declares");
             self.warnings.push(WarningCode::MovedRudder.warning(text));
         }
-        self.warnings.extend(complete(&mut self.columns));
+        self.warnings.extend(add_derived_channels(&mut self.columns));
         self.warnings.extend(interpolate_rudder(&mut self.columns));
         Ok(())
     }
@@ -215,7 +217,7 @@ impl Log {
     }
 
     /// Part between two times, s, both included. Fails if it contains no row.
-    pub fn part(mut self, from: f64, until: f64) -> Result<Self, ReadError> {
+    pub fn into_interval(mut self, from: f64, until: f64) -> Result<Self, ReadError> {
         let time = &self.columns.time;
         let rows = time.partition_point(|&t| t < from)..time.partition_point(|&t| t <= until);
         if rows.is_empty() {
@@ -267,10 +269,10 @@ impl Log {
         }
         trial = trial.with_noise(sidecar.noise).with_rejected(rejected).with_conditions(sidecar.conditions);
         if checked {
-            warnings.extend(plausibility::readings::check(&trial, &names));
+            warnings.extend(plausibility::readings::reading_warnings(&trial, &names));
         }
         if checked && plausibility::derivative::is_derivative(&trial) {
-            trial = trial.without(&[Channel::YawRate]);
+            trial = trial.without_channels(&[Channel::YawRate]);
             let text = "the yaw rate is the derivative of the heading, with its noise and jumps: it is not a second \
                         instrument and is not used";
             warnings.push(WarningCode::YawRate.warning(text));
@@ -289,9 +291,9 @@ fn offset(first: &Clock, second: &Clock) -> f64 {
     let zone = first.zone.zip(second.zone).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
     let seconds = second.second - first.second + zone;
     match first.day.zip(second.day) {
-        Some((first, second)) => seconds + DAY * (second - first) as f64,
+        Some((first, second)) => seconds + SECONDS_PER_DAY * (second - first) as f64,
         // Times of day without a date: the nearest difference.
-        None => (seconds + 0.5 * DAY).rem_euclid(DAY) - 0.5 * DAY,
+        None => (seconds + 0.5 * SECONDS_PER_DAY).rem_euclid(SECONDS_PER_DAY) - 0.5 * SECONDS_PER_DAY,
     }
 }
 
@@ -308,7 +310,7 @@ fn of_series(
     whole: bool,
 ) -> Result<Log, ReadError> {
     let log = read.map(|(series, log)| of_sentences(series, log, sidecar));
-    let checked = log.and_then(|log| if whole { check(&log.columns).map(|()| log) } else { Ok(log) });
+    let checked = log.and_then(|log| if whole { check_channels(&log.columns).map(|()| log) } else { Ok(log) });
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
@@ -354,11 +356,11 @@ pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, Read
 /// too long.
 ///
 /// Fails as [`read_with`] does, except for faults of the file system.
-pub fn read_bytes(
+pub fn read_from(
     path: &Path,
     input: impl Read,
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
 ) -> Result<ReadRecord, ReadError> {
-    Log::of_bytes(path, input, size, sidecar)?.into_trial(None)
+    Log::from_reader(path, input, size, sidecar)?.into_trial(None)
 }

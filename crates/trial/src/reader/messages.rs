@@ -18,7 +18,7 @@ use super::limits::MAX_CELLS;
 use super::lines::Lines;
 use super::source::{Log, Series};
 use crate::channel::Channel;
-use crate::clock::{Clock, DAY, Stamp, StampFault, Stamps};
+use crate::clock::{Clock, SECONDS_PER_DAY, Stamp, StampConverter, StampFault};
 use crate::wording::{counted, shortened};
 use canboat::Canboat;
 use message::Message;
@@ -60,7 +60,7 @@ struct MessageSource {
 /// Readings so far, by source.
 #[derive(Default)]
 struct MessageLog {
-    stamps: Stamps,
+    stamps: StampConverter,
     sources: BTreeMap<MessageSource, Series>,
     messages: usize,
     readings: usize,
@@ -200,6 +200,6 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     series.iter_mut().flat_map(|signal| &mut signal.time).for_each(|time| *time = rounded(*time - first));
     let clock = clock?;
     let second = clock.second + first;
-    let days = (second / DAY).floor();
-    Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, ..clock })
+    let days = (second / SECONDS_PER_DAY).floor();
+    Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * SECONDS_PER_DAY, ..clock })
 }

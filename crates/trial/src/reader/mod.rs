@@ -34,12 +34,12 @@ mod table;
 mod tests;
 mod units;
 
-pub use description::describe;
+pub use description::draft_sidecar;
 pub use error::{Problem, ReadError};
 pub use inspection::{ChannelInspection, ChannelRelation};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
 pub use lines::MAX_LINE_BYTES;
-pub use log::{ReadRecord, read, read_bytes, read_with};
+pub use log::{ReadRecord, read, read_from, read_with};
 
 pub use source::{ChannelReadings, Log};
 

@@ -8,10 +8,10 @@ use ship::angle::{DEGREE, unwrap_heading};
 use super::error::Problem;
 use super::layout::{Content, Layout};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
-use crate::cells::{Cell, Separator, cell};
+use crate::cells::{Cell, Separator, parse_cell};
 use crate::channel::Channel;
 use crate::cleaning::is_sentinel;
-use crate::clock::{Stamp, StampFault, Stamps};
+use crate::clock::{Stamp, StampConverter, StampFault};
 use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::wording::shortened;
@@ -55,7 +55,7 @@ pub(super) struct Rows<'a> {
     heading_place: Option<usize>,
     /// Columns of the channels of which a row requires at least one.
     wanted: Vec<usize>,
-    pub(super) stamps: Option<Stamps>,
+    pub(super) stamps: Option<StampConverter>,
     /// `true` while no stamp has a fraction of a second.
     pub(super) whole_seconds: bool,
     /// Number of columns that are kept, with the column of time.
@@ -93,7 +93,7 @@ impl<'a> Rows<'a> {
             date_place: layout.date(),
             heading_place: layout.index(Channel::Heading),
             wanted,
-            stamps: stamped.then(Stamps::default),
+            stamps: stamped.then(StampConverter::default),
             whole_seconds: true,
             width: 1 + layout.columns.iter().filter(|column| column.content.is_kept()).count(),
             time: Vec::new(),
@@ -193,7 +193,7 @@ impl<'a> Rows<'a> {
         let no_stamp =
             || Problem::NotAStamp { line: number, column: self.layout.columns[place].name.clone(), value: value() };
         let (Some(stamp), Some(stamps)) = (read, &mut self.stamps) else {
-            let missing = cell(time_cell, self.separator) == Cell::Missing;
+            let missing = parse_cell(time_cell, self.separator) == Cell::Missing;
             return if missing { Ok(f64::NAN) } else { Err(no_stamp()) };
         };
         self.whole_seconds &= !stamp.has_fraction();
@@ -222,7 +222,7 @@ impl<'a> Rows<'a> {
                 Content::Unknown => (None, 1.0),
                 Content::Stamp | Content::Date | Content::Ignored => continue,
             };
-            let read = match cell(text, self.separator) {
+            let read = match parse_cell(text, self.separator) {
                 Cell::Text => side(text, channel, self.separator).map_or(Cell::Text, Cell::Number),
                 read => read,
             };
@@ -264,7 +264,7 @@ impl<'a> Rows<'a> {
         for (column, (place, (formula, sources))) in columns[*first..].iter_mut().zip((*first..).zip(formulas.iter())) {
             let number = |place: &usize| {
                 let text = self.cells.get(*place).map_or("", |range| &line[range.clone()]);
-                cell(text, self.separator).number().unwrap_or(f64::NAN)
+                parse_cell(text, self.separator).number().unwrap_or(f64::NAN)
             };
             let value = formula.value(&sources.iter().map(number).collect::<Vec<_>>());
             let Content::Channel(_, factor) = column.content else { continue };
@@ -358,6 +358,6 @@ fn side(text: &str, channel: Option<Channel>, separator: Separator) -> Option<f6
         };
     }
     let is_marked = number.len() < text.len();
-    let value = cell(number.trim().trim_end_matches(['°', 'º']), separator).number()?;
+    let value = parse_cell(number.trim().trim_end_matches(['°', 'º']), separator).number()?;
     is_marked.then_some(sign * value)
 }

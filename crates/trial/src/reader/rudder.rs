@@ -72,7 +72,7 @@ pub(super) fn repeat_held_rudder(columns: &mut Columns) -> Option<Warning> {
 }
 
 /// Columns with every reading of the rudder `late` seconds earlier; rows are the instants of all readings.
-pub(super) fn earlier(columns: Columns, late: f64) -> Columns {
+pub(super) fn with_earlier_rudder(columns: Columns, late: f64) -> Columns {
     let mut all = assemble::split_columns(columns, 0.0);
     for rudder in all.iter_mut().filter(|series| matches!(series.channel, Channel::Rudder | Channel::RudderOrder)) {
         rudder.time.iter_mut().for_each(|time| *time -= late);
@@ -118,7 +118,7 @@ mod tests {
         let read = |t: &f64| if (10.0..30.0).contains(t) { f64::NAN } else { 2.0 * (t - 2.5) };
         let rudder = time.iter().map(read).collect();
         let channels = [(Channel::Heading, time.clone()), (Channel::Rudder, rudder)].into();
-        let mut moved = earlier(Columns { time, channels, unknown: Vec::new() }, 2.5);
+        let mut moved = with_earlier_rudder(Columns { time, channels, unknown: Vec::new() }, 2.5);
         assemble::interpolate_rudder(&mut moved);
         for (t, angle) in moved.time.iter().zip(&moved.channels[&Channel::Rudder]) {
             assert!((angle - 2.0 * t).abs() < 1e-12, "{t} s: {angle}");

@@ -12,7 +12,7 @@ use super::head;
 use super::input::Text;
 use super::instants::spread_shared_stamps;
 use super::layout::{Content, Layout, RawColumn};
-use super::limits::no_rows;
+use super::limits::no_rows_problem;
 use super::lines::Lines;
 use super::position::plane_positions;
 use super::rows::Rows;
@@ -22,11 +22,11 @@ use super::units::{self, UnitlessColumn};
 use crate::cells::Separator;
 use crate::channel::Channel;
 use crate::cleaning;
-use crate::clock::Stamps;
+use crate::clock::StampConverter;
 use crate::encoding::Encoding;
 use crate::record::Columns;
 use crate::sidecar::Sidecar;
-use crate::wording::{counted, instant, listed, shortened};
+use crate::wording::{counted, listed, rounded_to_thousandth, shortened};
 
 /// Reads a table; a `whole` record requires rudder and heading.
 pub(super) fn read(
@@ -70,7 +70,7 @@ impl Rows<'_> {
     fn finish(mut self, skipped: usize) -> Result<Log, Problem> {
         let line = self.layout.line;
         if self.counts.rows == 0 {
-            return Err(no_rows(line));
+            return Err(no_rows_problem(line));
         }
         self.check_values()?;
         let mut warnings = self.warnings();
@@ -79,7 +79,7 @@ impl Rows<'_> {
         }
         if self.sidecar.is_checked() {
             self.check_numbers()?;
-            warnings.extend(counts::take_side(&mut self.layout.columns));
+            warnings.extend(counts::apply_side_column(&mut self.layout.columns));
         }
         let Layout { columns, recognised, .. } = self.layout;
         let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
@@ -111,7 +111,7 @@ impl Rows<'_> {
         for (channel, values) in positions.into_iter().flatten() {
             channels.entry(channel).or_insert(values);
         }
-        let clock = self.stamps.as_ref().and_then(Stamps::clock);
+        let clock = self.stamps.as_ref().and_then(StampConverter::clock);
         let columns = Columns { time: self.time, channels, unknown };
         let mut log = Log { columns, clock, rows: self.counts.rows, names, ..Log::default() };
         let decided = units::infer_units(&mut log, open, open_time, line)?;
@@ -134,7 +134,7 @@ impl Rows<'_> {
         if let Some(time) = time.filter(|time| !time.open && time.content == Content::Time(1.0)) {
             counts::check_time(&time.name, self.time.first().copied().unwrap_or_default(), *line)?;
         }
-        counts::check(columns, *line)
+        counts::check_angles(columns, *line)
     }
 
     /// Spreads rows that share a stamp, and thins the rows; with a warning of shared stamps.
@@ -189,7 +189,7 @@ impl Rows<'_> {
         count(counts.repeated, WarningCode::LeftOut, "left out as exact copies of the row before");
         let short = "with fewer cells than the header; their last columns are taken as missing";
         count(counts.short, WarningCode::MissingValues, short);
-        let first = instant(counts.astray.first().copied().unwrap_or_default());
+        let first = rounded_to_thousandth(counts.astray.first().copied().unwrap_or_default());
         let astray = format!("left out, because the time does not fit its neighbours; the first is at {first} s");
         count(counts.astray.len(), WarningCode::LeftOut, &astray);
         if counts.decimal_commas > 0 {

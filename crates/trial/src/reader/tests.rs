@@ -47,11 +47,11 @@ pub(super) fn simple() -> String {
 
 pub(super) fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<ReadRecord, ReadError> {
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
-    read_bytes(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
+    read_from(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
 }
 
 pub(super) fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
-    read_bytes(Path::new("run.csv"), bytes.as_ref(), None, None)
+    read_from(Path::new("run.csv"), bytes.as_ref(), None, None)
 }
 
 /// Problem of a table, after a check that its message names the file and contains `parts`.
@@ -133,9 +133,9 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
     assert_eq!(trial.len(), 240 - 1 + 1);
     assert_eq!(trial.heading().iter().filter(|psi| psi.is_nan()).count(), 1);
     assert!(trial.heading()[39].is_nan());
-    assert_eq!(trial.unknown().len(), 1, "{:?}", trial.unknown().first());
-    assert_eq!(trial.unknown()[0].0, "load_t");
-    assert_eq!(trial.unknown()[0].1[0], 12.5);
+    assert_eq!(trial.unknown_columns().len(), 1, "{:?}", trial.unknown_columns().first());
+    assert_eq!(trial.unknown_columns()[0].0, "load_t");
+    assert_eq!(trial.unknown_columns()[0].1[0], 12.5);
     assert_eq!(trial.channel(Channel::Roll), None);
     let has = |part: &str| warnings.iter().any(|warning| warning.text.contains(part));
     assert!(has("1 row without time"), "{warnings:?}");
@@ -300,7 +300,7 @@ impl Read for Endless {
 fn a_hundred_million_rows_are_refused_before_they_are_read() {
     let size = 27 + 100_000_000 * 20;
     let mut endless = Endless { row: 0, line: Vec::new(), consumed: 0, total: 0 };
-    let result = read_bytes(Path::new("run.csv"), &mut endless, Some(size), None);
+    let result = read_from(Path::new("run.csv"), &mut endless, Some(size), None);
     let refusal = complaint(result, &["more than 16666666 rows", "about 100000000", "every = 7", "from-s"]);
     assert!(matches!(
         refusal,
@@ -347,7 +347,7 @@ fn a_table_without_header_is_described_by_index() {
                    [noise]\nheading-deg = 0.1\n";
     let trial = parse_with(text, sidecar).expect("every column is described").trial;
     assert_eq!(trial.time()[..3], [0.0, 0.5, 1.0]);
-    assert_eq!(trial.unknown(), [("column_4".to_owned(), vec![7.0; 240])]);
+    assert_eq!(trial.unknown_columns(), [("column_4".to_owned(), vec![7.0; 240])]);
     assert_eq!(trial.particulars().map(|particulars| particulars.length), Some(105.0));
     assert_eq!(trial.noise().heading, Some(from_deg(0.1)));
 }
@@ -429,9 +429,9 @@ fn a_declared_calm_stays_with_the_record() {
     let trial = parse_with(simple(), sidecar).expect("complete").trial;
     assert!(trial.is_calm() && trial.scaled_to(Particulars { length: 320.0, speed: 8.0 }).expect("a scale").is_calm());
     let first = trial.time()[0];
-    assert!(trial.without(&[Channel::YawRate]).without_current([0.1; 2]).without_readings(&[first]).is_calm());
+    assert!(trial.without_channels(&[Channel::YawRate]).without_current([0.1; 2]).without_readings(&[first]).is_calm());
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
-    let log = Log::of_bytes(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
-    let part = log.part(first, first + 50.0).expect("a part");
+    let log = Log::from_reader(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
+    let part = log.into_interval(first, first + 50.0).expect("a part");
     assert!(part.into_trial(None).expect("a record").trial.is_calm());
 }

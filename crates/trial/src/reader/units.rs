@@ -32,7 +32,7 @@ const MAX_HEADING_RAD: f64 = 38.0;
 /// Minimum rate of a rudder, rad/s: 0.2 °/s.
 const MIN_RUDDER_RATE: f64 = 3.5e-3;
 
-/// Seconds since 1970 of the years 1990 to 2100.
+/// Range of POSIX time, seconds since 1970, of the years 1990 to 2100.
 pub(super) const POSIX_TIME_RANGE_S: [f64; 2] = [6.3e8, 4.1e9];
 
 /// Days since 1899-12-30, as counted by spreadsheets, of the years 2000 to 2100.
@@ -43,7 +43,7 @@ const SERIAL_ZERO: i64 = -25_569;
 
 type Channels = BTreeMap<Channel, Vec<f64>>;
 
-/// Channel without a unit.
+/// Column of a channel whose name states no unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct UnitlessColumn {
     pub channel: Channel,
@@ -251,6 +251,6 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
 
 /// Clock at a number of seconds after day `zero`, counted from 1970-01-01.
 fn clock(seconds: f64, zero: i64) -> Clock {
-    let day = (seconds / crate::clock::DAY).floor();
-    Clock { day: Some(zero + day as i64), second: seconds - day * crate::clock::DAY, zone: Some(0) }
+    let day = (seconds / crate::clock::SECONDS_PER_DAY).floor();
+    Clock { day: Some(zero + day as i64), second: seconds - day * crate::clock::SECONDS_PER_DAY, zone: Some(0) }
 }

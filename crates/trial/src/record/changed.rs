@@ -7,7 +7,7 @@ use crate::channel::Channel;
 
 impl Trial {
     /// The same record without some channels; heading and rudder are always kept.
-    pub fn without(mut self, channels: &[Channel]) -> Self {
+    pub fn without_channels(mut self, channels: &[Channel]) -> Self {
         self.channels.retain(|channel, _| *channel == Channel::Heading || !channels.contains(channel));
         self
     }

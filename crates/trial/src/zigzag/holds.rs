@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 use super::findings::ZigZagError;
 use estimation::statistics::median;
 
-/// Minimum share of the level of a side at which the rudder is laid to that side. It is high because manual
+/// Minimum rudder angle of a hold, as a share of the median angle held on that side. It is high because manual
 /// steering before a first execute can use more than half the rudder of the trial.
 pub const LAID_SHARE: f64 = 0.85;
 
@@ -17,7 +17,7 @@ const MIN_RUDDER_DEG: f64 = 0.5;
 /// 0.15.
 const MIN_HELD_SHARE: f64 = 0.3;
 
-/// Hold: rows with the rudder laid to a side.
+/// Interval of rows over which the rudder is held at an angle to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
     /// +1 starboard, −1 port.

@@ -9,7 +9,7 @@ pub struct ColumnFormula(FormulaProgram);
 
 impl ColumnFormula {
     /// Formula parsed from text. Fails for a syntax error, nesting that is too deep, or more than four names.
-    pub fn read(text: &str) -> Result<Self, FormulaError> {
+    pub fn parse(text: &str) -> Result<Self, FormulaError> {
         parse_columns(text).map(Self)
     }
 
@@ -30,9 +30,9 @@ mod tests {
 
     #[test]
     fn columns_are_names_whatever_they_mean_in_an_effect() {
-        let formula = ColumnFormula::read("(port - delta) / 2 + r").expect("a formula");
+        let formula = ColumnFormula::parse("(port - delta) / 2 + r").expect("a formula");
         assert_eq!(formula.names(), ["port", "delta", "r"]);
         assert_eq!(formula.value(&[10.0, -6.0, 0.5]), 8.5);
-        assert!(ColumnFormula::read("(port - ").is_err());
+        assert!(ColumnFormula::parse("(port - ").is_err());
     }
 }

@@ -12,7 +12,7 @@ use crate::signal::Polyline;
 const BASE: [f64; 3] = [0.06, 0.006, 0.01];
 
 fn banked(line: &str, constants: Vec<f64>) -> Response {
-    let formula = Formula::read(line).expect("a formula");
+    let formula = Formula::parse(line).expect("a formula");
     ResponseModel::new(vec![formula]).with_parameters([BASE.to_vec(), constants].concat())
 }
 
@@ -22,7 +22,7 @@ fn states(ship: &Response, side: f64, heading: f64, has_speed: bool) -> Vec<[f64
     let rudder = [0.0, 0.2, 0.2, -0.2, -0.2, 0.2, 0.2].map(|angle| side * angle).to_vec();
     let rudder = Polyline::new(vec![0.0, 4.0, 20.0, 28.0, 60.0, 68.0, 100.0], rudder).expect("increasing");
     let speed = Polyline::new(vec![0.0, 100.0], vec![8.0, 6.0]).expect("increasing");
-    let recorded = RecordedSignals { speed: has_speed.then_some(&speed), ..RecordedSignals::rudder(&rudder) };
+    let recorded = RecordedSignals { speed: has_speed.then_some(&speed), ..RecordedSignals::from_rudder(&rudder) };
     let times: Vec<f64> = (0..=400).map(|row| 0.25 * f64::from(row)).collect();
     let mut state = vec![0.0; 4];
     ship.initialise(heading, 0.0, &recorded.input(0.0, 0.0), &mut state);
@@ -71,7 +71,7 @@ fn only_the_course_at_the_start_matters() {
         assert!((mirrored[0] + straight[0]).abs() < 1e-12 && (mirrored[2] + straight[2]).abs() < 1e-9);
     }
     let mut state = vec![0.3, 0.01, 40.0, 0.1];
-    ship.restart(0.5, -0.02, &mut state);
+    ship.reset_motion(0.5, -0.02, &mut state);
     assert_eq!(state, [0.5, -0.02, 40.0, 0.1]);
     let input = Input { rudder: 0.1, ..Input::default() };
     let mut rate = vec![0.0; 4];
@@ -89,7 +89,7 @@ fn a_way_carries_its_derivatives() {
         let end = |values: [Tangent; 6]| {
             let ship = model.clone().with_parameters(values[..4].to_vec());
             let mut state = vec![Tangent::default(); 4];
-            let recorded = RecordedSignals::rudder(&rudder);
+            let recorded = RecordedSignals::from_rudder(&rudder);
             ship.initialise(values[4], values[5], &recorded.input(0.0, Tangent::default()), &mut state);
             replay_states(&ship, &recorded, &[0.0, 100.0], |_, _| 0.25, &mut state, |_, _, _| {});
             state[0]
@@ -112,7 +112,7 @@ fn a_way_carries_its_derivatives() {
 #[test]
 fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {
-        let formula = Formula::read("bank = c * y").expect("a formula");
+        let formula = Formula::parse("bank = c * y").expect("a formula");
         let CandidateEffect { effect, priors } =
             formula.candidate(&RecordScales { speed, ..manoeuvres() }).expect("any record will do");
         let constants: Vec<f64> = effect.constants().into_iter().map(|(constant, _)| constant).collect();

@@ -23,8 +23,8 @@ pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
 use parse::MAX_CHARS;
-use points::{SignalSizes, way_speed};
-use program::{FormulaProgram, FormulaSignal, OF_RECORD, OfRecord};
+use points::{SignalScales, way_speed};
+use program::{FormulaProgram, FormulaSignal, RECORD_CONSTANTS, RecordConstants};
 
 /// Maximum number of characters in the name of an effect.
 const MAX_NAME_CHARS: usize = 40;
@@ -81,7 +81,7 @@ pub struct Formula {
     acts: Targets,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
-    of_record: OfRecord,
+    of_record: RecordConstants,
     /// Row of the list; `None` for the formula of a user.
     listed: Option<ListedFormula>,
     /// Expectations of the constants of a user's formula.
@@ -103,7 +103,7 @@ impl Formula {
     /// from 1 to 20`.
     ///
     /// Fails with the position and the expected symbols.
-    pub fn read(line: &str) -> Result<Arc<Self>, FormulaError> {
+    pub fn parse(line: &str) -> Result<Arc<Self>, FormulaError> {
         let error = |at: usize, problem: &str| FormulaError { text: line.to_owned(), at, problem: problem.to_owned() };
         let Some((name, formula)) = line.split_once('=') else {
             return Err(error(line.chars().count(), "expected `name = formula`, as in `bank = c * r * abs(v)`"));
@@ -117,7 +117,7 @@ impl Formula {
 
     /// Effect with a name, a formula and the expectations of the constants.
     ///
-    /// Fails if [`read`](Self::read) fails.
+    /// Fails if [`parse`](Self::parse) fails.
     pub fn named(name: &str, text: &str) -> Result<Arc<Self>, FormulaError> {
         // Descriptions have the lifetime of the program, so each text is described once.
         static CACHE: LazyLock<Mutex<FormulaCache>> = LazyLock::new(Mutex::default);
@@ -146,7 +146,7 @@ impl Formula {
             program,
             description,
             acts: Targets::MOMENT,
-            of_record: OF_RECORD.map(|(_, neutral, _)| neutral),
+            of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
             is_size: Vec::new(),
@@ -179,7 +179,7 @@ impl Formula {
         let equation = leaked(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
         let untitled = Description { id: "", form: "", equation, parameters: &[] };
         let mut effect = Self { expected, ..Self::from_program(program, untitled) };
-        effect.is_size = effect.sizes();
+        effect.is_size = effect.amplitude_flags();
         if !effect.can_be_absent() {
             let problem = "no value of the constants removes the effect: multiply every term by a constant, as in `c * tanh(k * psi)`";
             return Err(error(0, problem.to_owned()));
@@ -190,9 +190,9 @@ impl Formula {
         Ok(effect)
     }
 
-    /// Indices of the record constants ([`OF_RECORD`]) that the formula uses.
+    /// Indices of the record constants ([`RECORD_CONSTANTS`]) that the formula uses.
     fn taken(&self) -> impl Iterator<Item = usize> {
-        (0..OF_RECORD.len()).filter(|place| self.program.signals.contains(&OF_RECORD[*place].0))
+        (0..RECORD_CONSTANTS.len()).filter(|place| self.program.signals.contains(&RECORD_CONSTANTS[*place].0))
     }
 
     /// Formula for a ship of this length, m.
@@ -234,7 +234,7 @@ impl Effect for Formula {
         if !self.channels.iter().copied().all(has) {
             return None;
         }
-        let SignalSizes { speed, length, .. } = SignalSizes::of(records);
+        let SignalScales { speed, length, .. } = SignalScales::of(records);
         let is_always = f64::from(u8::from(records.speed.is_none()));
         let of_record = [speed, records.span[0], length, way_speed(records), is_always];
         let effect = Self { of_record, ..self.clone() };
@@ -267,7 +267,7 @@ impl Effect for Formula {
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
-        self.taken().map(|place| (self.of_record[place], OF_RECORD[place].2)).collect()
+        self.taken().map(|place| (self.of_record[place], RECORD_CONSTANTS[place].2)).collect()
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {

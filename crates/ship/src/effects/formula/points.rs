@@ -5,7 +5,7 @@ use crate::effects::effect::RecordScales;
 
 /// Scales of the signals of a formula in given records.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SignalSizes {
+pub(super) struct SignalScales {
     yaw_rate: f64,
     rudder: f64,
     pub(super) speed: f64,
@@ -17,7 +17,7 @@ pub(super) struct SignalSizes {
     lateral_way: f64,
 }
 
-impl SignalSizes {
+impl SignalScales {
     pub(super) fn ones() -> Self {
         Self {
             yaw_rate: 1.0,
@@ -57,7 +57,7 @@ pub(super) fn way_speed(records: &RecordScales) -> f64 {
 /// Sample point: a value of every signal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalPoint {
-    pub(super) scales: SignalSizes,
+    pub(super) scales: SignalScales,
     /// Values from −1 to 1 of yaw rate, rudder, heading, sway, direction of the wind, lateral way.
     pub(super) signed: [f64; 6],
     /// Values from 0.5 to 1 of speed, propeller, time, speed of the wind.
@@ -72,14 +72,14 @@ impl SignalPoint {
     pub(super) const COUNT: usize = 64;
 
     /// Sample points over the range of the signals, identical in every call.
-    pub(super) fn all(scales: &SignalSizes) -> impl Iterator<Item = Self> + use<> {
+    pub(super) fn all(scales: &SignalScales) -> impl Iterator<Item = Self> + use<> {
         let scales = *scales;
         (1..=Self::COUNT).map(move |number| Self::weyl(number, &scales))
     }
 
     /// Sample point of a Weyl sequence: fractional parts of multiples of square roots (Weyl 1916), equidistributed in a
     /// box.
-    fn weyl(number: usize, scales: &SignalSizes) -> Self {
+    fn weyl(number: usize, scales: &SignalScales) -> Self {
         const ROOTS: [f64; 10] = [2.0, 3.0, 5.0, 7.0, 11.0, 29.0, 13.0, 17.0, 19.0, 23.0];
         let part = |root: f64| (number as f64 * root.sqrt()).fract();
         Self {

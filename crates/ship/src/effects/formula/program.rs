@@ -50,7 +50,7 @@ pub enum FormulaSignal {
 }
 
 /// Record constants of a formula: the signal that uses it, its neutral value and its dimension.
-pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
+pub(super) const RECORD_CONSTANTS: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
     (FormulaSignal::Start, 0.0, [1, 0]),
     (FormulaSignal::PrimeYawRate, 1.0, [0, 1]),
@@ -60,7 +60,7 @@ pub(super) const OF_RECORD: [(FormulaSignal, f64, Dimension); 5] = [
 
 /// Values of the record constants: approach speed, m/s; first time, s; ship length, m; the speed of the lateral way if
 /// no speed is measured, m/s; and 1 if this speed always applies, else 0.
-pub(super) type OfRecord = [f64; OF_RECORD.len()];
+pub(super) type RecordConstants = [f64; RECORD_CONSTANTS.len()];
 
 impl FormulaSignal {
     /// Names of all signals.
@@ -101,7 +101,7 @@ impl FormulaSignal {
         self,
         now: &OperatingPoint<R>,
         z: &[R],
-        &[approach_speed, start, length, ..]: &OfRecord,
+        &[approach_speed, start, length, ..]: &RecordConstants,
     ) -> R {
         let MeasuredChannels { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
         let value = |channel: Option<f64>| channel.unwrap_or(f64::NAN);

@@ -1,7 +1,7 @@
 //! Properties of a formula, found by evaluation at sample points: amplitudes (sizes) and shape constants, their
 //! symmetry and units, and their priors.
 
-use super::points::{SignalPoint, SignalSizes};
+use super::points::{SignalPoint, SignalScales};
 use super::program::FormulaSignal;
 use super::{Formula, MirrorSymmetry};
 use crate::effects::effect::{Parameter, Prior, RecordScales};
@@ -25,7 +25,7 @@ impl Formula {
     }
 
     /// For every constant, `true` if it is a size: the moment is proportional to it.
-    pub(super) fn sizes(&self) -> Vec<bool> {
+    pub(super) fn amplitude_flags(&self) -> Vec<bool> {
         let count = self.program.constants.len();
         let is_size = |index: usize| {
             let value = |size: f64, point: &SignalPoint| {
@@ -33,7 +33,7 @@ impl Formula {
                 constants[index] = size;
                 self.moment(&constants, point)
             };
-            SignalPoint::all(&SignalSizes::ones()).all(|point| {
+            SignalPoint::all(&SignalScales::ones()).all(|point| {
                 let [zero, one, three] = [0.0, 1.0, 3.0].map(|size| value(size, &point));
                 let is_finite = [zero, one, three].iter().all(|value| value.is_finite());
                 is_finite && (three - zero - 3.0 * (one - zero)).abs() <= 1e-9 * (three.abs() + zero.abs() + 1e-12)
@@ -44,7 +44,7 @@ impl Formula {
 
     /// `true` if the moment vanishes if all sizes are zero.
     pub(super) fn can_be_absent(&self) -> bool {
-        let ones = SignalSizes::ones();
+        let ones = SignalScales::ones();
         let absent = self.with_size(None, &self.shapes(&ones));
         self.is_size.contains(&true) && SignalPoint::all(&ones).all(|point| self.moment(&absent, &point) == 0.0)
     }
@@ -61,7 +61,7 @@ impl Formula {
     /// Parameters for the constants of a formula.
     pub(super) fn derived_parameters(&self) -> Vec<Parameter> {
         let leaked = |text: String| -> &'static str { text.leak() };
-        let shapes = self.shapes(&SignalSizes::ones());
+        let shapes = self.shapes(&SignalScales::ones());
         let units = self.units(&shapes);
         let parameter = |place: usize| {
             let key = leaked(self.program.constants[place].clone());
@@ -82,7 +82,7 @@ impl Formula {
     fn sides_of(&self, place: usize, shapes: &[f64]) -> MirrorSymmetry {
         let constants = self.with_size(Some(place), shapes);
         let agrees = |sign: f64| {
-            SignalPoint::all(&SignalSizes::ones()).all(|point| {
+            SignalPoint::all(&SignalScales::ones()).all(|point| {
                 let [moment, mirrored] = [&point, &point.mirrored()].map(|point| self.moment(&constants, point));
                 (mirrored - sign * moment).abs() <= 1e-9 * (moment.abs() + mirrored.abs() + 1e-12)
             })
@@ -96,7 +96,7 @@ impl Formula {
 
     /// Symmetry of the moment when port and starboard are exchanged at the same constants.
     pub fn mirror_symmetry(&self) -> MirrorSymmetry {
-        let shapes = self.shapes(&SignalSizes::ones());
+        let shapes = self.shapes(&SignalScales::ones());
         let sizes = (0..shapes.len()).filter(|place| self.is_size[*place]);
         let all = sizes.map(|place| self.sides_of(place, &shapes));
         all.reduce(|first, next| if first == next { first } else { MirrorSymmetry::Neither })
@@ -126,7 +126,7 @@ impl Formula {
     /// Dimension of a size, given the dimension of the shapes; `None` if it is no power of second and metre.
     fn size_dimension(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
-            let mut ratios = SignalPoint::all(&SignalSizes::ones()).filter_map(|point| {
+            let mut ratios = SignalPoint::all(&SignalScales::ones()).filter_map(|point| {
                 let value = |point: &SignalPoint, grown: f64| {
                     let grown: Vec<f64> = shapes.iter().map(|shape| shape * grown).collect();
                     self.moment(&self.with_size(Some(place), &grown), point)
@@ -144,7 +144,7 @@ impl Formula {
 
     /// Start values of the constants: for a shape the expected value, else the value at which the moment becomes
     /// nonlinear.
-    fn shapes(&self, scales: &SignalSizes) -> Vec<f64> {
+    fn shapes(&self, scales: &SignalScales) -> Vec<f64> {
         let mut values: Vec<f64> = self.expected.iter().map(|constant| constant.about.unwrap_or(1.0)).collect();
         for place in 0..values.len() {
             if self.is_size[place] || self.expected[place].about.is_some() {
@@ -174,7 +174,7 @@ impl Formula {
     /// size of a moment of a fifth of the maximum rudder angle. A shape is normal about its expected value, with half
     /// of that value as standard deviation. `None` if a prior is not finite.
     pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
-        let scales = SignalSizes::of(records);
+        let scales = SignalScales::of(records);
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {
             if !self.is_size[place] {

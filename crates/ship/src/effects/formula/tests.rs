@@ -29,7 +29,7 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
         assert_eq!(formula.program.constants, keys, "{name}");
         assert!(!formula.acts.rudder || formula.program.signals == [FormulaSignal::Rudder], "{name}");
         let (second, metre): (f64, f64) = (2.0, 3.0);
-        for point in SignalPoint::all(&SignalSizes::ones()) {
+        for point in SignalPoint::all(&SignalScales::ones()) {
             let value = |point: SignalPoint, factor: &dyn Fn(&Parameter) -> f64| {
                 let constants: Vec<f64> = parameters.iter().map(|p| p.typical * factor(p)).collect();
                 formula.value_at(&constants, &point)
@@ -50,10 +50,10 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
 
 #[test]
 fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
-    let bank = Formula::read("bank = c * tanh(k * psi)").expect("a formula");
+    let bank = Formula::parse("bank = c * tanh(k * psi)").expect("a formula");
     assert_eq!(bank.is_size, [true, false]);
     assert!(bank.parameters().iter().all(|p| !p.odd) && bank.is_heading_dependent());
-    let even = Formula::read("drift = c * abs(r) + d * v").expect("a formula");
+    let even = Formula::parse("drift = c * abs(r) + d * v").expect("a formula");
     assert_eq!(even.parameters().iter().map(|p| p.odd).collect::<Vec<_>>(), [true, false]);
     for (line, sides) in [
         ("bank = c * tanh(k * psi)", MirrorSymmetry::Odd),
@@ -66,10 +66,10 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("bank = c * abs(y)", MirrorSymmetry::Even),
         ("bank = c * y + d * y^2", MirrorSymmetry::Neither),
     ] {
-        assert_eq!(Formula::read(line).expect("a formula").mirror_symmetry(), sides, "{line}");
+        assert_eq!(Formula::parse(line).expect("a formula").mirror_symmetry(), sides, "{line}");
     }
-    assert!(Formula::read("trend = c * t").expect("a formula").is_time_dependent());
-    let bank = Formula::read("bank = c * y").expect("a formula");
+    assert!(Formula::parse("trend = c * t").expect("a formula").is_time_dependent());
+    let bank = Formula::parse("bank = c * y").expect("a formula");
     assert!(
         !bank.is_time_dependent()
             && !bank.is_heading_dependent()
@@ -89,14 +89,14 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         ("bank = c * tanh(k * y)", vec!["1", "1/m"]),
         ("fading = c * delta * U^1.6", vec![Parameter::NO_UNIT]),
     ] {
-        let formula = Formula::read(line).expect("a formula");
+        let formula = Formula::parse(line).expect("a formula");
         assert_eq!(formula.parameters().iter().map(|p| p.unit).collect::<Vec<_>>(), units, "{line}");
     }
 }
 
 #[test]
 fn priors_follow_from_the_records_or_from_what_is_said() {
-    let proposal = |line: &str| Formula::read(line).expect("a formula").candidate(&manoeuvres());
+    let proposal = |line: &str| Formula::parse(line).expect("a formula").candidate(&manoeuvres());
     let priors = proposal("cross = c * r * abs(v)").expect("speed and sway are there").priors;
     // A moment of 0.07 rad at r = 0.015 rad/s and v 1 m/s.
     assert!((5.0..50.0).contains(&priors[0].sd) && priors[0].mean == 0.0 && !priors[0].is_shape, "{priors:?}");
@@ -119,10 +119,12 @@ fn priors_follow_from_the_records_or_from_what_is_said() {
 fn what_is_no_effect_is_refused_where_it_stands() {
     for long in ["x".repeat(9000), format!("x = c{}", " * r".repeat(3000)), format!("x = c * r; {}", "c".repeat(9000))]
     {
-        let message = Formula::read(&long).expect_err("too long").to_string();
+        let message = Formula::parse(&long).expect_err("too long").to_string();
         assert!(message.len() < 2000, "{} bytes", message.len());
     }
-    assert!(crate::effects::formula("second_order = c * r").is_err_and(|error| error.problem.contains("on the list")));
+    assert!(
+        crate::effects::parse_formula("second_order = c * r").is_err_and(|error| error.problem.contains("on the list"))
+    );
     for (line, at, message) in [
         ("bank", 4, "expected `name = formula`"),
         ("bank = c * dleta", 11, "did you mean `delta`"),
@@ -134,7 +136,7 @@ fn what_is_no_effect_is_refused_where_it_stands() {
         ("bank = c * r; k about 5", 13, "expected one of the constants c"),
         ("bank = c * r; c near 5", 13, "expected `c about 5`"),
     ] {
-        let error = Formula::read(line).expect_err(line);
+        let error = Formula::parse(line).expect_err(line);
         assert!(error.at == at && error.problem.contains(message), "{line}: {error:?}");
     }
 }
@@ -148,7 +150,7 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
         ("trend = c * rp * (t - start)", vec![-20.0, 150.0]),
         ("bank = c * y", vec![7.0, 0.0]),
     ] {
-        let formula = Formula::read(line).expect("a formula");
+        let formula = Formula::parse(line).expect("a formula");
         let again = crate::effects::find(formula.id(), formula.form(), &constants).expect("it is known");
         let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!((again.id(), again.form(), read_back), (formula.id(), formula.form(), constants));
@@ -172,7 +174,7 @@ fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
         measured: &measured,
     };
     let acceleration = |line: &str, now: &OperatingPoint| {
-        Formula::read(line).expect("a formula").with_length(150.0).yaw_acceleration(&[-3.0], &[], now)
+        Formula::parse(line).expect("a formula").with_length(150.0).yaw_acceleration(&[-3.0], &[], now)
     };
     for (line, moment) in [
         ("cross = c * r * abs(v)", -3.0 * 0.02 * 0.5),

@@ -98,7 +98,7 @@ fn a_calm_is_without_wind_waves_and_moments_from_outside() {
     ids.dedup();
     assert_eq!(ids, ["wind_moment", "moment_drift", "transient_disturbance", "wave_yaw"]);
     assert!(
-        !Formula::read("trend = c * t").expect("a formula").is_environmental(),
+        !Formula::parse("trend = c * t").expect("a formula").is_environmental(),
         "nobody knows what a formula is of"
     );
 }

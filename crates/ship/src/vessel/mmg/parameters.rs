@@ -159,7 +159,7 @@ macro_rules! named_constants {
         constants!($name: $($field)*);
 
         impl<R> $name<R> {
-            fn named(&mut self, name: &str) -> Option<&mut R> {
+            fn coefficient_mut(&mut self, name: &str) -> Option<&mut R> {
                 match name {
                     $(stringify!($field) => Some(&mut self.$field),)*
                     _ => None,
@@ -204,7 +204,7 @@ impl Parameters {
 
 impl<R> Parameters<R> {
     /// Coefficient with this name in files; `None` if there is none, e.g. for another law of the wake.
-    pub fn named(&mut self, name: &str) -> Option<&mut R> {
+    pub fn coefficient_mut(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {
             "kzz" => kzz,
@@ -230,7 +230,7 @@ impl<R> Parameters<R> {
             "lR" => &mut rudder.lR,
             "gammaR-starboard" => &mut rudder.gammaR.positive,
             "gammaR-port" => &mut rudder.gammaR.negative,
-            _ => return hull.named(name),
+            _ => return hull.coefficient_mut(name),
         })
     }
 }

@@ -25,7 +25,7 @@ const fn free(key: &'static str, symbol: &'static str) -> PolynomialTerm {
     PolynomialTerm { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
 }
 
-pub(super) const fn within(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
+pub(super) const fn bounded(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
     PolynomialTerm { key, symbol, ends }
 }
 
@@ -36,15 +36,15 @@ pub(super) const BIAS: PolynomialTerm = free("delta_r", "δ_r");
 pub(super) const COMMON: [PolynomialTerm; 14] = [
     free("Nv", "N_v"),
     free("Nr", "N_r"),
-    within("Nd", "N_δ", [0.05, 5.0]),
+    bounded("Nd", "N_δ", [0.05, 5.0]),
     free("Yv", "Y_v"),
     free("Yr", "Y_r"),
     free("Yd", "Y_δ"),
-    within("e", "e", [-0.5, 1.5]),
+    bounded("e", "e", [-0.5, 1.5]),
     free("b", "b"),
     BIAS,
-    within("x0", "x₀", [0.005, 0.5]),
-    within("k", "k", [0.0, 0.9]),
+    bounded("x0", "x₀", [0.005, 0.5]),
+    bounded("k", "k", [0.0, 0.9]),
     free("Xvr", "X_vr"),
     free("Xrr", "X_rr"),
     free("Xdd", "X_δδ"),
@@ -52,9 +52,9 @@ pub(super) const COMMON: [PolynomialTerm; 14] = [
 
 /// Further coefficients of the quadratic polynomial.
 pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
-    within("Nrr", "N_rr", [-20.0, 0.5]),
+    bounded("Nrr", "N_rr", [-20.0, 0.5]),
     free("Nvv", "N_vv"),
-    within("Yvv", "Y_vv", [-20.0, 0.5]),
+    bounded("Yvv", "Y_vv", [-20.0, 0.5]),
     free("Yrr", "Y_rr"),
 ];
 
@@ -63,8 +63,8 @@ pub(super) const CUBIC: [PolynomialTerm; 7] = [
     free("Nvvv", "N_vvv"),
     free("Nvvr", "N_vvr"),
     free("Nvrr", "N_vrr"),
-    within("Nrrr", "N_rrr", [-20.0, 0.5]),
-    within("Yvvv", "Y_vvv", [-60.0, 1.0]),
+    bounded("Nrrr", "N_rrr", [-20.0, 0.5]),
+    bounded("Yvvv", "Y_vvv", [-60.0, 1.0]),
     free("Yvvr", "Y_vvr"),
     free("Yvrr", "Y_vrr"),
 ];
@@ -128,7 +128,7 @@ impl<R: Real> CalmHull<R> {
 /// Speed or yaw rate limited to the range of the equations.
 #[inline]
 fn limited<R: Real>(value: R, least: f64) -> R {
-    value.between(R::from(least), R::from(MAX_SPEED))
+    value.clamped(R::from(least), R::from(MAX_SPEED))
 }
 
 /// Terms of both polynomials, with coefficients in the order of [`COMMON`].

@@ -50,7 +50,7 @@ fn begin(term: &PolynomialTerm) -> f64 {
 type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 
 /// Priors of the quadratic and the cubic polynomial; `None` if the prior of the hull is not valid.
-pub(super) fn polynomials(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
+pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
     let of_mmg = |parameters: &Parameters| {
         let hull = Mmg::at_speed(parameters.at_unit_length(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&CalmHull::Mmg(Box::new(hull), 0.0))))

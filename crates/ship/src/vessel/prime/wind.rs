@@ -17,11 +17,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::equations::{PolynomialTerm, within};
+use super::equations::{PolynomialTerm, bounded};
 use crate::vessel::mmg::Parameters;
 
 /// Wind coefficient Y_w, a coefficient of every form.
-pub(super) const WINDAGE: PolynomialTerm = within("Yw", "Y_w", [0.0, 0.1]);
+pub(super) const WIND_COEFFICIENT: PolynomialTerm = bounded("Yw", "Y_w", [0.0, 0.1]);
 
 /// Density ratio ρ_air/ρ.
 const DENSITY: f64 = 1.2e-3;
@@ -39,7 +39,7 @@ const AHEAD: f64 = 0.4;
 const YAW: f64 = 18.0 * 0.18;
 
 /// Prior mean and standard deviation of Y_w for a hull.
-pub(super) fn windage(hull: &Parameters) -> [f64; 2] {
+pub(super) fn wind_coefficient_prior(hull: &Parameters) -> [f64; 2] {
     let mass = 2.0 * hull.volume / (hull.Lpp * hull.Lpp * hull.d);
     LATERAL_AREA.map(|area| DENSITY * SIDE_FORCE * area / (mass + hull.hull.my))
 }
@@ -75,7 +75,7 @@ mod tests {
     /// KVLCC2 with the lateral area of a loaded tanker, half of L d, lies within the expected range.
     #[test]
     fn a_loaded_tanker_is_expected() {
-        let [mean, sd] = windage(&kvlcc2::FULL_SCALE);
+        let [mean, sd] = wind_coefficient_prior(&kvlcc2::FULL_SCALE);
         let loaded = mean * 0.5 / LATERAL_AREA[0];
         assert!((mean - loaded).abs() < sd && (0.8e-3..1.2e-3).contains(&loaded), "{mean} {sd} {loaded}");
     }

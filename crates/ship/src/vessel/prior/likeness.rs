@@ -39,7 +39,7 @@ impl HullParticulars {
 
     /// Keys of particulars that are given for both ships and differ at equal length: by more than 2 %, x_G by more than
     /// 0.005 L.
-    pub fn differing(&self, other: &Self) -> Vec<&'static str> {
+    pub fn differing_keys(&self, other: &Self) -> Vec<&'static str> {
         let ratio = self.length / other.length;
         let differs = |particular: &&super::Particular| {
             let values = particular.get(self).zip(particular.get(other));
@@ -82,15 +82,15 @@ mod tests {
         let near = |value: Option<f64>, expected: f64| (value.expect("filled") / expected - 1.0).abs() < 0.005;
         assert!(near(model.beam, 1.27) && near(model.draught, 0.455) && near(model.rudder_area, 0.0539), "{model:?}");
         assert_eq!((model.block_coefficient, model.propeller_rate, model.length), (Some(0.81), None, 7.0));
-        assert!(model.differing(&KVLCC2).is_empty() && bare.differing(&KVLCC2).is_empty());
+        assert!(model.differing_keys(&KVLCC2).is_empty() && bare.differing_keys(&KVLCC2).is_empty());
         assert!(!model.has_length_of(&KVLCC2) && (model.froude_number() / KVLCC2.froude_number() - 1.0).abs() < 0.01);
     }
 
     #[test]
     fn another_loading_differs() {
         let ballast = HullParticulars { draught: Some(12.0), x_g: Some(5.0), ..KVLCC2 };
-        assert_eq!(ballast.differing(&KVLCC2), ["draught-m", "x-g-m"]);
+        assert_eq!(ballast.differing_keys(&KVLCC2), ["draught-m", "x-g-m"]);
         assert_eq!(ballast.with_missing_from(&KVLCC2).draught, Some(12.0));
-        assert!(HullParticulars { draught: Some(20.7), ..KVLCC2 }.differing(&KVLCC2).is_empty(), "rounding");
+        assert!(HullParticulars { draught: Some(20.7), ..KVLCC2 }.differing_keys(&KVLCC2).is_empty(), "rounding");
     }
 }

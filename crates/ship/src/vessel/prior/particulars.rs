@@ -246,7 +246,7 @@ impl HullParticulars {
 
     /// Complete dimensions, with these values of [`RATIOS`] for missing particulars; a given displacement has
     /// precedence over a ratio.
-    pub(super) fn form(&self, ratios: &[f64; 7]) -> HullDimensions {
+    pub(super) fn complete_dimensions(&self, ratios: &[f64; 7]) -> HullDimensions {
         let [length_beam, beam_draught, fullness, area, height, diameter, gravity] = *ratios;
         let (L, volume) = (self.length, self.volume());
         let full = self.block_coefficient.unwrap_or(fullness);
@@ -269,7 +269,7 @@ impl HullParticulars {
     }
 
     /// `true` if any particular other than length and speed is given.
-    pub fn has_form(&self) -> bool {
+    pub fn has_hull_dimensions(&self) -> bool {
         *self != Self { length: self.length, speed: self.speed, ..Self::default() }
     }
 
@@ -282,7 +282,7 @@ impl HullParticulars {
                 within(key, key.to_owned(), value, range, unit, "correct the number, or leave it out if unknown")?;
             }
         }
-        let form = &self.form(&RATIOS.map(|ratio| ratio.mean));
+        let form = &self.complete_dimensions(&RATIOS.map(|ratio| ratio.mean));
         let cure = "give length and speed at one scale: both of the ship, or both of the model";
         within(
             "speed-m-s",

@@ -70,13 +70,13 @@ fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
 
 /// Value of a coefficient in some parameters; NaN if they do not contain it.
 fn value_in(coefficient: &CoefficientPrior, mut parameters: Parameters) -> f64 {
-    parameters.named(coefficient.formula.key).map_or(f64::NAN, |value| *value)
+    parameters.coefficient_mut(coefficient.formula.key).map_or(f64::NAN, |value| *value)
 }
 
 /// Yasukawa and Yoshimura (2015). Yr depends on m_x', which follows from a formula, too, and is 5 % too high.
 #[test]
 fn formulas_miss_the_published_derivatives_of_kvlcc2_by_so_much() {
-    let prior = priors(&KVLCC2).expect("a ship");
+    let prior = hull_prior(&KVLCC2).expect("a ship");
     let published = kvlcc2::FULL_SCALE.hull;
     errors_are(
         &prior,
@@ -98,7 +98,7 @@ fn formulas_miss_the_published_derivatives_of_kvlcc2_by_so_much() {
 
 #[test]
 fn formulas_miss_the_published_derivatives_of_esso_osaka_by_so_much() {
-    let prior = priors(&ESSO_OSAKA).expect("a ship");
+    let prior = hull_prior(&ESSO_OSAKA).expect("a ship");
     errors_are(&prior, &[("my", 0.2579, -11.8), ("Yv", -0.3728, 7.3), ("Nv", -0.1458, -8.0), ("Nr", -0.04849, -8.3)]);
     // With the published m_x' the formula of Yr has an error of 2 %.
     let derivative = coefficient(&prior, "Yr").mean - coefficient(&prior, "mx").mean + 0.0467;
@@ -109,7 +109,7 @@ fn formulas_miss_the_published_derivatives_of_esso_osaka_by_so_much() {
 /// used here.
 #[test]
 fn the_seiun_like_ship_is_made_of_regressions() {
-    let prior = priors(&SEIUN_LIKE).expect("a ship");
+    let prior = hull_prior(&SEIUN_LIKE).expect("a ship");
     let set = seiun_like::PARAMETERS;
     for key in ["Nv", "Nvvv", "Nvvr", "Yvrr", "Yrrr", "my", "wP0", "Xvv", "Xvr"] {
         let derivative = coefficient(&prior, key);
@@ -125,7 +125,7 @@ fn the_seiun_like_ship_is_made_of_regressions() {
 #[test]
 fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
-        let prior = priors(&given).expect("a ship");
+        let prior = hull_prior(&given).expect("a ship");
         let off = |c: &&CoefficientPrior| (value_in(c, published) - c.mean).abs() > 2.0 * c.sd;
         let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|c| c.formula.key).collect();
         assert!(10 * beyond.len() <= prior.coefficients.len(), "{beyond:?}");
@@ -135,7 +135,7 @@ fn published_hulls_are_plausible_under_their_prior() {
 #[test]
 fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
     for given in [KVLCC2, SEIUN_LIKE] {
-        let prior = priors(&given).expect("a ship");
+        let prior = hull_prior(&given).expect("a ship");
         let hull = Mmg::at_speed(prior.parameters, given.speed).expect("it balances");
         let rate = given.propeller_rate.expect("declared");
         assert!((hull.revolutions() / rate - 1.0).abs() < 1e-9, "{} against {rate}", hull.revolutions());
@@ -146,14 +146,14 @@ fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
         }
     }
     for given in [bare(320.0, 7.97), bare(7.0, 1.179), ESSO_OSAKA] {
-        Mmg::at_speed(priors(&given).expect("a ship").parameters, given.speed).expect("it balances");
+        Mmg::at_speed(hull_prior(&given).expect("a ship").parameters, given.speed).expect("it balances");
     }
 }
 
 #[test]
 fn what_is_missing_widens_the_prior() {
-    let complete = priors(&KVLCC2).expect("a ship");
-    let bare = priors(&bare(320.0, 7.97)).expect("a ship");
+    let complete = hull_prior(&KVLCC2).expect("a ship");
+    let bare = hull_prior(&bare(320.0, 7.97)).expect("a ship");
     for key in ["Yv", "Yr", "Nv", "Yvrr", "my", "f_alpha", "wP0"] {
         let share = |prior| {
             let prior: &CoefficientPrior = coefficient(prior, key);
@@ -178,11 +178,11 @@ fn the_displacement_tells_what_is_missing() {
         HullParticulars { draught: None, ..KVLCC2 },
         HullParticulars { beam: None, ..KVLCC2 },
     ] {
-        let prior = priors(&missing).expect("a ship");
+        let prior = hull_prior(&missing).expect("a ship");
         assert!((volume(&prior) - 312_600.0).abs() < 1e-6, "{}", volume(&prior));
     }
     let model = HullParticulars { displacement: Some(3270.0), ..bare(7.0, 1.179) };
-    assert!((volume(&priors(&model).expect("a ship")) - 3.27).abs() < 1e-12, "a model floats in fresh water");
+    assert!((volume(&hull_prior(&model).expect("a ship")) - 3.27).abs() < 1e-12, "a model floats in fresh water");
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn what_is_no_ship_is_refused() {
     let refused = |change: Change| {
         let mut given = KVLCC2;
         change(&mut given);
-        priors(&given).expect_err("no ship").to_string()
+        hull_prior(&given).expect_err("no ship").to_string()
     };
     let cases: [(Change, &str); 14] = [
         (|p| p.rudder_area = Some(-112.5), "rudder-area-m2 is -112.5 m², expected 0.00001 to 500 m²"),
@@ -216,7 +216,7 @@ fn what_is_no_ship_is_refused() {
     // Model with the length of its full-scale ship: lengths of both scales contradict each other before a simulation
     // starts.
     let mixed = HullParticulars { length: 320.0, speed: 7.97, beam: Some(1.27), ..HullParticulars::default() };
-    assert!(priors(&mixed).expect_err("two scales").to_string().contains("one scale"));
+    assert!(hull_prior(&mixed).expect_err("two scales").to_string().contains("one scale"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 
-use crate::motion::{TurningCircleFigures, dead_reckoning, turning_circle};
+use crate::motion::{TurningCircleCharacteristics, dead_reckoning, turning_circle};
 
 const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;
@@ -12,7 +12,7 @@ const RATE: f64 = 0.02;
 
 /// Characteristics of a ship that turns with constant velocities from the first row on, to starboard or port, on any
 /// course.
-fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
+fn circle(side: f64, course: f64, turned: f64) -> TurningCircleCharacteristics {
     let rows = 4000;
     let time: Vec<f64> = (0..=rows).map(|row| f64::from(row) * turned / RATE / f64::from(rows)).collect();
     let heading: Vec<f64> = time.iter().map(|t| course + side * RATE * t).collect();
@@ -44,7 +44,7 @@ fn what_is_not_reached_is_none() {
     assert!(quarter.advance.is_some() && quarter.transfer.is_some());
     assert_eq!((quarter.tactical_diameter, quarter.drift_angle), (None, None));
     let begun = circle(-1.0, 0.0, 1.0);
-    assert_eq!(begun, TurningCircleFigures::default());
+    assert_eq!(begun, TurningCircleCharacteristics::default());
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_series_that_is_no_turn_has_no_figures() {
     let (time, two) = ([0.0, 1.0, 2.0], [0.0, 2.0]);
     let path = [[0.0; 2]; 3];
     let of = |heading: &[f64], execute: f64| turning_circle([&time, heading, &time], [&path, &path], execute);
-    let none = TurningCircleFigures::default();
+    let none = TurningCircleCharacteristics::default();
     assert_eq!(of(&two, 0.0), none);
     assert_eq!(of(&[0.0, f64::NAN, 3.0], 0.0), none);
     assert_eq!(of(&time, 9.0), none);

@@ -65,9 +65,16 @@ fn a_response_sees_the_speed_of_its_ship() {
         assert_eq!(state[state.len() - 2..], [SPEED, 0.0]);
         let step = ship.largest_step();
         let mut last = None;
-        ship::replay::replay(&ship, &RecordedSignals::rudder(&rudder), &[0.0, 200.0], step, &mut state, |_, motion| {
-            last = Some(*motion);
-        });
+        ship::replay::replay(
+            &ship,
+            &RecordedSignals::from_rudder(&rudder),
+            &[0.0, 200.0],
+            step,
+            &mut state,
+            |_, motion| {
+                last = Some(*motion);
+            },
+        );
         let (motion, [u, v]) = (last.expect("a motion"), [state[state.len() - 2], state[state.len() - 1]]);
         assert_eq!((motion.speed, motion.sway), (Some(u.hypot(v)), Some(v)));
         (motion.yaw_rate, u.hypot(v) / SPEED)
@@ -95,9 +102,16 @@ fn states_steps_and_memory_of_the_response_are_passed_on() {
         let mut state = vec![0.0; dynamics.dimension()];
         dynamics.approach(0.0, 0.0, &mut state);
         let mut headings = Vec::new();
-        ship::replay::replay(dynamics, &RecordedSignals::rudder(&rudder), &times, 0.05, &mut state, |_, motion| {
-            headings.push(motion.heading);
-        });
+        ship::replay::replay(
+            dynamics,
+            &RecordedSignals::from_rudder(&rudder),
+            &times,
+            0.05,
+            &mut state,
+            |_, motion| {
+                headings.push(motion.heading);
+            },
+        );
         headings
     };
     assert_eq!(headings(&ship), headings(&response));

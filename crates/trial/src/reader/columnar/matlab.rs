@@ -16,7 +16,9 @@ use crate::file::FileError;
 use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD};
-use variable::{CELL, COMPRESSED, OtherVariable, Scan, Variable, Variables, class_name, contradiction, damaged, size};
+use variable::{
+    ByteCursor, CELL, COMPRESSED, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
+};
 
 pub use level4::is_level4;
 
@@ -46,15 +48,15 @@ fn is_numeric(class: u32) -> bool {
 
 /// Variable, or the description of a variable without numbers; `None` for bytes that are not a variable.
 fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVariable>> {
-    let mut scan = Scan { tail: bytes, big_endian };
+    let mut scan = ByteCursor { tail: bytes, big_endian };
     let (_, flag_bytes) = scan.element()?;
-    let (class, complex) = flags(Scan { tail: flag_bytes, big_endian }.word()?);
+    let (class, complex) = flags(ByteCursor { tail: flag_bytes, big_endian }.word()?);
     if !is_numeric(class) {
         let name = scan.element().and_then(|_| scan.element()).map(|(_, name)| String::from_utf8_lossy(name));
         let name = name.map_or_else(String::new, |name| name.into_owned());
         return Some(Err(OtherVariable { name, kind: class_name(class).to_owned() }));
     }
-    let mut sizes = Scan { tail: scan.element()?.1, big_endian };
+    let mut sizes = ByteCursor { tail: scan.element()?.1, big_endian };
     let mut dimensions = Vec::new();
     while !sizes.tail.is_empty() {
         dimensions.push(usize::try_from(sizes.word()?).ok()?);
@@ -82,9 +84,9 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
         result.map(|_| *left).map_err(|_| damaged("a variable cannot be unpacked"))
     };
     read(&mut bytes, FLAGS_END_BYTES as u64)?;
-    let flag_word = bytes.get(16..20).and_then(|word| Scan { tail: word, big_endian }.word());
+    let flag_word = bytes.get(16..20).and_then(|word| ByteCursor { tail: word, big_endian }.word());
     if flag_word.is_some_and(|word| is_numeric(flags(word).0)) {
-        let length = Scan { tail: &bytes[4..], big_endian }.word().unwrap_or(0);
+        let length = ByteCursor { tail: &bytes[4..], big_endian }.word().unwrap_or(0);
         let remaining = (u64::from(length) + 8).saturating_sub(FLAGS_END_BYTES as u64);
         if read(&mut bytes, remaining.min(MAX_UNPACKED_BYTES))? == 0 {
             return Err(FileError::TooLarge { kind: RECORD, size: None }.into());
@@ -102,7 +104,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
         Some(b"MI") => true,
         _ => return Err(damaged("its head is incomplete")),
     };
-    let mut scan = Scan { tail: &bytes[HEAD_BYTES..], big_endian };
+    let mut scan = ByteCursor { tail: &bytes[HEAD_BYTES..], big_endian };
     let (mut numeric, mut left_out) = (Vec::new(), Vec::new());
     let mut left = MAX_UNPACKED_BYTES;
     while !scan.tail.is_empty() {
@@ -112,7 +114,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
             MATRIX => Vec::new(),
             _ => continue,
         };
-        let mut inner = Scan { tail: &unpacked, big_endian };
+        let mut inner = ByteCursor { tail: &unpacked, big_endian };
         let content = match kind {
             COMPRESSED => inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail),
             _ => Some(data),
@@ -128,7 +130,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
 /// Table of a file as text: the variables of equal length with the most known names, or else the most numbers.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
-    let quantity = |name: &str| match names::meaning(name)? {
+    let quantity = |name: &str| match names::column_meaning(name)? {
         ColumnMeaning::Channel(channel, _) => Some(ColumnMeaning::Channel(channel, None)),
         ColumnMeaning::Time(_) => Some(ColumnMeaning::Time(None)),
         _ => None,
@@ -142,7 +144,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     }
     let worth = |rows: usize| {
         let of_length = || numeric.iter().filter(|variable| variable.rows == rows);
-        let named = of_length().filter(|variable| names::meaning(&variable.name).is_some()).count();
+        let named = of_length().filter(|variable| names::column_meaning(&variable.name).is_some()).count();
         (named, rows * of_length().map(|variable| variable.columns).sum::<usize>(), rows)
     };
     let mut lengths: Vec<usize> = numeric.iter().map(|variable| variable.rows).filter(|&rows| rows > 1).collect();

@@ -22,15 +22,15 @@ use super::error::Problem;
 
 /// Kind of a binary table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum BinaryFormat {
     Parquet,
     Spreadsheet,
     Matlab,
 }
 
-impl Kind {
+impl BinaryFormat {
     /// Kind of a file by its first bytes; `None` for any other file.
-    pub fn of(start: &[u8]) -> Option<Self> {
+    pub fn detect(start: &[u8]) -> Option<Self> {
         match start {
             [b'P', b'A', b'R', b'1', ..] => Some(Self::Parquet),
             [b'P', b'K', 3, 4, ..] => Some(Self::Spreadsheet),

@@ -15,7 +15,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::text::{self, Written};
-use crate::decoder::{CheckedPages, PageHead, guarded};
+use crate::decoder::{CheckedPages, PageHead, catch_panic};
 use crate::reader::error::Problem;
 
 /// Rows decoded at a time.
@@ -148,7 +148,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
 }
 
 fn checked<T>(work: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
-    guarded(work).unwrap_or_else(|| Err(damaged("its content contradicts itself".to_owned())))
+    catch_panic(work).unwrap_or_else(|| Err(damaged("its content contradicts itself".to_owned())))
 }
 
 /// Name of a file with an unsupported compression; `None` for a supported compression.

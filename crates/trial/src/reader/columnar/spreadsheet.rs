@@ -12,7 +12,7 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
 use super::text::{self, Written};
-use crate::decoder::guarded;
+use crate::decoder::catch_panic;
 use crate::names;
 use crate::reader::error::Problem;
 
@@ -40,7 +40,7 @@ fn damaged(damage: impl ToString) -> Problem {
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {
-        let done = guarded(|| decode(bytes, &send));
+        let done = catch_panic(|| decode(bytes, &send));
         if let Err(problem) = done.unwrap_or_else(|| Err(damaged("its content contradicts itself"))) {
             // The receiver is dropped if reading was given up.
             let _ = send.send(Err(problem));
@@ -103,8 +103,8 @@ fn read_head(cells: Cells) -> Result<Head, Problem> {
     let mut head = Head::default();
     each_row(cells, |row, cells| {
         let is_name = |value: &DataRef| match value {
-            DataRef::String(name) => names::meaning(name).is_some(),
-            DataRef::SharedString(name) => names::meaning(name).is_some(),
+            DataRef::String(name) => names::column_meaning(name).is_some(),
+            DataRef::SharedString(name) => names::column_meaning(name).is_some(),
             _ => false,
         };
         if head.width.is_none() && cells.iter().filter(|(_, value)| is_name(value)).count() >= 2 {

@@ -2,9 +2,9 @@
 //! column name.
 
 use super::message::{Message, RankedReading};
-use crate::cells::{Separator, cell, detect_separator};
+use crate::cells::{Separator, detect_separator, parse_cell};
 use crate::channel::Channel;
-use crate::names::{ColumnMeaning, meaning};
+use crate::names::{ColumnMeaning, column_meaning};
 
 /// Names of the four columns, in small letters.
 const COLUMNS: [&[&str]; 4] = [
@@ -51,7 +51,7 @@ impl LongTable {
         let mut ranges = Vec::new();
         self.separator.split(row, &mut ranges);
         let text = |index: usize| ranges.get(index).map_or("", |range| &row[range.clone()]);
-        let value = cell(text(self.value), self.separator).number()?;
+        let value = parse_cell(text(self.value), self.separator).number()?;
         let readings = vec![reading(text(self.path), value)?];
         let source = self.source.map_or("the table", text);
         Some(Message { stamp: text(self.time), source: source.to_owned(), readings })
@@ -63,7 +63,7 @@ fn reading(path: &str, value: f64) -> Option<RankedReading> {
     let small = path.to_lowercase();
     let signal_k =
         PATHS.iter().find(|(suffix, ..)| small.ends_with(suffix)).map(|(_, channel, class)| (*channel, *class, value));
-    signal_k.or_else(|| match meaning(path)? {
+    signal_k.or_else(|| match column_meaning(path)? {
         ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.si_factor())),
         ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.si_factor())),
         _ => None,

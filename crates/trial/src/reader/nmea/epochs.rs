@@ -7,7 +7,7 @@ use estimation::statistics::upper_median;
 
 use super::log::{NmeaInstrument, NmeaLog};
 use super::sentence::NmeaQuantity;
-use crate::clock::{Clock, DAY, Stamp, Stamps};
+use crate::clock::{Clock, SECONDS_PER_DAY, Stamp, StampConverter};
 use crate::reader::error::Problem;
 use crate::wording::counted;
 
@@ -52,7 +52,7 @@ pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
     ]
     .into_iter()
     .filter(|(number, _)| *number > 0)
-    .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
+    .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), is_or_are(number)))
     .map(|text| WarningCode::LeftOut.warning(text))
     .collect();
     if spread > 0 {
@@ -126,7 +126,7 @@ pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
         if several { "; sentences between two times are spread evenly" } else { "" }
     ))];
     if before > 0 {
-        let text = format!("{} before the first time {} left out", counted(before, "sentence"), are(before));
+        let text = format!("{} before the first time {} left out", counted(before, "sentence"), is_or_are(before));
         warnings.push(WarningCode::LeftOut.warning(text));
     }
     if strayed > 0 {
@@ -150,7 +150,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
     let days = instrument.column(NmeaQuantity::Day).map(|column| &instrument.columns[column]);
     // Dates are used only if every time has one.
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
-    let mut stamps = Stamps::default();
+    let mut stamps = StampConverter::default();
     let read = |row: usize| {
         let stamp = Stamp::new(dated.map(|days| days[row] as i64), second[row]);
         stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.at[row], time: rounded(time) })
@@ -193,7 +193,7 @@ fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Opti
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
     let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.at[row]).saturating_sub(1);
-    let passed = (second + epochs[epoch].time - seconds[row]) / DAY;
+    let passed = (second + epochs[epoch].time - seconds[row]) / SECONDS_PER_DAY;
     Some(days[row] as i64 - passed.round() as i64)
 }
 
@@ -235,6 +235,6 @@ pub(super) fn rounded(time: f64) -> f64 {
     (time * 1e6).round() / 1e6
 }
 
-pub(super) fn are(number: usize) -> &'static str {
+pub(super) fn is_or_are(number: usize) -> &'static str {
     if number == 1 { "is" } else { "are" }
 }

@@ -3,8 +3,8 @@
 
 use super::frame::{Fields, Frame, Line, frame};
 use super::sentence::{MAX_SLOTS, NmeaQuantity, Row, XDR, sentence, transducers};
-use super::stamp::Leading;
-use crate::clock::Stamps;
+use super::stamp::PrefixReader;
+use crate::clock::StampConverter;
 use crate::reader::error::Problem;
 use crate::reader::limits::MAX_CELLS;
 use crate::wording::shortened;
@@ -20,7 +20,7 @@ pub(super) struct NmeaInstrument {
     slots: &'static [NmeaQuantity],
     /// Mark as in [`Row::part`].
     pub part: [u8; 2],
-    /// Number of the source as in [`Leading`].
+    /// Number of the source as in [`PrefixReader`].
     pub source: u8,
     /// Instant of each sentence: its line number until the clock is determined, then s; NaN for an omitted sentence.
     pub at: Vec<f64>,
@@ -81,8 +81,8 @@ pub(super) struct NmeaLog {
     /// sentence.
     keys: Vec<u64>,
     pub counts: Counts,
-    pub leading: Leading,
-    pub stamps: Stamps,
+    pub leading: PrefixReader,
+    pub stamps: StampConverter,
     /// `true` for a log with stamps before its sentences.
     pub stamped: bool,
     /// Latest stamp and the stamp before it, s, and the number of lines with the latest stamp.

@@ -20,14 +20,14 @@ use std::io::Read;
 use document::{Warning, WarningCode};
 
 use self::choice::Choice;
-use self::epochs::{are, from_sentences, from_stamps, rounded};
+use self::epochs::{from_sentences, from_stamps, is_or_are, rounded};
 use self::frame::{Line, frame};
 use self::log::{Counts, NmeaLog};
-use self::stamp::Leading;
+use self::stamp::PrefixReader;
 use super::error::Problem;
 use super::lines::Lines;
 use super::source::{Log, Series};
-use crate::clock::{Clock, DAY};
+use crate::clock::{Clock, SECONDS_PER_DAY};
 use crate::wording::counted;
 
 /// Number of sentences that decide whether a log has stamps.
@@ -80,7 +80,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), P
 
 /// `true` if at least half of the sentences have a stamp before them.
 fn is_stamped(lines: &[Vec<u8>]) -> bool {
-    let mut leading = Leading::default();
+    let mut leading = PrefixReader::default();
     let (mut sentences, mut stamps) = (0, 0);
     for line in lines {
         if let Line::Sentence(frame) = frame(line) {
@@ -126,17 +126,21 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     }
     let clock = clock?;
     let second = rounded(clock.second + first);
-    let days = (second / DAY).floor();
-    Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, zone: clock.zone })
+    let days = (second / SECONDS_PER_DAY).floor();
+    Some(Clock {
+        day: clock.day.map(|day| day + days as i64),
+        second: second - days * SECONDS_PER_DAY,
+        zone: clock.zone,
+    })
 }
 
 /// Warnings of the omitted lines and of sentences without checksum.
 fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
     let hold = if counts.text == 1 { "holds" } else { "hold" };
     let faults = [
-        (counts.wrong, format!("had a wrong checksum and {} left out", are(counts.wrong))),
-        (counts.broken, format!("{} cut short or not text, and left out", are(counts.broken))),
-        (counts.text, format!("{hold} no sentence and {} left out", are(counts.text))),
+        (counts.wrong, format!("had a wrong checksum and {} left out", is_or_are(counts.wrong))),
+        (counts.broken, format!("{} cut short or not text, and left out", is_or_are(counts.broken))),
+        (counts.text, format!("{hold} no sentence and {} left out", is_or_are(counts.text))),
     ];
     let faults = faults.into_iter().filter(|(number, _)| *number > 0);
     let texts = faults.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));

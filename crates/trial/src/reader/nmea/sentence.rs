@@ -9,9 +9,9 @@ use std::ops::RangeInclusive;
 use ship::angle::{DEGREE, KNOT};
 
 use super::frame::{Fields, Number};
-use crate::clock::{days, full_year, second_of_day};
+use crate::clock::{days_since_1970, full_year, second_of_day};
 
-/// Quantity of a sentence.
+/// Quantity that an NMEA 0183 sentence carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NmeaQuantity {
     /// True heading, rad, [0, 2π).
@@ -155,7 +155,7 @@ pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
 /// Number with its bounds, and its factor to SI units and radians.
 type Bounded = (Number, RangeInclusive<f64>, f64);
 
-/// Readings of a sentence.
+/// Values of one NMEA 0183 sentence, in the order of its quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
     /// Values in the order of the quantities of the sentence; NaN for no reading.
@@ -337,11 +337,11 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
 fn date(field: &[u8]) -> Option<f64> {
     let is_date = field.len() == 6 && field.iter().all(u8::is_ascii_digit);
     let digits: u32 = std::str::from_utf8(field).ok().filter(|_| is_date)?.parse().ok()?;
-    Some(days(full_year(digits % 100, 2)?, digits / 100 % 100, digits / 10_000)? as f64)
+    Some(days_since_1970(full_year(digits % 100, 2)?, digits / 100 % 100, digits / 10_000)? as f64)
 }
 
 /// Day since 1970-01-01 from day, month and year.
 fn day(date: [Number; 3]) -> Option<f64> {
     let [Number::Value(day), Number::Value(month), Number::Value(year)] = date else { return None };
-    (day >= 0.0 && month >= 0.0).then(|| days(year as i32, month as u32, day as u32))?.map(|day| day as f64)
+    (day >= 0.0 && month >= 0.0).then(|| days_since_1970(year as i32, month as u32, day as u32))?.map(|day| day as f64)
 }

@@ -4,7 +4,7 @@
 //! Source of the tag block: NMEA 0183 version 4.11.
 
 use super::frame::sum;
-use crate::clock::{DAY, Stamp};
+use crate::clock::{SECONDS_PER_DAY, Stamp};
 
 /// Maximum length of the text before a sentence, bytes; a longer text has no stamp.
 const MAX_TEXT_BYTES: usize = 120;
@@ -15,7 +15,7 @@ const MAX_SOURCES: usize = 64;
 
 /// Reader of the text before sentences, with its state from line to line.
 #[derive(Debug, Default)]
-pub(super) struct Leading {
+pub(super) struct PrefixReader {
     /// Names of sources; the number of a source is its index plus 1, 0 means no source.
     pub sources: Vec<String>,
     /// Range of words of the last stamp, which is the same in most lines of a log.
@@ -25,7 +25,7 @@ pub(super) struct Leading {
     last_reading: (Option<Stamp>, u8),
 }
 
-impl Leading {
+impl PrefixReader {
     /// Stamp before a sentence and number of the source.
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
         if before != self.last {
@@ -118,7 +118,7 @@ fn since_1970(text: &str) -> Option<Stamp> {
     let whole: u64 = whole.parse().ok()?;
     let decimals: f64 = format!("0.{decimals}0").parse().ok()?;
     let (seconds, fraction) = (whole / per_second, (whole % per_second) as f64);
-    let day = seconds / DAY as u64;
-    let second = (seconds % DAY as u64) as f64 + (fraction + decimals) / per_second as f64;
+    let day = seconds / SECONDS_PER_DAY as u64;
+    let second = (seconds % SECONDS_PER_DAY as u64) as f64 + (fraction + decimals) / per_second as f64;
     Some(Stamp::new(Some(day as i64), second))
 }

@@ -3,7 +3,7 @@
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 2 (level 4 MAT-files).
 
-use super::variable::{OtherVariable, Scan, Variable, Variables, class_name, contradiction, damaged, size};
+use super::variable::{ByteCursor, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size};
 use crate::reader::error::Problem;
 
 /// Maximum length of the name of a variable with its terminator, bytes.
@@ -26,7 +26,7 @@ struct VariableHead {
 
 impl VariableHead {
     /// Head of a variable at the beginning of a byte sequence; `None` if there is none.
-    fn read(scan: &mut Scan) -> Option<Self> {
+    fn read(scan: &mut ByteCursor) -> Option<Self> {
         let digits = scan.word()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
         let [rows, columns, complex, length] = [scan.word()?, scan.word()?, scan.word()?, scan.word()?];
         let (class, kind) = (digits % 10, *KINDS.get((digits / 10) as usize)?);
@@ -47,14 +47,16 @@ impl VariableHead {
 
 /// `true` for a file that begins with a variable of level 4.
 pub fn is_level4(bytes: &[u8]) -> bool {
-    [false, true].into_iter().any(|big_endian| VariableHead::read(&mut Scan { tail: bytes, big_endian }).is_some())
+    [false, true]
+        .into_iter()
+        .any(|big_endian| VariableHead::read(&mut ByteCursor { tail: bytes, big_endian }).is_some())
 }
 
 /// Variables of a file; all have the byte order of the first.
 pub fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     let (mut numeric, mut left_out) = (Vec::new(), Vec::new());
-    let big_endian = VariableHead::read(&mut Scan { tail: bytes, big_endian: false }).is_none();
-    let mut scan = Scan { tail: bytes, big_endian };
+    let big_endian = VariableHead::read(&mut ByteCursor { tail: bytes, big_endian: false }).is_none();
+    let mut scan = ByteCursor { tail: bytes, big_endian };
     while !scan.tail.is_empty() {
         let head = VariableHead::read(&mut scan).ok_or_else(contradiction)?;
         let data = head.length().and_then(|length| scan.take(length));

@@ -53,12 +53,12 @@ pub fn class_name(class: u32) -> &'static str {
 }
 
 /// Cursor over bytes, read from the front.
-pub struct Scan<'a> {
+pub struct ByteCursor<'a> {
     pub tail: &'a [u8],
     pub big_endian: bool,
 }
 
-impl<'a> Scan<'a> {
+impl<'a> ByteCursor<'a> {
     pub fn take(&mut self, length: usize) -> Option<&'a [u8]> {
         let (taken, tail) = self.tail.split_at_checked(length)?;
         self.tail = tail;

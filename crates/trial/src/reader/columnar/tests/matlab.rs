@@ -131,7 +131,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
         variable4("c", 50, [2, 1], false, &[3, 255], false),
     ];
     let mut text = String::new();
-    let kind = crate::reader::columnar::Kind::of(&small.concat()).expect("a MATLAB file");
+    let kind = crate::reader::columnar::BinaryFormat::detect(&small.concat()).expect("a MATLAB file");
     kind.read_as_text(small.concat()).expect("a table").read_to_string(&mut text).expect("UTF-8");
     assert_eq!(text, "a\tb\tc\n-1\t0.1\t3\n1\t\t255\n");
     let small = small.concat();
@@ -144,7 +144,7 @@ fn files_of_level_4_are_read_as_those_of_level_5() {
     }
     // Other bytes are not a file of level 4: a text, UTF-16, other numbers.
     for other in [&b"t_s,heading_deg,rudder_deg\n"[..], b"t\0_\0s\0", &[0; 64], &[0x35, 0, 0, 0, 1, 0, 0, 0]] {
-        assert_eq!(crate::reader::columnar::Kind::of(other), None);
+        assert_eq!(crate::reader::columnar::BinaryFormat::detect(other), None);
     }
 }
 
@@ -170,7 +170,7 @@ fn matrices_and_numbers_of_every_kind_are_columns() {
     ]
     .concat();
     let mut text = String::new();
-    crate::reader::columnar::Kind::Matlab
+    crate::reader::columnar::BinaryFormat::Matlab
         .read_as_text(file)
         .expect("a table")
         .read_to_string(&mut text)

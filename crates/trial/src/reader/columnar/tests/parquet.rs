@@ -77,7 +77,7 @@ pub fn plain(time: &[f64], heading: &[f64], rudder: &[f64]) -> Vec<u8> {
 /// The text of a file.
 fn text(bytes: Vec<u8>) -> String {
     let mut text = String::new();
-    crate::reader::columnar::Kind::Parquet
+    crate::reader::columnar::BinaryFormat::Parquet
         .read_as_text(bytes)
         .expect("a file")
         .read_to_string(&mut text)

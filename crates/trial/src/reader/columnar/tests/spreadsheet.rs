@@ -89,7 +89,7 @@ fn sheet(header: [&str; 3], first: usize, count: usize, time: impl Fn(f64) -> St
 
 fn text(bytes: Vec<u8>) -> String {
     let mut text = String::new();
-    crate::reader::columnar::Kind::Spreadsheet
+    crate::reader::columnar::BinaryFormat::Spreadsheet
         .read_as_text(bytes)
         .expect("a book")
         .read_to_string(&mut text)
