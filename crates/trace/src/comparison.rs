@@ -120,7 +120,8 @@ impl RecordComparison {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
         let shorter = before.windows.iter().filter(|window| has_several_windows(window.length, time));
-        let windows = shorter.filter_map(|window| Some((window.length, window.heading?, after.within(window.length)?)));
+        let windows =
+            shorter.filter_map(|window| Some((window.length, window.heading?, after.restarted_rms(window.length)?)));
         let all = windows.chain([(duration(time), before.heading, after.heading)]);
         let entry = |(horizon_s, before, after)| HorizonEntry {
             horizon_s,

@@ -15,7 +15,7 @@ use crate::fonts::LINE;
 use crate::key::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::significant;
-use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, RECORD};
+use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, PAPER, RECORD};
 use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
 use crate::theme::Theme;
 
@@ -227,6 +227,13 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
         }
     }
     let widths = number_widths(column, theme);
+    let (right, bottom) = (chart.rect.right(), chart.rect.bottom());
+    let left = right - widths.iter().sum::<f64>();
+    if !widths.is_empty() {
+        let corners = [(left, chart.rect.y), (right, chart.rect.y), (right, bottom), (left, bottom)];
+        chart.canvas.fill(&corners, PAPER, 1.0)?;
+        chart.canvas.line(&[corners[0], corners[3]], Stroke::solid(GRID, theme.thin))?;
+    }
     for (row, items) in column.rows.iter().enumerate() {
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
         let y = chart.up(row as f64).unwrap_or(f64::NAN);

@@ -7,15 +7,18 @@ use report::figures::{
     CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack, WordsPlace,
 };
 use report::number::{counted, significant};
-use report::palette::QUIET;
+use report::palette::{QUIET, RECORD};
 use report::{CurveOrigin, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
-use super::key_rows::{is_of_k, is_quiet, of_rows, pale_note, unit};
+use super::key_rows::{is_of_k, is_quiet, of_rows, unit};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
+
+/// Factor beyond the greatest finite value at which an infinite one ends a band.
+const BEYOND: f64 = 10.0;
 
 /// Remark on the number of trials behind every value; `None` if it varies or the trials are measured records.
 pub fn trials(design: &Design) -> Option<String> {
@@ -48,25 +51,47 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -
     plot
 }
 
-/// A layer that is not highlighted, in pale colours.
-fn paled(layer: Layer) -> Layer {
+/// Layers that are not highlighted: a single one in pale colours, several as one band from the least to the greatest
+/// value at each point.
+fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
+    let is_word = |layer: &Layer| matches!(layer.kind, LayerKind::Words(..));
+    if names.len() < 2 {
+        return quiet.into_iter().filter(|layer| !is_word(layer)).map(pale).collect();
+    }
+    let mut points: Vec<(f64, f64)> = quiet.iter().flat_map(|layer| layer.curve.pairs()).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // Errors beyond the axis are infinite.
+    let most = points.iter().map(|(_, y)| *y).filter(|y| y.is_finite()).fold(0.0, f64::max);
+    let edge = |pick: fn(f64, f64) -> f64| {
+        let groups = points.chunk_by(|a, b| a.0 == b.0);
+        let ends = groups
+            .filter_map(|group| Some((group[0].0, group.iter().map(|(_, y)| y.min(BEYOND * most)).reduce(pick)?)));
+        let (x, y) = ends.unzip();
+        PlotCurve { x, y }
+    };
+    let name = format!("{}, range", counted(names.len() as u64, "other method"));
+    vec![Layer::band(name, [edge(f64::min), edge(f64::max)], RECORD, 0.2).within(ASIDE)]
+}
+
+/// A layer in pale colours, which keeps its name.
+fn pale(layer: Layer) -> Layer {
     let mut kind = layer.kind;
     match &mut kind {
         LayerKind::Line(pen) => pen.colour = QUIET,
-        LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
         LayerKind::Marks(Marks { joined: Some(pen), .. }) => {
             kind = LayerKind::Line(Pen { colour: QUIET, ..pen.width(0.7) });
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
+        LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
+        LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
         LayerKind::Record => {}
     }
-    Layer { name: None, kind, ..layer }.within(ASIDE)
+    Layer { kind, ..layer }.within(ASIDE)
 }
 
 fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &Highlight) {
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
-    let (mut pale_names, mut notes) = (Vec::new(), Vec::new());
+    let mut notes = Vec::new();
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.across.is_some() {
@@ -74,19 +99,19 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &
             stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
         }
-        data.names_aside = stack.panels.iter().all(has_distinct_names);
         keep_t(stack);
+        let names = stack.panels.iter().flat_map(|panel| &panel.layers).filter_map(|layer| layer.name.clone());
+        let quiet_names = distinct(names.filter(|name| is_quiet(Some(name), about)));
         let unit = stack.rows.first().map_or_else(String::new, |row| unit(&row.y.title));
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
-            pale_names.extend(quiet.iter().filter_map(|layer| layer.name.clone()));
-            let is_word = |layer: &Layer| matches!(layer.kind, LayerKind::Words(..));
-            panel.layers = quiet.into_iter().filter(|layer| !is_word(layer)).map(paled).collect();
+            panel.layers = paled(quiet, &quiet_names);
             let values = point_values(&shown, &points, &unit);
             panel.detail = shown_over_bound(&shown).filter(|_| *over_bound);
             panel.layers.extend(shown.into_iter().chain(values));
         }
+        data.names_aside = stack.panels.iter().all(has_distinct_names);
         let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
         let all = distinct(stack.panels.iter().flat_map(marked));
         let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
@@ -96,7 +121,6 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &
             notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
     }
-    notes.extend(pale_note(&distinct(pale_names)));
     let notes: Vec<String> = data.note.take().into_iter().chain(notes).collect();
     data.note = Some(notes.join(" ")).filter(|note| !note.is_empty());
 }
@@ -213,7 +237,7 @@ fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
 
 #[cfg(test)]
 mod tests {
-    use report::figures::{NamedRows, PanelRow, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
+    use report::figures::{NamedRows, PanelRow, RowItem, RowKind, RowsColumn, Ruler};
     use report::palette::Look;
 
     use super::super::key_rows::tint;
@@ -248,18 +272,17 @@ mod tests {
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
-        // Layers that are not highlighted are below, without a name.
+        // A single layer that is not highlighted is below, in grey.
         let names: Vec<Option<&str>> = panels[0].layers.iter().map(|layer| layer.name.as_deref()).collect();
-        assert_eq!(names, [None, Some("output-error")]);
+        assert_eq!(names, [Some("srivc"), Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
         assert_eq!((marks.look.colour, panels[0].layers[0].room), (QUIET, Some(ASIDE)));
-        assert_eq!(data.note.as_deref(), Some("Grey: srivc."));
+        assert_eq!(data.note, None);
     }
 
     #[test]
     fn other_methods_share_a_line_below_those_the_figure_is_about() {
         let item = |id: &str, value: f64| RowItem::below(method(id).0, method(id).1, value, None);
-        // Marks that coincide with highlighted ones are not plotted.
         let items = [("srivc", 2.0), ("output-error", 1.0), ("least-squares", 3.0), ("maximum-likelihood", 1.0)];
         let column = |title: &str| RowsColumn {
             x: Ruler::decimal(title),
@@ -275,8 +298,8 @@ mod tests {
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
-        assert_eq!((row.len(), row[1].place, row[2].place), (3, RowPlace::Below, RowPlace::Beside));
-        assert_eq!(row[1].name, row[2].name);
+        assert_eq!((row.len(), row[1].name.as_deref()), (2, Some("3 others, range")));
+        assert!(matches!(row[1].kind, RowKind::Range(_, [1.0, 3.0])));
     }
 
     #[test]
@@ -309,6 +332,7 @@ mod tests {
             Layer::marks(id, method(id).1, vec![(2.0, y, None), (5.0, 3.0 * y, None)]).joined(pen)
         };
         let layers = vec![
+            layer("least-squares", f64::INFINITY),
             layer("output-error", 0.125),
             layer("maximum-likelihood", 0.1251),
             layer("srivc", 9.0),
@@ -332,8 +356,11 @@ mod tests {
             words.collect::<Vec<_>>(),
             [(vec![2.0], vec![String::from("0.12 %")]), (vec![2.0], vec![String::from("0.13 %")])]
         );
-        assert!(matches!(layers[0].kind, LayerKind::Line(Pen { colour: QUIET, .. })));
-        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound. Marks. Grey: srivc."));
+        // Several that are not highlighted are one band; infinite errors are beyond its greatest finite value.
+        assert_eq!(layers[0].name.as_deref(), Some("2 other methods, range"));
+        let LayerKind::Band(upper, ..) = &layers[0].kind else { panic!() };
+        assert_eq!((&layers[0].curve.y, &upper.y), (&vec![9.0, 27.0], &vec![270.0, 270.0]));
+        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound. Marks."));
         assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
 

@@ -4,8 +4,8 @@ use campaign::scenario::Highlight;
 use campaign::statistics::distinct;
 use report::CurveOrigin;
 use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-use report::number::significant;
-use report::palette::{Look, Marker, QUIET, RGBColor, SOLID};
+use report::number::{counted, significant};
+use report::palette::{Look, Marker, QUIET, RECORD, RGBColor, SOLID};
 
 use super::pooled_charts::ALL;
 
@@ -56,31 +56,21 @@ pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound
         }
     }
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
-    let pale_names = distinct(items.filter_map(|item| item.name.clone()).filter(|name| is_quiet(Some(name), about)));
-    let others = if let [other] = &pale_names[..] { other.clone() } else { String::from("others") };
-    data.note =
-        data.note.take().into_iter().chain(pale_note(&pale_names)).reduce(|note, grey| format!("{note} {grey}"));
+    let quiet_names = distinct(items.filter_map(|item| item.name.clone()).filter(|name| is_quiet(Some(name), about)));
     if data.of.is_empty() {
         sort_rows(data, rows);
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
-        // The other rows share a line and have no ranges.
-        row.retain(|item| !matches!(item.kind, RowKind::Range(..)) || !is_quiet(item.name.as_ref(), about));
-        row.sort_by_key(|item| is_quiet(item.name.as_ref(), about));
-        let value = |item: &RowItem| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None };
-        let drawn_values: Vec<_> = row.iter().filter(|item| !is_quiet(item.name.as_ref(), about)).map(value).collect();
-        row.retain(|item| !is_quiet(item.name.as_ref(), about) || !drawn_values.contains(&value(item)));
-        let mut place = RowPlace::Below;
-        for item in row.iter_mut().filter(|item| is_quiet(item.name.as_ref(), about)) {
-            if let RowItem { kind: RowKind::Mark(look, _, interval), .. } = item {
-                (*look, *interval) = (OTHER, None);
-                (item.name, item.place, item.number) = (Some(others.clone()), place, None);
-                place = RowPlace::Beside;
-            }
-        }
+        let (quiet, shown) = row.drain(..).partition(|item| is_quiet(item.name.as_ref(), about));
+        *row = shown;
+        row.extend(pale(quiet, &quiet_names));
     }
     if !rows.is_empty() {
         data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows, *over_bound));
+        if data.names.iter().any(|name| name != ALL && !rows.contains(name)) {
+            data.note =
+                Some(data.note.take().map_or_else(String::new, |note| note + " ") + "Pale colours: not in the title.");
+        }
     }
 }
 
@@ -94,9 +84,16 @@ fn sort_rows(data: &mut NamedRows, about: &[String]) {
     }
 }
 
-/// Remark that names what is grey; `None` if nothing is.
-pub fn pale_note(names: &[String]) -> Option<String> {
-    (!names.is_empty()).then(|| format!("Grey: {}.", names.join(", ")))
+/// Marks that are not highlighted: those of a single method in grey, those of several as a range.
+fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
+    let values =
+        || quiet.iter().filter_map(|item| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None });
+    let ends = [values().reduce(f64::min)?, values().reduce(f64::max)?];
+    let item = match names {
+        [name] => RowItem::new(name, RowKind::Mark(OTHER, ends[0], None)),
+        _ => RowItem::new(format!("{}, range", counted(names.len() as u64, "other")), RowKind::Range(RECORD, ends)),
+    };
+    Some(RowItem { place: RowPlace::Below, ..item.softly() })
 }
 
 /// Pales the rows that are not highlighted, and writes the values of all others next to their marks.

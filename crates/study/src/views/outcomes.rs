@@ -70,7 +70,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
         panels: vec![(None, cells)],
         note: Some(String::from(
             "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
-             no list. Alias: indistinguishable from the truth. Elsewhere: with another dependence or at another time.",
+             no list.",
         )),
     };
     (!judged.is_empty()).then_some((finding, map))

@@ -19,6 +19,7 @@ use report::number::{self, MISSING, significant};
 use report::palette::Look;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
+use super::key_rows::tint;
 use super::page_files::write_page;
 use super::study_figures::{self, FigurePlace, StudyFigure};
 use super::{coverage_table, tables};
@@ -130,7 +131,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let marks = |line: &RecordSummary| {
         let method = &design.methods[line.method];
         let look = CurveOrigin::Method(method.id.clone()).look();
-        let pale = Look { hollow: true, ..look };
+        let pale = Look { colour: tint(look.colour), ..look };
         let trials = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
         let mut items: Vec<RowItem> = trials
             .filter_map(|row| row.validation_rmse_deg)
@@ -157,13 +158,11 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         ..RowsColumn::default()
     };
     let caption = "Heading error of every method on held-out records: the recorded rudder is replayed; only the initial state is fitted. \
-                   Hollow marks: trials; full marks: medians, with 95 % intervals over fits for six or more.";
+                   Pale marks: trials; dark marks: medians, with 95 % intervals over fits for six or more.";
     let plot = NamedRows {
         names,
         columns: vec![column],
-        note: Some(String::from(
-            "Hollow marks: one trial each; full marks: medians of five or more, with bars over the fits from six on.",
-        )),
+        note: Some(String::from("Pale: single records. Dark: medians of five or more.")),
         ..NamedRows::default()
     };
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))

@@ -72,7 +72,8 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
         figure.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
-                plot = key_figure::of_chart(plot, &output.highlight, key_figure::trials(design));
+                let trials = key_figure::trials(design).filter(|_| *place != FigurePlace::Traces);
+                plot = key_figure::of_chart(plot, &output.highlight, trials);
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))

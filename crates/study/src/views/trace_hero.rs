@@ -74,6 +74,30 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
     Stack { is_half: true, x: vec![Ruler::time()], rows: rows.collect(), panels, ..Stack::default() }
 }
 
+/// Heading errors before and after of all held-out records, the worst first, headed by their root mean squares.
+fn all_held(held: &[BeforeAfter]) -> Stack {
+    let mut order: Vec<&BeforeAfter> = held.iter().collect();
+    order.sort_by(|a, b| b.before.heading_rmse_deg.total_cmp(&a.before.heading_rmse_deg));
+    let models: [(CurveOrigin, fn(&BeforeAfter) -> f64); 2] = [
+        (CurveOrigin::Before, |errors| errors.before.heading_rmse_deg),
+        (CurveOrigin::After, |errors| errors.after.heading_rmse_deg),
+    ];
+    let layers = models.map(|(origin, error)| {
+        let points = order.iter().zip(1..).map(|(errors, place)| (f64::from(place), error(errors), None));
+        Layer::marks("", origin.look(), points.collect())
+    });
+    let [before, after] = rms(held.iter()).map(|error| significant(error, 3));
+    let head = format!(
+        "(e) all {} held-out records: rms {before}° → {after}°, {:.0} %",
+        held.len(),
+        100.0 * ratio(held.iter())
+    );
+    let row = PanelRow::new(Ruler::decimal("rms error [°]"), 0.13);
+    let panel = LayeredPanel { head: Some(head), layers: layers.into(), ..LayeredPanel::default() };
+    let x = vec![Ruler::decimal("held-out record, worst first")];
+    Stack { x, rows: vec![row], panels: vec![panel], ..Stack::default() }
+}
+
 /// The figure; `None` if no record was held out.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let error = &document.trace.error;
@@ -85,15 +109,13 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         1 => String::from("held out"),
         count => format!("held out, nearest to the mean of {count}"),
     };
-    let stacks = vec![
+    let mut stacks = vec![
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
         column(held, &error.validation[number], ['c', 'd'], &role),
     ];
+    stacks.extend((error.validation.len() > 1).then(|| all_held(&error.validation)));
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
-                   with the effects that were found and the 95 % band. (b), (d): the residuals of both.";
-    let [before, after] = rms(error.validation.iter()).map(|error| significant(error, 3));
-    let count = counted(error.validation.len() as u64, "held-out record");
-    let note = Some(format!("All {count}: rms {before}° → {after}°, {:.0} %.", 100.0 * ratio(error.validation.iter())));
-    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, note, ..Panels::default() }))
+                   with the effects that were found and the 95 % band. (b), (d): the residuals of both. (e): the heading errors of both on every held-out record.";
+    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, ..Panels::default() }))
 }
