@@ -1,12 +1,11 @@
 //! Method `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
-//! The unknowns are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. For a given
-//! 1/T the heading is linear in all other unknowns, so the problem is a search over a single number: the profiled sum
-//! of squares is scanned over both signs of 1/T, every local minimum of the scan is refined by variable projection
-//! with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), first on a part of the rows and then, unless it is
-//! far above the lowest, on all rows; the lowest minimum is the estimate. A local minimum is therefore not mistaken for
-//! the estimate unless the global minimum is narrower than the scan. Source of the method: Ljung (1999), System
-//! Identification: Theory for the User, chapter 7.
+//! The unknowns are 1/T, b = K/T and b δ_r, common to all trials, and heading and yaw rate at one end of every trial.
+//! For a given 1/T the heading is linear in the others, so only 1/T is searched. The profiled sum of squares is scanned
+//! over both signs of 1/T. Every local minimum is refined by variable projection with exact sensitivities (Golub and
+//! Pereyra 1973; Kaufman 1975), first on a part of the rows; unless it is far above the lowest, then on all rows. The
+//! lowest minimum is the estimate. It is the global one unless that is narrower than the scan. Source of the method:
+//! Ljung (1999), System Identification: Theory for the User, chapter 7.
 
 use document::WarningCode;
 use nalgebra::Matrix3;
@@ -63,7 +62,7 @@ pub struct OutputError {
     settings: Settings,
 }
 
-/// Maximum number of points of the scan per decade: valleys are ten times as wide as its spacing.
+/// Maximum number of points of the scan per decade; a finer scan finds no further local minimum.
 const MAX_POINTS_PER_DECADE: usize = 1000;
 
 /// Accepted time constants, s, at the end of the scan.

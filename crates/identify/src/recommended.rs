@@ -7,9 +7,9 @@
 //! recommended as well: output error attributes the effect of gusts to the rudder. Records that declare a calm have no
 //! such moment. If terms of a ship explain the residual, the model lacks a term. A random moment then substitutes for
 //! it, and K, T of maximum likelihood describe small and fast motions. An estimate of maximum likelihood without an
-//! interval of K is never recommended: its random moment explains the manoeuvre. A replay far worse than that of output
-//! error is not a reason for rejection: under strong random moments the true ship has such a replay, too. The rule is
-//! this project's own; METHODOLOGY documents its limits.
+//! interval of K is never recommended: its random moment explains the manoeuvre. Its replay may be worse than that of
+//! output error, as that of the true ship is under strong random moments, by a factor of at most 30. The rule is this
+//! project's own; METHODOLOGY documents its limits.
 //!
 //! As a method it fits both models and returns the recommended estimate, so that a study can test the rule.
 

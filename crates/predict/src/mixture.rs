@@ -54,7 +54,8 @@ const MAX_TRIES: usize = 100;
 /// Correlation time of the process that approximates a white moment, in timescales of the ship.
 const WHITE_CORRELATION_TIME: f64 = 0.05;
 
-/// Structure with the square root of its covariance; for a file with hulls, a hull with the most probable structure.
+/// Structure prepared for sampling: model and square root of its parameter covariance. A hull, if there is one, replaces
+/// the model.
 #[derive(Debug, Clone)]
 pub(crate) struct StructureSampler {
     /// Probability among all structures.
@@ -79,9 +80,9 @@ pub struct ShipMixture {
     shares: Vec<f64>,
     timescale: f64,
     /// `true` if the random numbers are independent of another mixture.
-    apart: bool,
+    is_independent: bool,
     /// `true` if the hulls nevertheless follow the hulls of the other mixture, each at another loading.
-    follows: bool,
+    shares_trial_errors: bool,
     /// Wind on the hulls; direction relative to the approach heading.
     pub(crate) wind: Option<Wind>,
 }
@@ -130,18 +131,20 @@ impl ShipMixture {
         }
         let timescale = files.first().and_then(|(stored, _)| stored.timescale()).ok_or(PredictError::Empty)?;
         let files = files.into_iter().map(|(stored, _)| stored).collect();
-        Ok(Self { parts, files, shares, timescale, apart: false, follows: false, wind: None })
+        Ok(Self { parts, files, shares, timescale, is_independent: false, shares_trial_errors: false, wind: None })
     }
 
-    /// Same ships with independent random numbers. The errors of the trials stay common if every ship has a single hull
-    /// converted from the hull of the other mixture.
+    /// The same ships, sampled with random numbers independent of `other`. If each ship has one hull, converted from the
+    /// hull of `other`, the estimation errors of that hull stay common to both.
     pub fn independent_of(self, other: &Self) -> Self {
-        let follows = |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
-            ([hull], [source]) => hull.is_from(source),
-            _ => false,
-        };
-        let follows = self.files.len() == other.files.len() && self.files.iter().zip(&other.files).all(follows);
-        Self { apart: true, follows, ..self }
+        let shares_trial_errors =
+            |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
+                ([hull], [source]) => hull.is_from(source),
+                _ => false,
+            };
+        let shares_trial_errors =
+            self.files.len() == other.files.len() && self.files.iter().zip(&other.files).all(shares_trial_errors);
+        Self { is_independent: true, shares_trial_errors, ..self }
     }
 
     /// Timescale of the ship, s: about L/U.
@@ -167,7 +170,7 @@ impl ShipMixture {
     /// Ship number `number`, sampled from the given sources of uncertainty and otherwise the most probable ship.
     pub fn sample_ship(&self, number: u64, sources: &[UncertaintySource]) -> SampledShip {
         let has = |source: UncertaintySource| sources.contains(&source);
-        let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
+        let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.structure_of_sample(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
@@ -178,14 +181,16 @@ impl ShipMixture {
         // A negative dead time is an error of the clock; a ship does not respond before its rudder moves.
         part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
         let mut normals = key.indexed(Purpose::Specification, 1);
-        let [of_gear, of_rate, of_beginning]: [f64; 3] = std::array::from_fn(|_| normals.sample(StandardNormal));
+        let [gear_normal, approach_normal, start_normal]: [f64; 3] =
+            std::array::from_fn(|_| normals.sample(StandardNormal));
         let random_part = |source, value: f64| if has(source) { value } else { 0.0 };
         let gear = stored.gear.map_or_else(SteeringGear::default, |gear| {
-            let rate = gear.rate_rad_s + random_part(UncertaintySource::SteeringGear, of_gear * gear.sd_rad_s);
+            let rate = gear.rate_rad_s + random_part(UncertaintySource::SteeringGear, gear_normal * gear.sd_rad_s);
             SteeringGear::with_rate(rate.max(0.1 * gear.rate_rad_s))
         });
-        // A hull at another loading shares the draws of the hull of the trials and has independent draws.
-        let of_trial = StreamKey { seed: u64::from(self.apart && !self.follows), ..key };
+        // A hull converted to another loading shares the sampled errors of the trial hull (stream 2) and adds independent
+        // conversion errors (stream 3).
+        let of_trial = StreamKey { seed: u64::from(self.is_independent && !self.shares_trial_errors), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
             true => hull.sample(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
@@ -193,9 +198,9 @@ impl ShipMixture {
         });
         let hull =
             part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.hull_or_most_probable(values));
-        let approach = random_part(UncertaintySource::InitialState, of_rate * stored.approach_yaw_rate_rad_s);
+        let approach = random_part(UncertaintySource::InitialState, approach_normal * stored.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.stored.beginning_yaw_rate_rad_s);
-        let error = random_part(UncertaintySource::ProcessNoise, of_beginning * of_hull);
+        let error = random_part(UncertaintySource::ProcessNoise, start_normal * of_hull);
         let is_random = has(UncertaintySource::ProcessNoise);
         let moment = if is_random { part.moment(stored) } else { RandomMoment::None };
         SampledShip {
@@ -233,10 +238,11 @@ impl ShipMixture {
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
-    /// Structure of a sample: for any number of samples the shares follow the probabilities (golden ratio). Samples of
-    /// an independent mixture follow √2, which is incommensurable with it.
+    /// Structure of a sample, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities for
+    /// any number of samples. An independent mixture uses √2, which is incommensurable with it.
     pub(crate) fn structure_of_sample(&self, number: u64) -> &StructureSampler {
-        let step = if self.apart && !self.follows { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
+        let step =
+            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }

@@ -17,7 +17,7 @@ pub(crate) type PagePoint = (f64, f64);
 /// Element of plotters at a place of any coordinates.
 pub(crate) type Element<C> = DynElement<'static, Svg, C>;
 
-/// Rectangle on the page.
+/// Rectangle on the page: left, top, width and height, points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rect {
     pub x: f64,

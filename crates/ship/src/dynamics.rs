@@ -16,7 +16,7 @@ pub struct MeasuredChannels {
     pub wind_speed: Option<f64>,
     /// Direction the relative wind comes from, clockwise from the bow, rad.
     pub wind_from: Option<f64>,
-    /// Propeller revolutions, 1/s.
+    /// Propeller rate of revolution n, 1/s; `None` if not measured.
     pub propeller: Option<f64>,
 }
 

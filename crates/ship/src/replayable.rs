@@ -51,7 +51,7 @@ pub trait Replayable<R: Real = f64>: Dynamics<R> {
     fn time_constants(&self) -> TimeConstants;
 }
 
-/// [`Replayable`] ship that can also be replayed in dual numbers, for sensitivities to the initial state.
+/// Ship that can be replayed in real and in dual numbers; these give sensitivities to the initial state.
 pub trait ReplayedShip: Replayable + fmt::Debug {
     /// Ship in dual numbers.
     fn tangent(&self) -> Box<dyn Replayable<Tangent>>;

@@ -10,7 +10,7 @@ use trial::TrialError;
 
 use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
-/// Requirement for a value of a specification.
+/// Requirement on a value in a specification: its sign, its range or its presence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
     /// Finite number.

@@ -64,7 +64,7 @@ impl Term {
 pub struct ModelParameter {
     /// Name and unit.
     pub parameter: &'static Parameter,
-    /// Prior.
+    /// Prior distribution of the parameter, in its own unit.
     pub prior: Prior,
     /// Index of the one record to which it belongs; `None` for all.
     pub only: Option<usize>,

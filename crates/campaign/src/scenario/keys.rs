@@ -23,7 +23,7 @@ pub struct ScenarioKey {
 pub enum KeyDefault {
     /// Not allowed: the key is required in its table.
     Required,
-    /// No value, with the effect stated in the meaning of the key.
+    /// No default value: the description of the key says what its absence does.
     Nothing,
     /// Default, as TOML text.
     Value(String),

@@ -122,8 +122,8 @@ impl OrderedSample {
         Some(low + (place - below as f64) * (high - low))
     }
 
-    /// Quantile with the distribution-free interval of order statistics, in the normal approximation of the binomial
-    /// (Thompson 1936); no interval if the sample is too small for it.
+    /// p-quantile (p from 0 to 1) with its distribution-free 95 % interval (Thompson 1936, normal approximation of the
+    /// binomial); no interval if the sample is too small for it.
     pub fn figure(&self, p: f64) -> Option<Statistic> {
         let value = self.quantile(p)?;
         let n = self.len() as f64;

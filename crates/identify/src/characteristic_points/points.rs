@@ -134,8 +134,8 @@ fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<
     (end > 0 && off < limit).then_some(0..end)
 }
 
-/// Half a period, s: the mean time between alternate departures from the base course that count as a swing. The
-/// duration of the record for fewer than two departures.
+/// Half period of the zig-zag, s: the mean time between departures from the base course after the first; the duration
+/// of the record if there are fewer than three.
 fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
     let departures = points::departures(time, off_course);
     match departures[..] {

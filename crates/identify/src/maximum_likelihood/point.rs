@@ -110,7 +110,7 @@ impl Record {
         2 + self.jumps.len()
     }
 
-    /// Unit step from a row on in headings, zero in yaw rates.
+    /// Regressor of a compass jump: 1 for headings from row `jump` on, 0 before and for yaw rates.
     fn step_at(&self, jump: usize) -> Vec<f64> {
         let heading: Vec<f64> = self.track.observed.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])

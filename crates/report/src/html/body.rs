@@ -36,7 +36,7 @@ struct BodyReader<'a, 'm> {
     out: Vec<Event<'m>>,
     headings: Vec<PageHeading>,
     ids: HashSet<String>,
-    /// Name of the latest heading.
+    /// Text of the latest section heading.
     section: String,
     alignments: Vec<Alignment>,
     /// Number of the next cell, and whether it is in a table head.

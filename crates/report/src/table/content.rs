@@ -12,7 +12,7 @@ use crate::printable::escaped;
 /// missing cells, and cells beyond the last column are not shown.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Table {
-    /// Title or caption.
+    /// Caption of the table; `None` for none.
     pub title: Option<String>,
     /// Label in a document: `\label{tab:…}` in LaTeX.
     #[serde(default, skip_serializing_if = "Option::is_none")]

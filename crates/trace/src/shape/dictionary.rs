@@ -134,7 +134,7 @@ pub enum Shape {
     ResponseTrend,
     /// Unit step at an instant.
     Step(f64),
-    /// δ and r from an instant on: change of K and T.
+    /// Change of K and T at an instant, s from the first row: δ and r from then on.
     ResponseChange(f64),
     /// δ from an instant on: change of K.
     GainChange(f64),

@@ -36,7 +36,7 @@ const MIN_SIDE_SHARE: f64 = 0.25;
 /// Tolerance of the recorded angle at a held order, as a share of the order.
 const FEEDBACK_TOLERANCE: f64 = 0.1;
 
-/// Maximum held angle, deg: rudders stop at 35°, some at 45°.
+/// Largest plausible held rudder angle, deg: most steering gears stop at 35°, some at 45°.
 const MAX_HELD_DEG: f64 = 46.0;
 
 /// Warnings of a rudder that is an order, on a wrong scale, without a sign, or at impossible rates.

@@ -58,7 +58,7 @@ pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
     free("Yrr", "Y_rr"),
 ];
 
-/// Further coefficients of the cubic polynomial.
+/// Third-order hull coefficients N_vvv to Y_vrr, nondimensional, in addition to `COMMON`.
 pub(super) const CUBIC: [PolynomialTerm; 7] = [
     free("Nvvv", "N_vvv"),
     free("Nvvr", "N_vvr"),
