@@ -138,6 +138,11 @@ impl Axis {
         if share > 0.0 { Self { hi, last: last.min(self.last), ..self } } else { self }
     }
 
+    /// Value at which the data end; infinite without free space behind them.
+    pub(crate) fn last(&self) -> f64 {
+        self.last
+    }
+
     /// The axis from `lo` to `hi`, which are in order.
     pub(crate) fn between(self, lo: f64, hi: f64) -> Self {
         Self { lo, hi, ..self }

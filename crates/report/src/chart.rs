@@ -52,6 +52,14 @@ impl Chart {
         Self { data: wide.apply_coord_spec(context.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
+    /// Right end of the data: of the frame, or of the space for numbers in it.
+    pub(crate) fn data_right(&self) -> f64 {
+        Some(self.x.last())
+            .filter(|last| last.is_finite())
+            .and_then(|last| self.across(last))
+            .unwrap_or(self.rect.right())
+    }
+
     /// Frame in units.
     pub(crate) fn bounds(&self) -> Bounds {
         [self.rect.x, self.rect.y, self.rect.right(), self.rect.bottom()].map(units)
@@ -170,7 +178,7 @@ impl Chart {
         };
         self.draw(SvgGroup { is_interval: true, ..self.cut(name) }, [element])?;
         let slack = 0.1;
-        let edges = [self.rect.x, self.rect.right()];
+        let edges = [self.rect.x, self.data_right()];
         let beyond = [(left < edges[0] - slack, edges[0], -1.0), (right > edges[1] + slack, edges[1], 1.0)];
         for (_, edge, direction) in beyond.into_iter().filter(|end| end.0) {
             self.canvas.head((edge, height), (direction, 0.0), 0.6 * theme.small_font, stroke.colour)?;

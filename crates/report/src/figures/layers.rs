@@ -358,10 +358,11 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
     let down = if corner.is_above { -down } else { down };
     for ((x, y), words) in layer.curve.pairs().zip(words) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        // Words that would leave the panel on the left are on the right.
+        // Words that would leave the panel are on the other side.
         let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, HPos::Left) };
         let left = x - right - text.width();
-        let is_right = corner.is_right || left < chart.rect.x;
+        let fits_right = x + right + text.width() < chart.rect.right();
+        let is_right = left < chart.rect.x || corner.is_right && fits_right;
         chart.canvas.text_on_ground((if is_right { x + right } else { left }, y + down), &text)?;
     }
     Ok(())

@@ -8,10 +8,10 @@ use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use super::shared::{BEYOND, Bars, Reference95, zero_stroke};
 use crate::axis::{Axis, Division};
 use crate::backend::Plotted;
-use crate::canvas::{Stroke, TextLine};
+use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::{Bar, Chart};
 use crate::figure::Drawing;
-use crate::fonts::LINE;
+use crate::fonts::{LINE, text_width};
 use crate::key::{KeyEntry, KeySample};
 use crate::lines::wrap;
 use crate::number::significant;
@@ -80,8 +80,8 @@ fn range_stroke(colour: RGBColor, theme: &Theme) -> Stroke {
 /// Maximum number of rows for columns above each other in a narrow figure.
 const FEW: usize = 8;
 
-/// Share of the width of a figure that its panels have, about, and maximum share of an axis that is free for numbers.
-const PANELS: f64 = 0.75;
+/// Margins about a panel in sizes of the font of titles, and maximum share of an axis that is free for numbers.
+const MARGINS: f64 = 2.0;
 const MAX_ROOM: f64 = 0.5;
 
 /// Opacity of the ground of rows.
@@ -105,9 +105,12 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Dr
         true => 2,
         false => data.columns.len().max(1),
     };
+    let widths = data.names.iter().map(|name| text_width(name, theme.tick_font, false));
+    let margin = widths.fold(0.0, f64::max).min(NAMES * theme.width) + MARGINS * theme.label_font;
+    let panel = (theme.width - margin) / across as f64 - MARGINS * theme.label_font;
     let (mut beyond, mut bars) = (false, Bars::default());
     for part in data.columns.chunks(across) {
-        let side = |column| AxisSide::new(axis(column, theme, across), column.x.title.as_str());
+        let side = |column| AxisSide::new(axis(column, theme, panel), column.x.title.as_str());
         let columns = part.iter().map(side).collect();
         let charts = sheet.grid(Grid { columns, rows: vec![row.clone()], ..Grid::default() })?;
         for (chart, column) in charts.iter().zip(part) {
@@ -176,14 +179,14 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
     entries
 }
 
-/// Axis of one of `across` columns side by side.
-fn axis(column: &RowsColumn, theme: &Theme, across: usize) -> Axis {
+/// Axis of a column that is about `panel` points wide.
+fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
     // Numbers are right of all data.
     let widest: f64 = number_widths(column, theme).iter().sum();
-    let room = column.room.max(widest * across as f64 / (PANELS * theme.width)).min(MAX_ROOM);
+    let room = column.room.max(widest / panel).min(MAX_ROOM);
     let kept = if room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
     data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
@@ -227,9 +230,8 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
         }
     }
     let widths = number_widths(column, theme);
-    let (right, bottom) = (chart.rect.right(), chart.rect.bottom());
-    let left = right - widths.iter().sum::<f64>();
-    if !widths.is_empty() {
+    let (left, right, bottom) = (chart.data_right(), chart.rect.right(), chart.rect.bottom());
+    if left < right {
         let corners = [(left, chart.rect.y), (right, chart.rect.y), (right, bottom), (left, bottom)];
         chart.canvas.fill(&corners, PAPER, 1.0)?;
         chart.canvas.line(&[corners[0], corners[3]], Stroke::solid(GRID, theme.thin))?;
@@ -288,11 +290,12 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> Plotted<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
-    let Some((x, height)) = place.filter(|place| !chart.rect.contains(*place)) else {
+    let is_inside = |place: &PagePoint| chart.rect.contains(*place) && place.0 <= chart.data_right() + 0.1;
+    let Some((x, height)) = place.filter(|place| !is_inside(place)) else {
         chart.marker(item.name.as_deref(), value, y, theme.marker, look)?;
         return Ok(false);
     };
-    let (edge, side) = if x > chart.rect.x { (chart.rect.right(), 1.0) } else { (chart.rect.x, -1.0) };
+    let (edge, side) = if x > chart.rect.x { (chart.data_right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
     let tip = edge - side * 0.2 * theme.small_font;
     chart.canvas.head((tip, height), (side, 0.0), size, look.colour)?;

@@ -46,8 +46,8 @@ impl Bars {
     pub(super) fn remark(&self) -> Option<String> {
         let remark = match (self.are_seen, self.are_hidden) {
             (false, false) => return None,
-            (true, false) => "Bars: 95 % intervals.",
-            (true, true) => "Bars: 95 % intervals; hidden where smaller than the mark.",
+            (true, false) => "Error bars: 95 % intervals.",
+            (true, true) => "Error bars: 95 % intervals; hidden where smaller than the mark.",
             (false, true) => "95 % intervals are smaller than the marks.",
         };
         Some(remark.to_owned())

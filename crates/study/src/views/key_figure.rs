@@ -45,7 +45,7 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -
         }
         Plot::ZigZag(_) => return plot,
     };
-    let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound."));
+    let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
     let remarks: Vec<String> = trials.into_iter().chain(over_bound).chain(note.take()).collect();
     *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
     plot
@@ -55,8 +55,10 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -
 /// value at each point.
 fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
     let is_word = |layer: &Layer| matches!(layer.kind, LayerKind::Words(..));
-    if names.len() < 2 {
-        return quiet.into_iter().filter(|layer| !is_word(layer)).map(pale).collect();
+    if names.len() < 2 || quiet.len() < 2 {
+        let pale_layers = quiet.into_iter().filter(|layer| !is_word(layer)).map(pale);
+        let is_named = names.len() < 2;
+        return pale_layers.map(|layer| Layer { name: layer.name.filter(|_| is_named), ..layer }).collect();
     }
     let mut points: Vec<(f64, f64)> = quiet.iter().flat_map(|layer| layer.curve.pairs()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -322,7 +324,7 @@ mod tests {
             _ => panic!(),
         };
         // Highlighted rows are on top.
-        assert_eq!((shown(0), shown(1)), ((false, Some("2.0 %")), (true, None)));
+        assert_eq!((shown(0), shown(1)), ((false, Some("2.0 %")), (true, Some("1.2 %"))));
     }
 
     #[test]
@@ -360,7 +362,7 @@ mod tests {
         assert_eq!(layers[0].name.as_deref(), Some("2 other methods, range"));
         let LayerKind::Band(upper, ..) = &layers[0].kind else { panic!() };
         assert_eq!((&layers[0].curve.y, &upper.y), (&vec![9.0, 27.0], &vec![270.0, 270.0]));
-        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound. Marks."));
+        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound, methods in colour. Marks."));
         assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
 

@@ -4,7 +4,7 @@ use campaign::scenario::Highlight;
 use campaign::statistics::distinct;
 use report::CurveOrigin;
 use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-use report::number::{counted, significant};
+use report::number::{counted, fixed, significant};
 use report::palette::{Look, Marker, QUIET, RECORD, RGBColor, SOLID};
 
 use super::pooled_charts::ALL;
@@ -51,7 +51,9 @@ pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound
             if about.contains(name) {
                 column.reached.extend(density.iter().map(|(value, _)| *value));
             }
-            let [low, median, high] = [quantiles[0], quantiles[2], quantiles[4]].map(|value| significant(value, 2));
+            // Two digits, at most hundredths.
+            let short = |value: f64| if value.abs() < 0.1 { fixed(value, 2) } else { significant(value, 2) };
+            let [low, median, high] = [quantiles[0], quantiles[2], quantiles[4]].map(short);
             item.number = Some(format!("{median}{} ({low} to {high})", unit(&column.x.title)));
         }
     }
@@ -69,7 +71,7 @@ pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound
         data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows, *over_bound));
         if data.names.iter().any(|name| name != ALL && !rows.contains(name)) {
             data.note =
-                Some(data.note.take().map_or_else(String::new, |note| note + " ") + "Pale colours: not in the title.");
+                Some(data.note.take().map_or_else(String::new, |note| note + " ") + "Dark: the rows of the title.");
         }
     }
 }
@@ -96,7 +98,7 @@ fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
     Some(RowItem { place: RowPlace::Below, ..item.softly() })
 }
 
-/// Pales the rows that are not highlighted, and writes the values of all others next to their marks.
+/// Pales the rows that are not highlighted, and writes the values of all highlighted methods.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_bound: bool) {
     let unit = unit(&column.x.title);
     for (row, name) in column.rows.iter_mut().zip(names) {
@@ -105,13 +107,14 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
         let limit = limit.filter(|_| over_bound);
         for item in row {
             let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
-            if is_quiet {
-                // The key shows the looks of the highlighted rows.
-                look.colour = if look.colour == QUIET { QUIET } else { tint(look.colour) };
-                item.name = None;
-            } else if look.colour != QUIET {
+            if *look != OTHER {
                 let number = significant(*value / limit.unwrap_or(1.0), 2);
                 item.number = Some(format!("{number}{}", if limit.is_some() { "×" } else { unit.as_str() }));
+            }
+            if is_quiet {
+                // The key shows the looks of the highlighted rows.
+                look.colour = if *look == OTHER { QUIET } else { tint(look.colour) };
+                item.name = None;
             }
         }
     }

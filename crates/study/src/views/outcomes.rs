@@ -70,7 +70,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
         panels: vec![(None, cells)],
         note: Some(String::from(
             "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
-             no list.",
+             no list. Located: its dependence and its times are found. Disturbed: a random moment. Clean: noise alone.",
         )),
     };
     (!judged.is_empty()).then_some((finding, map))

@@ -151,6 +151,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     };
     Some(NamedRows {
         names: rules.iter().map(|(label, _)| (*label).to_owned()).collect(),
+        of: String::from("list of effects"),
         columns: vec![column],
         note: Some(note),
         ..NamedRows::default()
@@ -177,6 +178,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
         RowsColumn { x: Ruler::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
     };
     NamedRows {
+        of: String::from("named if its probability is"),
         names: variants.iter().map(|variant| (*variant).to_owned()).collect(),
         columns: vec![
             column("trials with a false name [%]", |(_, wrong, _)| *wrong),

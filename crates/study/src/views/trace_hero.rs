@@ -4,8 +4,9 @@
 use campaign::curves::curve;
 use document::names;
 use document::trace::{BeforeAfter, TraceDocument};
-use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Ruler, Stack};
+use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Ruler, Stack};
 use report::number::{counted, significant};
+use report::palette::SOLID;
 use report::{CurveOrigin, PageFigure};
 
 use super::record_figures::heading_and_residual;
@@ -50,6 +51,12 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
     let name = record.trial.title();
     let trial = &record.trial;
     let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
+    for layer in &mut upper {
+        // As in the residuals below.
+        if let LayerKind::Line(pen) = &mut layer.kind {
+            pen.dash = SOLID;
+        }
+    }
     for name in upper.iter_mut().filter_map(|layer| layer.name.as_mut()) {
         let labels = [(CurveOrigin::Before, "first-order response"), (CurveOrigin::After, "with these effects")];
         let label = labels.iter().find(|(origin, _)| origin.label() == name);
@@ -58,7 +65,11 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
         }
     }
     let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
-    let heads = [format!("({}) {name}, {role}", letters[0]), format!("({}) rms {before}° → {after}°", letters[1])];
+    let share = 100.0 * ratio([errors].into_iter());
+    let heads = [
+        format!("({}) {name}, {role}", letters[0]),
+        format!("({}) rms {before}° → {after}°, {share:.0} %", letters[1]),
+    ];
     let heights = [0.21, 0.15];
     let rulers = [Ruler::heading(), Ruler::new("residual [°]", Division::Angle)];
     let rows = [PanelRow::new, PanelRow::zeroed].into_iter().zip(rulers).zip(heights);
@@ -107,7 +118,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let (_, held) = all().filter(|(entry, _)| entry.held_out).nth(number)?;
     let role = match error.validation.len() {
         1 => String::from("held out"),
-        count => format!("held out, nearest to the mean of {count}"),
+        count => format!("held out, ratio nearest to that of all {count}"),
     };
     let mut stacks = vec![
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
