@@ -8,7 +8,7 @@ use campaign::Observer;
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::task::default_folder;
+use campaign::shard::default_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};

@@ -28,11 +28,11 @@ pub fn install() {
 }
 
 /// Sets whether the next interruption is a request to stop; with `false` it ends the program at once.
-pub fn listen(is_request: bool) {
+pub fn set_graceful_stop(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
 /// `true` if Ctrl-C has requested a stop.
-pub fn is_asked() -> bool {
+pub fn is_stop_requested() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

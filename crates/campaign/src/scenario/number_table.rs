@@ -65,7 +65,7 @@ pub fn refuse_incomplete(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], ta
 }
 
 /// Adds the defaults of missing keys.
-pub fn complete(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
+pub fn fill_defaults(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
     for (number, default) in keys.iter().filter_map(|number| Some((number, number.default?))) {
         numbers.entry(number.key.to_owned()).or_insert(default);
     }

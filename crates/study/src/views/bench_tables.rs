@@ -198,7 +198,7 @@ pub fn overall(results: &BenchDocument) -> Table {
 }
 
 /// Sets of a benchmark and the numbers of their records.
-pub fn present(results: &BenchDocument) -> Table {
+pub fn record_sets(results: &BenchDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts(["record", "manoeuvre", "SHA-256"]));
     for set in &results.sets {
