@@ -36,7 +36,7 @@ impl Block {
     }
 
     /// Index among all blocks of a scenario, the inverse of [`Block::at`].
-    pub fn place(self, scenario: &Scenario) -> u64 {
+    pub fn index(self, scenario: &Scenario) -> u64 {
         self.cell as u64 * Self::count_in_cell(scenario.replicates) + self.number
     }
 

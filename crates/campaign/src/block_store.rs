@@ -128,7 +128,7 @@ impl<'a> BlockStore<'a> {
     pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
         let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
         let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
-        Ok(Timings::of_text(&text, self.design).unwrap_or_default())
+        Ok(Timings::from_csv(&text, self.design).unwrap_or_default())
     }
 
     /// Blocks of the design in order, each with its number of trials.

@@ -122,7 +122,7 @@ fn run(
         return Err(no_records(scenario));
     }
     let stored =
-        store.stored_trials(|block| part.contains(&block.place(scenario)), "its trials are run again", observer)?;
+        store.stored_trials(|block| part.contains(&block.index(scenario)), "its trials are run again", observer)?;
     let before: u64 = stored.values().sum();
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);

@@ -149,7 +149,7 @@ pub fn read(
 
 /// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_trials_of_cell(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
         let prefix = method.map_or_else(String::new, |method| format!("{method}: "));

@@ -50,7 +50,7 @@ pub fn max_trials(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let trials = |place| {
             let block = Block::from_index(place, scenario);
-            block.range(scenario.trials_of(block.cell)).count() as u64
+            block.range(scenario.max_trials_of_cell(block.cell)).count() as u64
         };
         return blocks.clone().map(trials).sum();
     }
@@ -113,7 +113,7 @@ impl<'a> TrialPlan<'a> {
             if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
                 continue;
             }
-            let all = block.range(self.scenario.trials_of(block.cell));
+            let all = block.range(self.scenario.max_trials_of_cell(block.cell));
             if all.is_empty() {
                 continue;
             }

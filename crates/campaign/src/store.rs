@@ -64,7 +64,7 @@ impl StoredStudy {
         let (bytes, refuse) = text(SHOWCASES)?;
         let showcases = serde_json::from_slice(&bytes).map_err(|problem| refuse(problem.to_string()))?;
         let (bytes, refuse) = text(TIMINGS)?;
-        let timings = Timings::of_text(&bytes, &design).map_err(refuse)?;
+        let timings = Timings::from_csv(&bytes, &design).map_err(refuse)?;
         let design = Design { prose: manifest.prose(), ..design };
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
     }
@@ -164,7 +164,7 @@ pub(crate) fn finish(
     // Written last, since it makes the folder a finished study.
     manifest.write(folder)?;
     // Timings as written, rounded to the nanosecond.
-    let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
+    let timings = Timings::from_csv(&times, &design).map_err(Failure::work)?;
     let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })
 }

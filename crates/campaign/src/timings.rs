@@ -96,7 +96,7 @@ impl Timings {
     }
 
     /// Durations from the text of `timings.csv`; methods outside the design are omitted. Fails for an invalid text.
-    pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
+    pub fn from_csv(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
         Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
     }

@@ -35,7 +35,7 @@ pub fn predict(
         let mut warnings = Warnings::default();
         let read = |(name, text): &(String, Option<String>)| match text {
             Some(text) => StoredModel::from_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
-            None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
+            None => StoredModel::from_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
         warnings.extend(reading.iter().cloned());

@@ -132,7 +132,7 @@ impl Canvas {
 
     /// Outline of a rectangle.
     pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> PlotResult {
-        let corners = [at((rect.x, rect.y)), at((rect.right(), rect.bottom()))];
+        let corners = [page_units((rect.x, rect.y)), page_units((rect.right(), rect.bottom()))];
         self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
         self.area.draw(&Rectangle::new(corners, stroke.style()))?;
         self.svg.end();
@@ -166,13 +166,13 @@ impl Canvas {
 }
 
 /// Point of the page converted to the units of the SVG backend.
-pub(crate) fn at((x, y): PagePoint) -> (i32, i32) {
+pub(crate) fn page_units((x, y): PagePoint) -> (i32, i32) {
     (units(x), units(y))
 }
 
 fn placed(points: &[PagePoint]) -> Option<Vec<(i32, i32)>> {
     let is_finite = points.iter().all(|(x, y)| x.is_finite() && y.is_finite());
-    is_finite.then(|| points.iter().copied().map(at).collect())
+    is_finite.then(|| points.iter().copied().map(page_units).collect())
 }
 
 #[rustfmt::skip]
@@ -187,7 +187,7 @@ const HULL: [(f64, f64); 7] =
 
 /// Polygon about a place, its corners in points from that place.
 fn polygon<C: Clone + 'static>(at: &C, corners: impl Iterator<Item = PagePoint>, colour: RGBColor) -> Element<C> {
-    let corners: Vec<(i32, i32)> = corners.map(self::at).collect();
+    let corners: Vec<(i32, i32)> = corners.map(self::page_units).collect();
     (EmptyElement::at(at.clone()) + Polygon::new(corners, colour.filled())).into_dyn()
 }
 
@@ -202,7 +202,7 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
         _ => polygon(&at, corners.iter().map(|(x, y)| (scale * radius * x, scale * radius * y)), colour),
     };
     let stroke = |[from, to]: [(f64, f64); 2]| {
-        let ends = [from, to].map(|(x, y)| self::at((radius * x, radius * y)));
+        let ends = [from, to].map(|(x, y)| self::page_units((radius * x, radius * y)));
         let style = Stroke::solid(look.colour, 0.55 * radius).style();
         (EmptyElement::at(at.clone()) + PathElement::new(ends.to_vec(), style)).into_dyn()
     };

@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 
 use crate::backend::PlotResult;
-use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, at, marker, ship_outline};
+use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::fonts::{LINE_SPACING, text_width};
 use crate::lines::wrap;
 use crate::palette::{CurveOrigin, Dash, INK, Look};
@@ -80,10 +80,10 @@ impl LegendEntry {
             LegendSymbol::Nothing | LegendSymbol::Line(_) => {}
             LegendSymbol::Dots(colour) => {
                 let dot = Look { colour, ..CurveOrigin::Record.look() };
-                canvas.elements(marker(at(centre), 1.2 * theme.dot, &dot))?;
+                canvas.elements(marker(page_units(centre), 1.2 * theme.dot, &dot))?;
             }
             LegendSymbol::Marker(look) | LegendSymbol::LineAndMarker(_, look) => {
-                canvas.elements(marker(at(centre), theme.marker, &look))?;
+                canvas.elements(marker(page_units(centre), theme.marker, &look))?;
             }
             LegendSymbol::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
             LegendSymbol::Outline(dash) => {
@@ -91,7 +91,7 @@ impl LegendEntry {
                 canvas.outline(cell, outline_stroke(dash, theme))?;
             }
             LegendSymbol::Hull(colour) => {
-                canvas.elements(ship_outline(at(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
+                canvas.elements(ship_outline(page_units(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
             }
         }
         let lines = self.lines(room, theme);

@@ -11,7 +11,7 @@ static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Ends the program during work that cannot be stopped, with the message of a failure.
-pub fn give_up(failure: &Failure) -> ! {
+pub fn exit_with_failure(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::fail(failure)))
 }
 

@@ -53,6 +53,6 @@ impl Observer for Terminal {
     }
 
     fn on_unstoppable_trial(&self, failure: &Failure) {
-        interrupt::give_up(failure)
+        interrupt::exit_with_failure(failure)
     }
 }

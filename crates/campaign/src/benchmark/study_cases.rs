@@ -107,7 +107,7 @@ impl CellTasks {
                 None => scenario.name.clone(),
             },
             records,
-            fitted: cell.records(),
+            fitted: cell.record_count(),
             is_simulated: cell.record_set().is_none(),
             has_indices: cell.record_set().is_none() && !cell.is_nearest(),
             missing: is_to_be_named.then(|| missing.into_iter().next()),
@@ -197,7 +197,7 @@ fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
 fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
-        let trials = scenario.trials_of(place);
+        let trials = scenario.max_trials_of_cell(place);
         let records = cell.records.into_iter().map(|steered| steered.record);
         match sets.iter_mut().find(|set| set.name == cell.set) {
             Some(set) => {

@@ -162,7 +162,7 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
     if sha256_of(&columns) != values_sha256 {
         return Err("the SHA-256 of its values differs from its label".to_owned().into());
     }
-    Ok(layout.put(columns, rows)?)
+    Ok(layout.rows_from(columns, rows)?)
 }
 
 /// Verified label of a file.

@@ -141,7 +141,7 @@ impl RowLayout {
     }
 
     /// Rows from all columns, each of `length` values. Fails for a value that the design does not allow, and names it.
-    pub(super) fn put(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
+    pub(super) fn rows_from(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
         let mut rows = vec![StudyRow::default(); length];
         let mut drawn = vec![vec![None; self.draws.len()]; length];
         for ((_, source), values) in self.columns().zip(columns) {

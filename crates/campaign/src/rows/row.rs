@@ -52,7 +52,7 @@ impl NamedEffect {
     }
 
     /// `true` if an effect is this one or one of its aliases.
-    pub fn holds(&self, id: &str) -> bool {
+    pub fn includes(&self, id: &str) -> bool {
         *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)
     }
 }

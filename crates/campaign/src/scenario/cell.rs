@@ -94,7 +94,7 @@ impl DesignCell {
     }
 
     /// Number of simulated records per trial.
-    pub fn records(&self) -> usize {
+    pub fn record_count(&self) -> usize {
         self.specification().map_or(0, |spec| 1 + spec.also.len())
     }
 

@@ -216,13 +216,13 @@ impl Scenario {
     }
 
     /// Maximum number of trials of a cell; for measured records the number of splits.
-    pub fn trials_of(&self, cell: usize) -> u64 {
+    pub fn max_trials_of_cell(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
     /// Maximum number of trials of all cells.
     pub fn max_trials(&self) -> u64 {
-        (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
+        (0..self.cells.len()).map(|cell| self.max_trials_of_cell(cell)).sum()
     }
 
     /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.

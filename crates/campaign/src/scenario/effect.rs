@@ -74,7 +74,7 @@ fn asked<'a>(
     entry: &'a NamedNumbers,
     place: &KeyPath,
 ) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
-    let (id, key, numbers) = number_table::only(entry, place, &IDS)?;
+    let (id, key, numbers) = number_table::single_entry(entry, place, &IDS)?;
     let forms = forms_of(id);
     if forms.is_empty() {
         return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &IDS)));

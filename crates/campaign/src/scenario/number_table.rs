@@ -37,7 +37,7 @@ impl NumberKey {
 }
 
 /// Single name of a table, its key and its numbers. Fails for none or several; the message lists the `choices`.
-pub fn only<'a>(
+pub fn single_entry<'a>(
     named: &'a NamedNumbers,
     place: &KeyPath,
     choices: &[&str],

@@ -74,7 +74,7 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
 /// Fails with the invalid name or number.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
     let ids: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, USER_HULL]).collect();
-    let (id, key, numbers) = number_table::only(named, &KeyPath::dotted("ship"), &ids)?;
+    let (id, key, numbers) = number_table::single_entry(named, &KeyPath::dotted("ship"), &ids)?;
     let keys = numbers_of(id);
     if !keys.is_empty() {
         refuse_unknown(numbers, keys, &key)?;

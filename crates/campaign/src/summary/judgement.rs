@@ -80,7 +80,7 @@ impl Judgement {
     /// Judgement if listed effects are correct.
     fn from_names(answer: &TraceRow, right: &[String]) -> Self {
         let is_right = |id: &str| right.iter().any(|effect| effect == id);
-        let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.holds(id));
+        let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.includes(id));
         let TraceRow { named, located, .. } = answer;
         let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
         match named.is_empty() {

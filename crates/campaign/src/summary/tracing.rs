@@ -169,13 +169,13 @@ impl TraceTally {
             _ => missing,
         };
         let (right, wrong): (Vec<_>, Vec<_>) =
-            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.holds(id)));
+            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.includes(id)));
         let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
         let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
         aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
         let complete = match physics {
             Some(MissingPhysics::Listed { .. }) => !right.is_empty(),
-            _ => missing.iter().all(|id| right.iter().any(|effect| effect.holds(id))),
+            _ => missing.iter().all(|id| right.iter().any(|effect| effect.includes(id))),
         };
         let is_weather = |effect: &&NamedEffect| {
             let ids = std::iter::once(&effect.id).chain(&effect.aliases);

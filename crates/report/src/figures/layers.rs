@@ -6,11 +6,11 @@ use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
-use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, record, spread_overlapping, zero_stroke};
+use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, draw_record, spread_overlapping, zero_stroke};
 use super::side_labels;
 use crate::axis::{Axis, Division};
 use crate::backend::{PlotResult, SvgGroup, UNITS, units};
-use crate::canvas::{PagePoint, Stroke, TextLine, at, marker, ship_outline};
+use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
 use crate::drawing::Drawing;
@@ -335,7 +335,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
     match &layer.kind {
         LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
         LayerKind::Band(other, colour, opacity) => chart.band(name, [&layer.curve, other], colour.mix(*opacity))?,
-        LayerKind::Record => record(chart, theme, name, &layer.curve)?,
+        LayerKind::Record => draw_record(chart, theme, name, &layer.curve)?,
         LayerKind::Dots(colour) => {
             chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(1.0))?;
             return edges(chart, &layer.curve, 1.2 * theme.marker, *colour);
@@ -345,7 +345,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
         LayerKind::Ships(colour, headings) => {
             for ((x, y), heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
                 let (sine, cosine) = heading.to_radians().sin_cos();
-                let ship = |place| ship_outline(at(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
+                let ship = |place| ship_outline(page_units(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.elements(ship))?;
             }
         }
@@ -422,7 +422,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     let size = theme.marker * if joined.is_some() { 0.9 } else { 1.0 };
     chart.canvas.svg.begin(SvgGroup::named(name));
     for place in places.iter().filter(|place| is_inside(place)).flatten() {
-        chart.canvas.elements(marker(at(*place), size, look))?;
+        chart.canvas.elements(marker(page_units(*place), size, look))?;
     }
     chart.canvas.svg.end();
     for (x, y) in places.iter().filter(|place| !is_inside(place)).flatten() {

@@ -61,7 +61,7 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 }
 
 /// Draws a recorded heading: dots, or a wide line under the fits if there are too many points for dots.
-pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> PlotResult {
+pub(super) fn draw_record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> PlotResult {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
         None => {

@@ -46,7 +46,7 @@ struct BodyReader<'a, 'm> {
 }
 
 /// Body of a page.
-pub(super) fn of(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Body {
+pub(super) fn from_markdown(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
     let mut reader = BodyReader {

@@ -36,7 +36,7 @@ struct Page<'a> {
 ///
 /// Fails with [`ReportError::Page`] if the page cannot be filled in.
 pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Result<String, ReportError> {
-    let body = body::of(markdown, folded, images);
+    let body = body::from_markdown(markdown, folded, images);
     let contents: Vec<PageHeading> =
         body.headings.iter().filter(|heading| matches!(heading.level, 2 | 3)).cloned().collect();
     let title = body.headings.first().map_or("Report", |first| &first.text);

@@ -182,7 +182,7 @@ pub fn skipped(record: &Skipped) -> String {
 fn write_files(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
     let text = results.json().on("describe", &folder.path().join(BENCH))?;
     folder.write_synced(BENCH, &text)?;
-    folder.write(ROWS, bench_tables::rows(results).to_csv())?;
+    folder.write(ROWS, bench_tables::answer_rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     let pages = folder.subfolder(METHODS)?;
     pages.remove_all(|name| name.ends_with(".md"))?;

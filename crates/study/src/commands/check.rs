@@ -42,7 +42,7 @@ pub fn run(request: &CheckRequest, common: &CommonOptions) -> Result<(), Failure
         }
     }
     if common.format == Format::Json {
-        documents::say(&CheckAnswer { scenarios: right, wrong: wrong.len() })?;
+        documents::print_document(&CheckAnswer { scenarios: right, wrong: wrong.len() })?;
     }
     let mut wrong = wrong.into_iter();
     let Some(first) = wrong.next() else { return Ok(()) };

@@ -46,7 +46,7 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<
 pub fn run(request: &FindRequest, common: &CommonOptions) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     if common.format == Format::Json {
-        documents::say(&find_answer(request, &mut warnings)?)?;
+        documents::print_document(&find_answer(request, &mut warnings)?)?;
         screen::warn_of(common, &warnings.ranked());
         return Ok(());
     }

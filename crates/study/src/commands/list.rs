@@ -52,7 +52,7 @@ pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure>
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
-        return documents::say(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
+        return documents::print_document(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
     }
     // Head of a list in Markdown, which is a page of the documentation.
     let head = match what {

@@ -31,7 +31,7 @@ use crate::{documents, screen};
 /// Fails as [`screen::say`] does.
 fn reply(common: &CommonOptions, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {
     match common.format {
-        Format::Json => documents::say(answer),
+        Format::Json => documents::print_document(answer),
         _ if common.quiet => Ok(()),
         _ => screen::print_lines(line),
     }

@@ -38,7 +38,7 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
     let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let mut warnings = Warnings::default();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
-        paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
+        paths.iter().map(|path| StoredModel::from_file(path, request, &mut warnings)).collect()
     };
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
     let current = request.current_from.as_ref();
@@ -54,7 +54,7 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
     let folder = ResultFolder::make(&place)?;
     let text = documents::write_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
     if request.draws_file {
-        draws::keep(&folder, &predicted)?;
+        draws::write_ships(&folder, &predicted)?;
     }
     publish(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }

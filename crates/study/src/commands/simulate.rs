@@ -29,7 +29,7 @@ pub fn run(request: &SimulateRequest, common: &CommonOptions) -> Result<(), Fail
         return Err(Failure::input("no output is given; add --out FILE.csv or --out DIR"));
     };
     let tasks = tasks(&scenario, request)?;
-    let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
+    let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].record_count() as u64).sum();
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let (folder, names) = match (is_file, count) {
         (true, 1) => {
@@ -64,7 +64,7 @@ fn list(scenario: &Scenario, tasks: &[TrialId], names: &[String], folder: &Resul
     for (task, name) in tasks.iter().zip(names) {
         let file = |number: usize| format!("{}.csv", part_name(name, number));
         let cell = &scenario.cells[task.cell];
-        let also: Vec<String> = (1..cell.records()).map(file).collect();
+        let also: Vec<String> = (1..cell.record_count()).map(file).collect();
         let (number, replicate) = (task.cell.to_string(), task.replicate.to_string());
         table.push([file(0), number, cell.title(), replicate, also.join(" ")]);
     }

@@ -31,7 +31,7 @@ impl CsvColumns {
     }
 
     /// Columns of a table by name; an empty cell is NaN. `None` if a cell is not a number or a row is short.
-    pub fn read(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
+    pub fn from_csv(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next()?.split(',').collect();
         let mut columns = vec![Vec::new(); names.len()];
@@ -57,10 +57,10 @@ mod tests {
         columns.push("heading_deg", vec![f64::NAN, -1.0 / 3.0]);
         let text = columns.to_csv();
         assert_eq!(text, "t_s,heading_deg\n0,\n0.30000000000000004,-0.3333333\n");
-        let read = CsvColumns::read(&text).expect("it was written so");
+        let read = CsvColumns::from_csv(&text).expect("it was written so");
         assert_eq!(read["t_s"], [0.0, 0.1 + 0.2]);
         assert!(read["heading_deg"][0].is_nan() && read["heading_deg"][1] == -0.333_333_3);
-        assert_eq!(CsvColumns::read("a,b\n1\n"), None);
-        assert_eq!(CsvColumns::read("a,b\n1,x\n"), None);
+        assert_eq!(CsvColumns::from_csv("a,b\n1\n"), None);
+        assert_eq!(CsvColumns::from_csv("a,b\n1,x\n"), None);
     }
 }

@@ -117,7 +117,7 @@ pub fn innovations(series: &Innovations) -> String {
 
 /// Record read from a table; `None` if the table does not have the form of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
-    let columns = CsvColumns::read(text)?;
+    let columns = CsvColumns::from_csv(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
     let time = columns.get("t_s")?.clone();
     let channels = [
@@ -167,7 +167,7 @@ impl TraceCurves {
         document: &TraceDocument,
         table: impl Fn(&str) -> Result<(String, String), Failure>,
     ) -> Result<Self, Failure> {
-        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CsvColumns::read));
+        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CsvColumns::from_csv));
         let records = document.records.iter().map(|entry| {
             let (text, place) = table(&entry.curves)?;
             let record = read(&text, &place, |text| record(entry, text))?;

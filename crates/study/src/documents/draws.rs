@@ -102,7 +102,7 @@ pub fn write_estimates<'a>(
 }
 
 /// Writes the sampled ships of a prediction. Fails if the file cannot be written.
-pub fn keep(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
+pub fn write_ships(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
     keep_columns(folder, columns(predicted))
 }
 

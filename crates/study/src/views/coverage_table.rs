@@ -16,7 +16,7 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width"]));
     for line in lines {
         let mut cells = row_labels(design, line.cell, line.method);
-        let (name, unit) = names::figure(&line.name);
+        let (name, unit) = names::figure_of_merit(&line.name);
         cells.extend([name, unit.to_owned(), line.trials.to_string()]);
         cells.extend(percent(line.coverage()));
         cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
@@ -40,7 +40,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let ends = [sorted[0], sorted[sorted.len() - 1]];
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
-        cells.extend(ends.map(|line| names::figure(&line.name).0));
+        cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));
         table.push(cells);
     }
     table

@@ -265,7 +265,8 @@ fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
     let Some(scales) = &document.scales else { return parts };
     let speaker = PREFERRED_METHODS.iter().find_map(|id| scales.comparisons.iter().find(|model| model.model == *id));
     if let Some(model) = speaker.or(scales.comparisons.first()) {
-        let sentence = format!("each scale fitted alone ({}): {}", model.model, scale_tables::sentence(model));
+        let sentence =
+            format!("each scale fitted alone ({}): {}", model.model, scale_tables::scaling_terms_sentence(model));
         parts.push((sentence, Some(scale_tables::table(scales, model))));
         let sentence = "K and T of a first-order response also differ between manoeuvres where it lacks an effect; \
             `study trace` separates the \

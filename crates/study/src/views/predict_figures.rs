@@ -114,7 +114,7 @@ const MAX_NAMED_FIGURES: usize = 2;
 fn first_figures(prediction: &Prediction) -> String {
     let figure_words = |(name, figure): (&String, &Predicted)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
-        let (quantity, unit) = names::figure(name);
+        let (quantity, unit) = names::figure_of_merit(name);
         format!("{quantity} {}{unit} [{low}, {high}]", significant(figure.interval.median, 3))
     };
     let shown: Vec<String> = prediction.figures.iter().take(MAX_NAMED_FIGURES).map(figure_words).collect();
@@ -255,7 +255,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
             // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
-            rows.push((format!("{} {}", names::record(&replayed.name), names::figure(name).0), items));
+            rows.push((format!("{} {}", names::record(&replayed.name), names::figure_of_merit(name).0), items));
         }
     }
     rows

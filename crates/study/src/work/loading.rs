@@ -43,7 +43,7 @@ impl DescribedLoading {
     /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
     /// Fails as a sidecar does, or if the file has no draught.
-    pub fn of_file(path: &Path) -> Result<Self, Failure> {
+    pub fn from_file(path: &Path) -> Result<Self, Failure> {
         let given = Sidecar::load(path).map_err(Failure::input)?.conditions.hull;
         let loading = Self { file: file::display_path(path).display().to_string(), given };
         match given.draught {

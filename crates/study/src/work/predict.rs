@@ -64,7 +64,7 @@ impl StoredModel {
     /// Identified ship in a file, by the method and weather of the request.
     ///
     /// Fails if it cannot be read, or as [`of_document`](Self::of_document) does.
-    pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
+    pub fn from_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
         Self::from_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
@@ -305,7 +305,7 @@ fn at_loading(
     ballast: &[StoredModel],
     warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
-    let loading = DescribedLoading::of_file(path)?;
+    let loading = DescribedLoading::from_file(path)?;
     let mut draughts = Vec::new();
     let mut taken = |file: &str, ship_at_trials: &IdentifiedShip| {
         let (ship, draught) = loading.convert_ship(file, ship_at_trials, warnings)?;

@@ -193,7 +193,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
 
 /// Sentence on the most informative next trial.
 fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
-    let prospects = analysis.prospects(&planned::trials(analysis, trials));
+    let prospects = analysis.prospects(&planned::planned_trials(analysis, trials));
     let Some(best) = prospects.first() else {
         return String::from("The fitted model cannot be steered through any standard manoeuvre.");
     };
