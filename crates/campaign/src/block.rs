@@ -35,7 +35,7 @@ impl Block {
         Self { cell: (place / of_cell) as usize, number: place % of_cell }
     }
 
-    /// Index among all blocks of a scenario, the inverse of [`Block::at`].
+    /// Index among all blocks of a scenario, the inverse of [`Block::from_index`].
     pub fn index(self, scenario: &Scenario) -> u64 {
         self.cell as u64 * Self::count_in_cell(scenario.replicates) + self.number
     }

@@ -62,7 +62,7 @@ impl ResultFolder {
         }
     }
 
-    /// Temporary file, renamed to the given name on [`TemporaryFile::put`].
+    /// Temporary file, renamed to the given name on [`TemporaryFile::persist`].
     pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
         let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;

@@ -70,7 +70,7 @@ impl Chart {
     }
 
     /// Page point of a data point, also outside the frame; `None` if it is not on the scales.
-    pub(crate) fn place(&self, x: f64, y: f64) -> Option<PagePoint> {
+    pub(crate) fn page_point(&self, x: f64, y: f64) -> Option<PagePoint> {
         self.reach(x, y).filter(|_| self.has_place(&(x, y)))
     }
 
@@ -82,7 +82,7 @@ impl Chart {
 
     /// Place of a pair of values inside the frame.
     pub(crate) fn inside(&self, x: f64, y: f64) -> Option<PagePoint> {
-        self.place(x, y).filter(|place| self.rect.contains(*place))
+        self.page_point(x, y).filter(|place| self.rect.contains(*place))
     }
 
     /// Draws elements at values, all in one group.

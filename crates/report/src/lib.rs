@@ -17,7 +17,7 @@
 //! | text from outside, escaped for a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
-//! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, AxisSpec};
+//! use kempf_report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Plot};
 //! use kempf_report::{PlotCurve, Theme};
 //!
 //! let heading = PlotCurve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);

@@ -74,7 +74,7 @@ pub struct CommandOutput<'a> {
 /// Prints a result and its warnings, unless the output is silent. In formats for programs, standard output has only the
 /// table or the document, and notes go to standard error.
 ///
-/// Fails as [`say`] does.
+/// Fails as [`print_lines`] does.
 pub fn print_output(common: &CommonOptions, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
     let CommandOutput { frame: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
@@ -106,7 +106,7 @@ pub fn warn_of(common: &CommonOptions, warnings: &[impl Display]) {
 
 /// Writes a document to standard output unchanged: JSON itself escapes control characters.
 ///
-/// Fails as [`say`] does.
+/// Fails as [`print_lines`] does.
 pub fn print_unescaped(document: &str) -> Result<(), Failure> {
     put(document.trim_end())
 }

@@ -76,7 +76,7 @@ impl Scenario {
     /// Reads and resolves a scenario file, or the scenario of a manifest with the seed of its run.
     ///
     /// Fails with a message that names file, line and key, the value found and what was expected. The name of the study
-    /// must be a valid file name ([`name::file`]).
+    /// must be a valid file name ([`name::check_file_name`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {

@@ -343,7 +343,7 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
     Ok(splits)
 }
 
-/// Files that match a pattern, sorted: next to the scenario, otherwise in the folder of [`DATA`].
+/// Files that match a pattern, sorted: next to the scenario, otherwise in the folder of [`DATA_FOLDER_VARIABLE`].
 fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
     let data = std::env::var_os(DATA_FOLDER_VARIABLE).map(PathBuf::from);
     let below = |folder: &Path| -> Vec<PathBuf> {

@@ -261,7 +261,7 @@ impl PlacedCell<'_> {
     /// Writes the numbers of the cell, and its outline over the thin lines of its neighbours.
     fn label(&self, chart: &Chart) -> PlotResult {
         let (theme, is_shares) = (self.theme, self.shading.is_shares);
-        let corner = |side: f64| chart.place(self.x + side, self.y + side);
+        let corner = |side: f64| chart.page_point(self.x + side, self.y + side);
         let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };
         if let Some(outline) = self.cell.outline {
             let stroke = outline_stroke(if outline == Outline::Alias { DOTTED } else { SOLID }, theme);

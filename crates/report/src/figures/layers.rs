@@ -374,7 +374,7 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
 fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotResult<usize> {
     let rect = chart.rect;
     let mut count = 0;
-    for (x, y) in curve.finite().filter_map(|(x, y)| chart.place(x, y)) {
+    for (x, y) in curve.finite().filter_map(|(x, y)| chart.page_point(x, y)) {
         let edge = y.clamp(rect.y, rect.bottom());
         if edge != y {
             let x = x.clamp(rect.x, rect.right());

@@ -71,7 +71,7 @@ pub(super) fn draw_record(chart: &Chart, theme: &Theme, name: Option<&str>, head
     }
 }
 
-/// Sample of [`record`] in a legend.
+/// Symbol of [`draw_record`] in a legend.
 pub(super) fn record_symbol(theme: &Theme, heading: &PlotCurve) -> LegendSymbol {
     dense(heading, theme).map_or(LegendSymbol::Dots(RECORD), LegendSymbol::Line)
 }

@@ -140,7 +140,7 @@ fn are_known<'a>(
 
 /// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
 ///
-/// Fails as [`measure`] does, or if the results cannot be written.
+/// Fails as [`run_benchmark`] does, or if the results cannot be written.
 pub fn run(request: &BenchRequest, common: &CommonOptions) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| PathBuf::from("results/bench"));

@@ -28,7 +28,7 @@ use crate::{documents, screen};
 /// Prints a reply as a line of text, or as a JSON document with `--format json`; prints nothing if the output is
 /// silent.
 ///
-/// Fails as [`screen::say`] does.
+/// Fails as [`screen::print_lines`] does.
 fn reply(common: &CommonOptions, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {
     match common.format {
         Format::Json => documents::print_document(answer),

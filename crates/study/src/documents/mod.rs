@@ -178,7 +178,7 @@ pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
 
 /// Writes a document to standard output.
 ///
-/// Fails as [`answer_text`] and [`screen::say`] do.
+/// Fails as [`answer_text`] and [`screen::print_lines`] do.
 pub fn print_document(body: &impl CommandAnswer) -> Result<(), Failure> {
     screen::print_unescaped(&answer_text(body)?)
 }

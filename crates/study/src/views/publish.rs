@@ -29,7 +29,7 @@ pub fn publish(
     common: &CommonOptions,
 ) -> Result<(), Failure> {
     let design = &stored.design;
-    let summary = put(stored, folder, theme, figures)?;
+    let summary = write_files(stored, folder, theme, figures)?;
     match common.format {
         _ if common.is_silent() => Ok(()),
         Format::Text => {
@@ -71,7 +71,7 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
 }
 
 /// Writes the tables, the figures, `report.md` and `report.html` to a folder; returns the data of the page.
-pub fn put(
+pub fn write_files(
     stored: &StoredStudy,
     folder: &ResultFolder,
     theme: &Theme,
@@ -79,7 +79,7 @@ pub fn put(
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
     if design.is_measured() {
-        return record_study::put(stored, folder, theme, figures);
+        return record_study::write_files(stored, folder, theme, figures);
     }
     let mut tally = Tally::new(design);
     stored.for_each_row(|row| {

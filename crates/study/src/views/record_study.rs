@@ -252,7 +252,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
 /// Writes the tables, the figure and the page to a folder; returns the data of the page.
 ///
 /// Fails if rows are missing, or if a file cannot be written.
-pub fn put(
+pub fn write_files(
     stored: &StoredStudy,
     folder: &ResultFolder,
     theme: &Theme,

@@ -59,7 +59,7 @@ pub fn check_folders(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
 
 /// Writes the page over studies into a folder; returns its path.
 ///
-/// Fails if [`is_possible`] does, if a figure named by a scenario is missing, or if the page cannot be written.
+/// Fails if [`check_folders`] does, if a figure named by a scenario is missing, or if the page cannot be written.
 pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Failure> {
     check_folders(studies, target.path())?;
     let place = target.path().canonicalize().on("find", target.path())?;

@@ -29,7 +29,7 @@ pub struct EarlierModel {
 }
 
 impl EarlierModel {
-    /// Models of some files. Fails if a file cannot be read, or as [`of_document`](Self::of_document) does.
+    /// Models of some files. Fails if a file cannot be read, or as [`from_document`](Self::from_document) does.
     pub fn from_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
             let shown = file::display_path(path).display().to_string();

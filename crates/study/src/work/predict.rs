@@ -63,7 +63,7 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 impl StoredModel {
     /// Identified ship in a file, by the method and weather of the request.
     ///
-    /// Fails if it cannot be read, or as [`of_document`](Self::of_document) does.
+    /// Fails if it cannot be read, or as [`from_document`](Self::from_document) does.
     pub fn from_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
         Self::from_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
