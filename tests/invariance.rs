@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use campaign::rows::{BlockLabel, RowLayout, StudyRow, encode};
 use campaign::scenario::Scenario;
-use campaign::task::Task;
+use campaign::shard::TrialId;
 use campaign::{collect, engine};
 use identify::registry;
 use kempf_tests::records::{Case, zig_zag};
@@ -179,7 +179,7 @@ fn a_longer_study_begins_with_the_shorter_one() {
 fn any_trial_can_be_made_alone_and_in_any_order() {
     let scenario = scenario(4);
     let heading = |cell: usize, replicate: u64| -> Vec<u64> {
-        let simulated = engine::simulate(&scenario, Task { cell, replicate }).expect("a noisy zig-zag");
+        let simulated = engine::simulate(&scenario, TrialId { cell, replicate }).expect("a noisy zig-zag");
         simulated[0].trial.heading().iter().map(|psi| psi.to_bits()).collect()
     };
     let places: Vec<(usize, u64)> = (0..2).flat_map(|cell| (0..4).map(move |replicate| (cell, replicate))).collect();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use campaign::engine;
 use campaign::scenario::{DesignCell, Scenario};
-use campaign::task::Task;
+use campaign::shard::TrialId;
 use ship::angle::{from_deg, to_deg};
 use simulate::Truth;
 
@@ -103,7 +103,7 @@ fn every_ship_turns_as_its_equation_says() {
     let names: Vec<&str> = formulas.clone().map(|(_, cell)| cell.labels[0].as_str()).collect();
     assert_eq!(names, SHIPS.map(|(name, _)| name), "every formula has its equation");
     for ((cell, _), (name, moment)) in formulas.zip(SHIPS) {
-        for run in engine::simulate(&scenario, Task { cell, replicate: 0 }).expect("records") {
+        for run in engine::simulate(&scenario, TrialId { cell, replicate: 0 }).expect("records") {
             let error = largest_error_deg(&run.truth, moment);
             assert!(error < 0.01, "{name}: {error} deg");
         }

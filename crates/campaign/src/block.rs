@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::scenario::Scenario;
-use crate::task::Task;
+use crate::shard::TrialId;
 
 /// Block: consecutive replicates of one cell, stored as one file of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,28 +20,28 @@ impl Block {
     pub const REPLICATES: u64 = 256;
 
     /// Number of blocks of a cell with `replicates` replicates.
-    pub fn of_cell(replicates: u64) -> u64 {
+    pub fn count_in_cell(replicates: u64) -> u64 {
         replicates.div_ceil(Self::REPLICATES)
     }
 
     /// Number of blocks of a scenario.
     pub fn count(scenario: &Scenario) -> u64 {
-        scenario.cells.len() as u64 * Self::of_cell(scenario.replicates)
+        scenario.cells.len() as u64 * Self::count_in_cell(scenario.replicates)
     }
 
     /// Block number `place` of a scenario, counted cell by cell from 0.
-    pub fn at(place: u64, scenario: &Scenario) -> Self {
-        let of_cell = Self::of_cell(scenario.replicates);
+    pub fn from_index(place: u64, scenario: &Scenario) -> Self {
+        let of_cell = Self::count_in_cell(scenario.replicates);
         Self { cell: (place / of_cell) as usize, number: place % of_cell }
     }
 
-    /// Index among all blocks of a scenario, the inverse of [`Block::at`].
-    pub fn place(self, scenario: &Scenario) -> u64 {
-        self.cell as u64 * Self::of_cell(scenario.replicates) + self.number
+    /// Index among all blocks of a scenario, the inverse of [`Block::from_index`].
+    pub fn index(self, scenario: &Scenario) -> u64 {
+        self.cell as u64 * Self::count_in_cell(scenario.replicates) + self.number
     }
 
     /// Block of a trial.
-    pub fn of(task: Task) -> Self {
+    pub fn of(task: TrialId) -> Self {
         Self { cell: task.cell, number: task.replicate / Self::REPLICATES }
     }
 

@@ -22,7 +22,7 @@ use coloured::CompassError;
 /// for a record that does not determine the ship.
 ///
 /// The information of the records adds; each has its own initial state.
-pub fn of<'a>(
+pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[Simulated],
     truth: &FirstOrder,

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::block::Block;
-use crate::blocks::{self, BlockStore};
+use crate::block_store::{self, BlockStore};
 use crate::design::Design;
 use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::failure::Failure;
@@ -18,14 +18,14 @@ use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
-use crate::plan::{TrialPlan, blocks_of, trials_of};
+use crate::plan::{TrialPlan, blocks_of, max_trials};
 use crate::rows::StudyRow;
-use crate::scenario::records::DATA;
+use crate::scenario::records::DATA_FOLDER_VARIABLE;
 use crate::scenario::{DesignCell, Scenario};
+use crate::shard::{Shard, TrialId};
 use crate::shared_fit;
 use crate::showcase;
 use crate::store::{self, StoredStudy};
-use crate::task::{Shard, Task};
 use crate::timings::Timings;
 use crate::writer::BlockWriter;
 
@@ -73,7 +73,7 @@ pub fn collect_shard(
 ///
 /// Fails if blocks are missing; the message names the first.
 pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
-    let manifest = store::expected_in(folder.path())?;
+    let manifest = store::required_manifest(folder.path())?;
     if manifest.is_finished() {
         return StoredStudy::read(folder.path());
     }
@@ -81,11 +81,11 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     check_same_study(&manifest, &Manifest::new(&scenario), folder.path())?;
     let design = Design::of(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
-    let stored = store.survey(|_| true, "its trials count as missing", observer)?;
+    let stored = store.stored_trials(|_| true, "its trials count as missing", observer)?;
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
-    if let Some(Task { cell, replicate }) = plan.peek()? {
-        let path = store.path(Block::of(Task { cell, replicate }));
+    if let Some(TrialId { cell, replicate }) = plan.peek()? {
+        let path = store.path(Block::of(TrialId { cell, replicate }));
         let problem = format!(
             "trial {replicate} of cell {cell} is not stored; run the study, or the shard that holds it, again, or copy \
              the file here"
@@ -117,11 +117,12 @@ fn run(
     let design = Design::of(scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let part = blocks_of(scenario, shard);
-    let most = trials_of(scenario, &part);
-    if scenario.trials() == 0 {
+    let most = max_trials(scenario, &part);
+    if scenario.max_trials() == 0 {
         return Err(no_records(scenario));
     }
-    let stored = store.survey(|block| part.contains(&block.place(scenario)), "its trials are run again", observer)?;
+    let stored =
+        store.stored_trials(|block| part.contains(&block.index(scenario)), "its trials are run again", observer)?;
     let before: u64 = stored.values().sum();
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
@@ -148,7 +149,7 @@ fn run(
 fn no_records(scenario: &Scenario) -> Failure {
     let absent = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.absent);
     let lines: Vec<String> = absent.map(|(file, reason)| format!("  {file}: {reason}")).collect();
-    let advice = format!("put them beside the scenario, or name their folder in {DATA}");
+    let advice = format!("put them beside the scenario, or name their folder in {DATA_FOLDER_VARIABLE}");
     Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
 }
 
@@ -172,8 +173,8 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
     if restart {
         // The manifest is written first: rows without a manifest belong to no study.
         folder.remove_all(|name| [files::MANIFEST, files::LEGACY_ROWS].contains(&name))?;
-        blocks::discard(folder)?;
-    } else if blocks::is_in(folder.path())? {
+        block_store::discard(folder)?;
+    } else if block_store::has_blocks(folder.path())? {
         return Err(Failure::input(format!(
             "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart \
              to discard them",
@@ -268,7 +269,7 @@ fn run_all(
             RunEnd::Interrupted => written.and_then(|()| Err(stopped())),
             RunEnd::Stuck => {
                 let failure = written.err().unwrap_or_else(stopped);
-                observer.give_up(&failure);
+                observer.on_unstoppable_trial(&failure);
                 Err(failure)
             }
         }
@@ -284,7 +285,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Runs batches until the plan is done, a batch is incomplete, or `take` accepts no more.
 fn run_batches(
     plan: &mut TrialPlan,
-    mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
+    mut run: impl FnMut(Vec<TrialId>) -> (Vec<TrialOutcome>, RunEnd),
     mut take: impl FnMut(Vec<TrialOutcome>) -> bool,
 ) -> Result<RunEnd, Failure> {
     let least = (4 * rayon::current_num_threads()).min(MAX_BATCH);
@@ -306,7 +307,7 @@ fn run_batches(
 }
 
 /// Runner for a batch of tasks, which are in order.
-fn runner<'a>(scenario: &'a Scenario, tasks: &[Task]) -> TrialRunner<'a> {
+fn runner<'a>(scenario: &'a Scenario, tasks: &[TrialId]) -> TrialRunner<'a> {
     TrialRunner::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
 }
 
@@ -315,7 +316,7 @@ fn runner<'a>(scenario: &'a Scenario, tasks: &[Task]) -> TrialRunner<'a> {
 fn watched<'scope>(
     scope: &'scope Scope<'scope, '_>,
     scenario: &'scope Scenario,
-    tasks: Vec<Task>,
+    tasks: Vec<TrialId>,
     observer: &'scope dyn Observer,
 ) -> (Vec<TrialOutcome>, RunEnd) {
     let mut outcomes: Vec<Option<TrialOutcome>> = tasks.iter().map(|_| None).collect();
@@ -323,9 +324,9 @@ fn watched<'scope>(
     scope.spawn(move || {
         let runner = runner(scenario, &tasks);
         let run = || {
-            shared_fit::units(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
+            shared_fit::fit_groups(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
                 if !observer.is_asked_to_stop() {
-                    for (index, outcome) in unit.clone().zip(shared_fit::run_unit(&runner, scenario, &tasks[unit])) {
+                    for (index, outcome) in unit.clone().zip(shared_fit::run_group(&runner, scenario, &tasks[unit])) {
                         // The receiver is dropped after the wait for a trial was given up.
                         let _ = send.send((index, outcome));
                     }
@@ -365,10 +366,10 @@ fn watched<'scope>(
 /// Design and rows, in order, of a small study that is run without a folder.
 pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
-    let run = |tasks: Vec<Task>| {
+    let run = |tasks: Vec<TrialId>| {
         let runner = runner(scenario, &tasks);
-        let units = shared_fit::units(scenario, &tasks).into_par_iter();
-        (units.flat_map_iter(|unit| shared_fit::run_unit(&runner, scenario, &tasks[unit])).collect(), RunEnd::Done)
+        let units = shared_fit::fit_groups(scenario, &tasks).into_par_iter();
+        (units.flat_map_iter(|unit| shared_fit::run_group(&runner, scenario, &tasks[unit])).collect(), RunEnd::Done)
     };
     let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
@@ -401,8 +402,8 @@ fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<S
     let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
     let mut timings = Timings::default();
     let store = BlockStore::new(folder.path(), &run.manifest, &design);
-    for (block, _) in store.of_design() {
-        timings.join(&store.timings(block)?);
+    for (block, _) in store.design_blocks() {
+        timings.merge(&store.timings(block)?);
     }
     store::finish(folder, run.manifest, design, showcases, &timings)
 }

@@ -30,7 +30,7 @@ pub fn degrees(values: &[f64]) -> Vec<f64> {
 }
 
 /// Plot curve: angle, deg, against time, s, from radians.
-pub fn curve(time: &[f64], angle: &[f64]) -> PlotCurve {
+pub fn angle_curve_deg(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
 
@@ -55,11 +55,11 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         false => zigzag.executes.get(1),
     };
     ZigzagTrial {
-        heading: curve(trial.time(), trial.heading()),
+        heading: angle_curve_deg(trial.time(), trial.heading()),
         // A thinned record keeps only its extremes; as points they would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS
             && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
-        rudder: curve(trial.time(), trial.rudder()),
+        rudder: angle_curve_deg(trial.time(), trial.rudder()),
         truth: None,
         executes: zigzag.executes.iter().map(execute).collect(),
         overshoots: zigzag.overshoots.iter().map(overshoot).collect(),
@@ -80,8 +80,8 @@ pub fn replay_curves(
         let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
         Some(ReplayCurves {
             origin: origin(&entry.method),
-            heading: curve(&replay.time, &replay.heading),
-            residual: curve(&time, &residual),
+            heading: angle_curve_deg(&replay.time, &replay.heading),
+            residual: angle_curve_deg(&time, &residual),
             rms_deg: Some(to_deg(replay.rms())),
         })
     };

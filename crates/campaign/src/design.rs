@@ -120,7 +120,7 @@ impl Design {
     /// Design from the text of a `cells.json`.
     ///
     /// Fails if the text is no design or is inconsistent; the message names the place.
-    pub fn of_text(text: &[u8]) -> Result<Self, String> {
+    pub fn from_json(text: &[u8]) -> Result<Self, String> {
         let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
         design.check().map(|()| design)
     }
@@ -128,7 +128,7 @@ impl Design {
     fn check(&self) -> Result<(), String> {
         let cells = self.cells.iter().flat_map(|cell| &cell.labels);
         for text in self.axes.iter().chain(self.methods.iter().map(|method| &method.label)).chain(cells) {
-            name::label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::shown(text)))?;
+            name::check_label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::shown(text)))?;
         }
         let mut labels = HashSet::new();
         if let Some(twice) = self.methods.iter().find(|method| !labels.insert(&method.label)) {
@@ -157,7 +157,7 @@ impl Design {
     }
 
     /// Indices of the cells shown in detail.
-    pub fn detail(&self) -> Vec<usize> {
+    pub fn detailed_cells(&self) -> Vec<usize> {
         if self.cells.len() == 1 {
             // A study of one cell shows that cell.
             return vec![0];

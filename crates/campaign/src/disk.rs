@@ -114,13 +114,13 @@ pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
 }
 
 /// Removes a file or a link.
-pub fn remove(path: &Path) -> io::Result<()> {
+pub fn remove_file(path: &Path) -> io::Result<()> {
     at(path, || fs::remove_file(path))
 }
 
 /// Removes a file or a link if it is there.
 pub fn remove_if_there(path: &Path) -> io::Result<()> {
-    if_present(remove(path)).map(drop)
+    if_present(remove_file(path)).map(drop)
 }
 
 /// Names in a folder, sorted.

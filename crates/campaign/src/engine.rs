@@ -1,5 +1,5 @@
 //! Engine: simulates one trial and runs every method on it, one row each. [`crate::plan`] determines which trials are
-//! run and in what order, [`crate::blocks`] stores the rows.
+//! run and in what order, [`crate::block_store`] stores the rows.
 //!
 //! Random numbers depend on the key of the trial alone, so rows depend neither on threads nor on the order of trials.
 
@@ -20,11 +20,11 @@ use trial::{Quantity, Trial};
 use crate::identified_ship::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
-use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceRow};
 use crate::scenario::{Procedure, Scenario, Specification, TrialSpecification};
+use crate::shard::TrialId;
 use crate::statistics::Moments;
 use crate::summary::effect_ids;
-use crate::task::Task;
 use crate::timings::TrialTiming;
 
 /// Rows of one trial, and their timing.
@@ -44,13 +44,13 @@ pub fn is_method_failure(failure: &str) -> bool {
 }
 
 /// Key of all random numbers of one trial.
-pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
+pub fn stream_key(scenario: &Scenario, task: TrialId) -> StreamKey {
     StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
 
 /// Simulates one trial: its record, and the further records of the same ship that the scenario specifies.
-pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, String> {
-    let key = key(scenario, task);
+pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<Simulated>, String> {
+    let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
     let records = trial_spec.specification.records(&key).map(|(simulation, key)| simulation.run(&key));
     records.collect::<Result<_, _>>().map_err(|error| error.to_string())
@@ -58,7 +58,7 @@ pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, Strin
 
 /// True first-order responses of a trial, against which estimates are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Truths {
+pub struct TrueResponses {
     /// First-order response nearest to the ship; the ship itself if it is first order.
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects.
@@ -66,12 +66,12 @@ pub struct Truths {
 }
 
 /// True responses of one trial. Fails if its sampled values define no ship.
-pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
-    let key = key(scenario, task);
+pub fn true_responses(scenario: &Scenario, task: TrialId) -> Result<TrueResponses, String> {
+    let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
     let Specification { truth, base, .. } = &*trial_spec.specification;
     let nearest = truth.or_else(|| Some(nearest_first_order(&trial_spec.specification, &key)?.response));
-    Ok(Truths { nearest, base: base.filter(|_| truth.is_none()) })
+    Ok(TrueResponses { nearest, base: base.filter(|_| truth.is_none()) })
 }
 
 /// Runner of the trials of one study; references and prepared simulations are shared within a cell.
@@ -120,9 +120,9 @@ impl<'a> TrialRunner<'a> {
     }
 
     /// Runs one trial. A trial that cannot be simulated has a failed row for every method.
-    pub fn run(&self, task: Task) -> TrialOutcome {
+    pub fn run(&self, task: TrialId) -> TrialOutcome {
         let cell = &self.scenario.cells[task.cell];
-        let key = key(self.scenario, task);
+        let key = stream_key(self.scenario, task);
         let start = Instant::now();
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
         let trial =
@@ -178,7 +178,7 @@ impl<'a> TrialRunner<'a> {
 
     /// Reference of a cell whose trials share one specification, computed from its first trial.
     fn shared(&self, cell: usize) -> TrialReference {
-        let key = key(self.scenario, Task { cell, replicate: 0 });
+        let key = stream_key(self.scenario, TrialId { cell, replicate: 0 });
         let Ok(trial_spec) = self.scenario.cells[cell].trial_spec(&key) else { return TrialReference::default() };
         match self.simulate(cell, &trial_spec, &key) {
             Ok(simulated) => TrialReference::of(&trial_spec, &simulated, &key, self.scenario.cells[cell].traces()),
@@ -207,7 +207,7 @@ impl TrialInput<'_> {
                 (
                     answer
                         .map(|analysis| self.traced_in_a_calm(&blank, &analysis))
-                        .map_err(|error| failure(&error).into()),
+                        .map_err(|error| trace_failure_kind(&error).into()),
                     time,
                 )
             }
@@ -234,7 +234,7 @@ impl TrialInput<'_> {
             predicted: self
                 .check
                 .as_ref()
-                .map(|check| check.figures(|facts| identified_ship::from_estimate(estimate, facts))),
+                .map(|check| check.characteristics(|facts| identified_ship::from_estimate(estimate, facts))),
             ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
         }
     }
@@ -277,8 +277,8 @@ impl TrialInput<'_> {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading))),
             stop: Some(StopReason::Converged.as_str()),
-            predicted: self.check.as_ref().map(|check| check.figures(identified)),
-            traced: Some(Box::new(TraceAnswer {
+            predicted: self.check.as_ref().map(|check| check.characteristics(identified)),
+            traced: Some(Box::new(TraceRow {
                 verdict: document.verdict,
                 named: document.effects.iter().map(NamedEffect::of).collect(),
                 located: document.located.iter().map(|entry| located(entry, end)).collect(),
@@ -325,7 +325,7 @@ fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
 }
 
 /// Kind of failure of a trace.
-pub(crate) fn failure(error: &TraceError) -> &'static str {
+pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
     match error {
         TraceError::Settings(_) | TraceError::Asked { .. } => "settings",
         TraceError::Base(error) => error.kind(),
@@ -395,7 +395,7 @@ method.output-error = {}
 
     fn rows(more: &str) -> Vec<StudyRow> {
         let scenario = scenario(format!("{TEXT}{more}"));
-        TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
+        TrialRunner::new(&scenario, 0..=0).run(TrialId { cell: 0, replicate: 0 }).rows
     }
 
     /// Information of separate records adds: two records of one manoeuvre have a bound smaller by √2, and so is the
@@ -407,7 +407,7 @@ method.output-error = {}
         let of = |text: &str, trials: u64| -> Vec<StudyRow> {
             let scenario = scenario(text);
             let runner = TrialRunner::new(&scenario, 0..=0);
-            (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
+            (0..trials).map(|replicate| runner.run(TrialId { cell: 0, replicate }).rows.remove(0)).collect()
         };
         let (single, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
         let bound = |rows: &[StudyRow]| rows[0].bound.expect("white noise")[0];
@@ -420,7 +420,10 @@ method.output-error = {}
         assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
         let first = |text: &str| {
             let scenario = scenario(text);
-            simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|record| record.trial)
+            simulate(&scenario, TrialId { cell: 0, replicate: 0 })
+                .expect("records")
+                .into_iter()
+                .map(|record| record.trial)
         };
         let records: Vec<Trial> = first(&format!("{linear}{further}")).collect();
         let alone = first(&linear).next().expect("a record");

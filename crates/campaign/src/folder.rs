@@ -62,7 +62,7 @@ impl ResultFolder {
         }
     }
 
-    /// Temporary file, renamed to the given name on [`TemporaryFile::put`].
+    /// Temporary file, renamed to the given name on [`TemporaryFile::persist`].
     pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
         let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;
@@ -76,7 +76,7 @@ impl ResultFolder {
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let mut file = self.create(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
-        file.put()
+        file.persist()
     }
 
     /// Writes a file and flushes it to the disk: for content that cannot be computed again.
@@ -85,7 +85,7 @@ impl ResultFolder {
         file.write_all(content.as_ref()).on("write", &file.path)?;
         file.flush().on("write", &file.path)?;
         file.file.get_ref().sync();
-        file.put()
+        file.persist()
     }
 
     /// Removes the selected files, and temporary files that killed programs left behind.
@@ -124,7 +124,7 @@ impl Write for TemporaryFile {
 
 impl TemporaryFile {
     /// Flushes the file and renames it to its final name.
-    pub fn put(mut self) -> Result<(), Failure> {
+    pub fn persist(mut self) -> Result<(), Failure> {
         self.file.flush().on("write", &self.path)?;
         disk::rename(&self.path, &self.place).on("write", &self.place)?;
         self.is_put = true;
@@ -140,7 +140,7 @@ impl TemporaryFile {
 impl Drop for TemporaryFile {
     fn drop(&mut self) {
         if !self.is_put {
-            let _ = disk::remove(&self.path);
+            let _ = disk::remove_file(&self.path);
         }
     }
 }

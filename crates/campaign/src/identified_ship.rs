@@ -441,7 +441,7 @@ mod tests {
         );
         let asked = Predictions { kinds: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
         let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
-        let figures = check.figures(|_| Some(ship));
+        let figures = check.characteristics(|_| Some(ship));
         for name in ["advance_lengths", "tactical_diameter_lengths"] {
             let figure = figures.iter().find(|figure| figure.name.ends_with(name)).expect("a hull has a track");
             assert!((figure.median / figure.truth - 1.0).abs() < 0.03, "{figure:?}");

@@ -6,25 +6,24 @@
 //! | to learn about | read |
 //! |---|---|
 //! | one trial, simulated or of measured records | [`engine`], `shared_fit` |
-//! | many of them, in order | [`task`], [`block`], [`plan`], [`stopping`], [`collect`] |
-//! | estimates of outside estimators | [`answers`] |
-//! | stored files | [`design`], [`rows`], [`blocks`], [`store`], [`manifest`], [`showcase`], [`timings`] |
+//! | many of them, in order | [`shard`], [`block`], [`plan`], [`stopping`], [`collect`] |
+//! | estimates of outside estimators | [`outside_estimates`] |
+//! | stored files | [`design`], [`rows`], [`block_store`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | writing to disk | [`files`], [`folder`], [`disk`] |
 //! | summaries and their statistics | [`summary`], [`statistics`] |
 //! | plot data and document entries | [`curves`], [`stored_figures`] |
 //! | the identified ship, for predictions | [`identified_ship`] |
 //! | comparison of methods on measured and simulated records | [`benchmark`] |
 
-pub mod answers;
 pub mod benchmark;
 pub mod block;
-pub mod blocks;
+pub mod block_store;
 mod bound;
 pub mod collect;
 pub mod curves;
 pub mod design;
 pub mod disk;
-pub mod earlier;
+pub mod earlier_trials;
 pub mod engine;
 pub mod failure;
 pub mod files;
@@ -32,12 +31,14 @@ pub mod folder;
 pub mod identified_ship;
 pub mod manifest;
 pub mod observer;
+pub mod outside_estimates;
 pub mod parquet_table;
 pub mod plan;
 mod prediction_check;
 mod reference;
 pub mod rows;
 pub mod scenario;
+pub mod shard;
 mod shared_fit;
 pub mod showcase;
 pub mod statistics;
@@ -45,7 +46,6 @@ pub mod stopping;
 pub mod store;
 pub mod stored_figures;
 pub mod summary;
-pub mod task;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]

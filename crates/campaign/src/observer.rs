@@ -33,7 +33,7 @@ pub trait Observer: Sync {
 
     /// Called if a trial does not end after a request to stop. All trials before it are stored, so a program may
     /// exit here with this failure. If the call returns, the run waits for the trial.
-    fn give_up(&self, _failure: &Failure) {}
+    fn on_unstoppable_trial(&self, _failure: &Failure) {}
 }
 
 /// Observer that ignores everything.

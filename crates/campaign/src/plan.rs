@@ -11,8 +11,8 @@ use crate::block::Block;
 use crate::failure::Failure;
 use crate::rows::StudyRow;
 use crate::scenario::Scenario;
+use crate::shard::{Shard, TrialId};
 use crate::stopping::StopCheck;
-use crate::task::{Shard, Task};
 
 /// Reader of the stored rows of a block.
 type BlockReader<'a> = dyn Fn(Block) -> Result<Vec<StudyRow>, Failure> + 'a;
@@ -36,21 +36,21 @@ pub struct TrialPlan<'a> {
 
 /// Indices of the blocks of a shard.
 pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
-    let of_cell = Block::of_cell(scenario.replicates);
+    let of_cell = Block::count_in_cell(scenario.replicates);
     if scenario.stop.is_none() {
-        return shard.part(Block::count(scenario));
+        return shard.item_range(Block::count(scenario));
     }
-    let cells = shard.part(scenario.cells.len() as u64);
+    let cells = shard.item_range(scenario.cells.len() as u64);
     cells.start * of_cell..cells.end * of_cell
 }
 
 /// Maximum number of trials in a range of blocks.
-pub fn trials_of(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
-    let of_cell = Block::of_cell(scenario.replicates);
+pub fn max_trials(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
+    let of_cell = Block::count_in_cell(scenario.replicates);
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let trials = |place| {
-            let block = Block::at(place, scenario);
-            block.range(scenario.trials_of(block.cell)).count() as u64
+            let block = Block::from_index(place, scenario);
+            block.range(scenario.max_trials_of_cell(block.cell)).count() as u64
         };
         return blocks.clone().map(trials).sum();
     }
@@ -81,14 +81,14 @@ impl<'a> TrialPlan<'a> {
     }
 
     /// Next trial, without issuing it; `None` if the shard is done.
-    pub fn peek(&mut self) -> Result<Option<Task>, Failure> {
+    pub fn peek(&mut self) -> Result<Option<TrialId>, Failure> {
         let is_left = !self.open.is_empty() || self.begin()?;
-        Ok(is_left.then_some(Task { cell: self.cell, replicate: self.open.start }))
+        Ok(is_left.then_some(TrialId { cell: self.cell, replicate: self.open.start }))
     }
 
     /// Next trials, at most `most` and for measured records whole blocks; empty if the shard is done. The rows of
     /// all trials issued before must have been passed to [`TrialPlan::add`].
-    pub fn next(&mut self, most: u64) -> Result<Vec<Task>, Failure> {
+    pub fn next(&mut self, most: u64) -> Result<Vec<TrialId>, Failure> {
         let mut tasks = Vec::new();
         loop {
             let open = self.open.end.saturating_sub(self.open.start);
@@ -96,7 +96,7 @@ impl<'a> TrialPlan<'a> {
             let is_shared = self.scenario.cells[self.cell].record_set().is_some();
             let count = if is_shared { open } else { open.min(most.saturating_sub(tasks.len() as u64)) };
             let taken = self.open.start..self.open.start + count;
-            tasks.extend(taken.map(|replicate| Task { cell: self.cell, replicate }));
+            tasks.extend(taken.map(|replicate| TrialId { cell: self.cell, replicate }));
             self.open.start += count;
             // The rule requires all rows of a block before the next block is decided.
             let is_enough = tasks.len() as u64 >= most || self.rule.is_some() && !tasks.is_empty();
@@ -109,11 +109,11 @@ impl<'a> TrialPlan<'a> {
     /// Begins the next block with missing trials; `false` if there is none.
     fn begin(&mut self) -> Result<bool, Failure> {
         while let Some(place) = self.blocks.next() {
-            let block = Block::at(place, self.scenario);
+            let block = Block::from_index(place, self.scenario);
             if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
                 continue;
             }
-            let all = block.range(self.scenario.trials_of(block.cell));
+            let all = block.range(self.scenario.max_trials_of_cell(block.cell));
             if all.is_empty() {
                 continue;
             }
@@ -165,9 +165,9 @@ mod tests {
                 (1..=SHARDS).map(|number| blocks_of(&scenario, Shard { number, of: SHARDS })).collect();
             assert!(parts[0].start == 0 && parts.windows(2).all(|pair| pair[0].end == pair[1].start));
             assert_eq!(parts[parts.len() - 1].end, Block::count(&scenario));
-            let trials: u64 = parts.iter().map(|part| trials_of(&scenario, part)).sum();
+            let trials: u64 = parts.iter().map(|part| max_trials(&scenario, part)).sum();
             assert_eq!(trials, cells * scenario.replicates);
-            let of_cell = Block::of_cell(scenario.replicates);
+            let of_cell = Block::count_in_cell(scenario.replicates);
             assert!(rule.is_empty() || parts.iter().all(|part| part.start % of_cell == 0));
         }
     }
@@ -178,7 +178,7 @@ mod tests {
         let block = |cell, number| Block { cell, number };
         let stored = HashMap::from([(block(0, 0), 256), (block(0, 2), 88), (block(1, 1), 10)]);
         let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &none);
-        assert_eq!(plan.peek().expect("nothing is read"), Some(Task { cell: 0, replicate: 256 }));
+        assert_eq!(plan.peek().expect("nothing is read"), Some(TrialId { cell: 0, replicate: 256 }));
         let mut tasks = Vec::new();
         loop {
             let next = plan.next(100).expect("nothing is read");
@@ -187,7 +187,7 @@ mod tests {
             }
             tasks.extend(next);
         }
-        let of = |cell: usize, replicates: Range<u64>| replicates.map(move |replicate| Task { cell, replicate });
+        let of = |cell: usize, replicates: Range<u64>| replicates.map(move |replicate| TrialId { cell, replicate });
         let expected = of(0, 256..512).chain(of(1, 0..256)).chain(of(1, 266..600));
         assert_eq!(tasks, expected.collect::<Vec<_>>());
         assert_eq!(plan.trials, [600, 600]);
@@ -208,7 +208,7 @@ mod tests {
         let read = |block: Block| Ok((0..256).map(|replicate| row(block.cell as u64, replicate)).collect());
         let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
         let first = plan.next(1000).expect("readable");
-        assert_eq!((first.len(), first[255]), (256, Task { cell: 0, replicate: 255 }));
+        assert_eq!((first.len(), first[255]), (256, TrialId { cell: 0, replicate: 255 }));
         first.iter().for_each(|task| plan.add(&row(0, task.replicate)));
         // The rule is met after one block of the first cell; that of the second is stored.
         assert_eq!((plan.next(1000).expect("readable"), plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));

@@ -7,7 +7,7 @@ use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::identified_ship::RecordFacts;
-use crate::rows::PredictedFigure;
+use crate::rows::PredictedCharacteristic;
 use crate::scenario::Predictions;
 
 /// True manoeuvres of the ship of a trial, with the facts of its records.
@@ -22,7 +22,7 @@ pub struct PredictionCheck<'a> {
 const TIMESCALE_PERIODS: f64 = 10.0;
 
 /// `true` if a length in metres is also given in ship lengths, so that it counts once.
-pub fn is_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bool {
+pub fn is_repeated_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bool {
     name.strip_suffix("_m").is_some_and(|name| is_there(&format!("{name}_lengths")))
 }
 
@@ -42,14 +42,17 @@ impl<'a> PredictionCheck<'a> {
             };
             let passage = SimulatedManoeuvre::from_simulation(calm, &other, timescale).ok()?;
             let all = figures::characteristics(kind, &passage, None);
-            let is_counted = |name: &str| !is_in_lengths(name, |lengths| all.contains_key(lengths));
+            let is_counted = |name: &str| !is_repeated_in_lengths(name, |lengths| all.contains_key(lengths));
             Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())
         };
         Self { asked, true_manoeuvres: asked.kinds.iter().map(true_figures).collect(), facts: RecordFacts::of(records) }
     }
 
     /// Predicted and true characteristics of the manoeuvres; those missing on either side are omitted.
-    pub fn figures(&self, identified: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>) -> Box<[PredictedFigure]> {
+    pub fn characteristics(
+        &self,
+        identified: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>,
+    ) -> Box<[PredictedCharacteristic]> {
         let mixture = identified(&self.facts).and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
         let Some(mixture) = mixture else { return Box::default() };
         let mut all = Vec::new();
@@ -59,7 +62,7 @@ impl<'a> PredictionCheck<'a> {
             for (name, figure) in prediction.figures {
                 let Some(truth) = truths.get(name.as_str()).copied().flatten() else { continue };
                 let (median, ci90) = (figure.interval.median, figure.interval.ci90);
-                all.push(PredictedFigure { name: format!("{kind} {name}").into(), truth, median, ci90 });
+                all.push(PredictedCharacteristic { name: format!("{kind} {name}").into(), truth, median, ci90 });
             }
         }
         all.into()

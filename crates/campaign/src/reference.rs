@@ -35,7 +35,7 @@ impl TrialReference {
         let base = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
         let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
-        let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
+        let bound = nearest.and_then(|nearest| bound::cramer_rao_bound(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         // The ratio is defined for white heading noise only.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;

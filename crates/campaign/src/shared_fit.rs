@@ -17,26 +17,26 @@ use trial::{Channel, Trial};
 
 use crate::engine::{self, TrialInput, TrialOutcome, TrialRunner};
 use crate::identified_ship::{self, RecordFacts};
-use crate::prediction_check::is_in_lengths;
+use crate::prediction_check::is_repeated_in_lengths;
 use crate::reference::TrialReference;
-use crate::rows::{PredictedFigure, StudyRow};
+use crate::rows::{PredictedCharacteristic, StudyRow};
 use crate::scenario::records::RecordSet;
 use crate::scenario::{Predictions, Procedure, Scenario};
-use crate::task::Task;
+use crate::shard::TrialId;
 use crate::timings::TrialTiming;
 
 /// Relative tolerance of ship length within one scale.
 const SCALE: f64 = 0.01;
 
 /// Index ranges of tasks that are run together: trials of measured records that share a fit.
-pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
-    let fit = |task: &Task| {
+pub fn fit_groups(scenario: &Scenario, tasks: &[TrialId]) -> Vec<Range<usize>> {
+    let fit = |task: &TrialId| {
         let set = scenario.cells[task.cell].record_set()?;
         Some((task.cell, &set.splits[task.replicate as usize].fitted))
     };
-    let share = |task: &Task, next: &Task| fit(task).is_some() && fit(task) == fit(next);
+    let share = |task: &TrialId, next: &TrialId| fit(task).is_some() && fit(task) == fit(next);
     let mut start = 0;
-    let range = |unit: &[Task]| {
+    let range = |unit: &[TrialId]| {
         let place = start..start + unit.len();
         start = place.end;
         place
@@ -45,7 +45,7 @@ pub fn units(scenario: &Scenario, tasks: &[Task]) -> Vec<Range<usize>> {
 }
 
 /// Runs every method on one group of trials that share a fit; one outcome per trial, in order.
-pub fn run_unit(runner: &TrialRunner, scenario: &Scenario, tasks: &[Task]) -> Vec<TrialOutcome> {
+pub fn run_group(runner: &TrialRunner, scenario: &Scenario, tasks: &[TrialId]) -> Vec<TrialOutcome> {
     match scenario.cells[tasks[0].cell].record_set() {
         Some(set) => run(scenario, set, tasks),
         None => tasks.iter().map(|&task| runner.run(task)).collect(),
@@ -69,7 +69,7 @@ enum FitAnswer {
 /// Trials that share a fit.
 struct SharedTrials<'a> {
     scenario: &'a Scenario,
-    tasks: &'a [Task],
+    tasks: &'a [TrialId],
     fitted: &'a [Trial],
     /// Fitted records without heading spikes, which are excluded from all errors.
     cleaned: &'a [Trial],
@@ -78,14 +78,14 @@ struct SharedTrials<'a> {
 }
 
 /// Runs the trials of a shared fit, in order.
-fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome> {
-    let split = |task: &Task| &set.splits[task.replicate as usize];
+fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutcome> {
+    let split = |task: &TrialId| &set.splits[task.replicate as usize];
     let both = [&set.trials, set.without_spikes()];
     let of_fit = |all: &[Trial]| split(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
     let [fitted, cleaned]: [Vec<Trial>; 2] = both.map(of_fit);
     let judges = tasks.iter().map(|task| split(task).judge.map(|place| both.map(|all| &all[place]))).collect();
     let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, judges };
-    let blank = |task: &Task| TrialOutcome {
+    let blank = |task: &TrialId| TrialOutcome {
         rows: Vec::new(),
         timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
     };
@@ -105,7 +105,7 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[Task]) -> Vec<TrialOutcome
 impl SharedTrials<'_> {
     /// Rows of a method, one per trial.
     fn rows(&self, method: usize, procedure: &Procedure) -> Vec<StudyRow> {
-        let key = |task: &Task| engine::key(self.scenario, *task);
+        let key = |task: &TrialId| engine::stream_key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
                 let judge = |trial| self.replayed(trial).map(|[judge, _]| judge.clone());
@@ -113,14 +113,14 @@ impl SharedTrials<'_> {
                 let settings = ::trace::Settings { hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
-                Some(analysis.map(fit).map_err(|error| engine::failure(&error).into()))
+                Some(analysis.map(fit).map_err(|error| engine::trace_failure_kind(&error).into()))
             }
             Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
             // Estimates of outside estimators are looked up by trial.
             Procedure::Answers(_) => None,
         };
-        let row = |(trial, task): (usize, &Task)| {
+        let row = |(trial, task): (usize, &TrialId)| {
             let separate = if shared.is_none() { self.response(procedure, &key(task)) } else { None };
             let fit = shared.as_ref().or(separate.as_ref()).expect("a trace is shared");
             let blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, method, ..StudyRow::default() };
@@ -206,7 +206,7 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
 
 /// Characteristics of the validation record, predicted by replaying its rudder with sampled ships at its scale, after
 /// removing the current determined from its track.
-fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedFigure]> {
+fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedCharacteristic]> {
     let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
         (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),
         _ => Some(ship.clone()),
@@ -215,9 +215,9 @@ fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) ->
     let (judge, current) = without_current(judge.clone(), None);
     let replay = mixture.and_then(|ships| ships.replay(&judge, predictions.draws, current).ok().flatten());
     let Some(replay) = replay else { return Box::default() };
-    let is_counted = |name: &str| !is_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
+    let is_counted = |name: &str| !is_repeated_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
     let figures = replay.figures.iter().filter(|(name, _)| is_counted(name));
-    let figure = |(name, compared): (&String, &predict::replay::Compared)| PredictedFigure {
+    let figure = |(name, compared): (&String, &predict::replay::Compared)| PredictedCharacteristic {
         name: name.as_str().into(),
         truth: compared.measured,
         median: compared.interval.median,

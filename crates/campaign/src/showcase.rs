@@ -11,13 +11,13 @@ use ship::FirstOrder;
 use simulate::Truth;
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::curves::{curve, curve_origin, replay_curves, zigzag_figure};
+use crate::curves::{angle_curve_deg, curve_origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
+use crate::shard::TrialId;
 use crate::stored_figures::{
     CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays,
 };
-use crate::task::Task;
 
 /// First trial of a cell in detail.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -54,14 +54,14 @@ const POINTS_PER_ROW: usize = 4;
 /// Showcase of a cell; `None` if its first trial cannot be simulated.
 pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
-    let first = Task { cell: index, replicate: 0 };
+    let first = TrialId { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;
-    let truth_of_ship = cell.trial_spec(&engine::key(scenario, first)).ok()?.specification.truth;
+    let truth_of_ship = cell.trial_spec(&engine::stream_key(scenario, first)).ok()?.specification.truth;
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answer = |method: &Method| {
         // A trace gives no first-order estimate; it has its own report.
-        let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
+        let answer = method.procedure.identify(&trials, &engine::stream_key(scenario, first))?;
         Some(entry(&method.label, answer, &trials))
     };
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
@@ -74,7 +74,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::of(trial).ok().map(|zigzag| ZigzagTrial {
-            truth: Some(curve(&truth.time, &truth.heading)),
+            truth: Some(angle_curve_deg(&truth.time, &truth.heading)),
             ..zigzag_figure(trial, &zigzag)
         }),
         fourier_fit: fits.first().map(|fit| fit.curve_fit()),
@@ -82,7 +82,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             curves: std::iter::once(truth_curves(truth)).chain(fits.iter().map(FourierCurve::motion)).collect(),
         }),
         replays: Replays {
-            record: curve(trial.time(), trial.heading()),
+            record: angle_curve_deg(trial.time(), trial.heading()),
             truth: None,
             replays: replay_curves(trial, &answers, |label| curve_origin(&names, label)),
         },
@@ -116,9 +116,9 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
     MotionCurves {
         origin: CurveOrigin::Truth,
         name: None,
-        heading: curve(&truth.time, &truth.heading),
-        yaw_rate: curve(&truth.time, &truth.yaw_rate),
-        yaw_acceleration: curve(&truth.time, &truth.yaw_acceleration),
+        heading: angle_curve_deg(&truth.time, &truth.heading),
+        yaw_rate: angle_curve_deg(&truth.time, &truth.yaw_rate),
+        yaw_acceleration: angle_curve_deg(&truth.time, &truth.yaw_acceleration),
     }
 }
 
@@ -164,7 +164,7 @@ impl<'a> FourierCurve<'a> {
         let points = self.trial.len() * POINTS_PER_ROW;
         let times = (0..=points).map(|k| from + (to - from) * k as f64 / points as f64);
         let (times, values): (Vec<f64>, Vec<f64>) = times.map(|t| (t + self.start(), value(t))).unzip();
-        curve(&times, &values)
+        angle_curve_deg(&times, &values)
     }
 
     fn motion(&self) -> MotionCurves {
@@ -182,11 +182,11 @@ impl<'a> FourierCurve<'a> {
         let rows = time.iter().zip(heading);
         let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading(t - self.start())).collect();
         CurveFit {
-            measured: curve(time, heading),
+            measured: angle_curve_deg(time, heading),
             fitted: self.sampled(|t| self.curve.heading(t)),
             origin: Some(self.origin.clone()),
             fitted_name: format!("{}, {} harmonics", self.origin.label(), self.curve.cosine.len()),
-            residual: curve(time, &residual),
+            residual: angle_curve_deg(time, &residual),
             r_squared: Some(self.curve.r_squared),
             fundamental_rad_s: Some(self.curve.fundamental),
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::blocks::{self, BlockStore};
+use crate::block_store::{self, BlockStore};
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
@@ -38,7 +38,7 @@ pub struct StoredStudy {
 impl StoredStudy {
     /// Finished study of a folder. Fails as wrong input without one.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
-        let manifest = expected_in(folder)?;
+        let manifest = required_manifest(folder)?;
         if !manifest.is_finished() {
             return Err(Failure::about(folder, "the study in it is not finished; run it again to go on"));
         }
@@ -60,11 +60,11 @@ impl StoredStudy {
             }
         };
         let (bytes, refuse) = text(DESIGN)?;
-        let design = Design::of_text(&bytes).map_err(refuse)?;
+        let design = Design::from_json(&bytes).map_err(refuse)?;
         let (bytes, refuse) = text(SHOWCASES)?;
         let showcases = serde_json::from_slice(&bytes).map_err(|problem| refuse(problem.to_string()))?;
         let (bytes, refuse) = text(TIMINGS)?;
-        let timings = Timings::of_text(&bytes, &design).map_err(refuse)?;
+        let timings = Timings::from_csv(&bytes, &design).map_err(refuse)?;
         let design = Design { prose: manifest.prose(), ..design };
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
     }
@@ -86,8 +86,8 @@ impl StoredStudy {
     }
 
     /// Passes every row to `take`, in order. Fails if a row is missing or belongs to another study.
-    pub fn rows(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
-        BlockStore::new(&self.folder, &self.manifest, &self.design).rows(take)
+    pub fn for_each_row(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
+        BlockStore::new(&self.folder, &self.manifest, &self.design).for_each_row(take)
     }
 }
 
@@ -114,11 +114,11 @@ pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
              and run the study again",
         ));
     }
-    if blocks::is_in(folder)? { Manifest::read(&folder.join(MANIFEST)) } else { Ok(None) }
+    if block_store::has_blocks(folder)? { Manifest::read(&folder.join(MANIFEST)) } else { Ok(None) }
 }
 
 /// Manifest of a folder that must contain rows.
-pub fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
+pub fn required_manifest(folder: &Path) -> Result<Manifest, Failure> {
     manifest_of_rows(folder)?.ok_or_else(|| {
         let problem = match folder.exists() {
             false => "there is no such folder",
@@ -158,13 +158,13 @@ pub(crate) fn finish(
     let mut sha256 = BTreeMap::new();
     write(DESIGN, &described(DESIGN, &design, folder)?, folder, &mut sha256)?;
     write(SHOWCASES, &described(SHOWCASES, &showcases, folder)?, folder, &mut sha256)?;
-    let times = timings.to_text(&design)?;
+    let times = timings.to_csv(&design)?;
     write(TIMINGS, &times, folder, &mut sha256)?;
     let manifest = Manifest { sha256, ..manifest };
     // Written last, since it makes the folder a finished study.
     manifest.write(folder)?;
     // Timings as written, rounded to the nanosecond.
-    let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
+    let timings = Timings::from_csv(&times, &design).map_err(Failure::work)?;
     let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })
 }

@@ -1,7 +1,7 @@
 //! Plot data stored for the first trial of a cell, and the plots.
 
 use report::figures::{
-    Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
+    AxisSpec, Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn,
     Stack,
 };
 use report::number::{self, MISSING};
@@ -41,8 +41,8 @@ impl CurveFit {
             Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
             Layer::new("", self.residual.clone(), LayerKind::Dots(INK)),
         ];
-        let residual = Ruler::new("residual [°]", Division::Angle);
-        let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
+        let residual = AxisSpec::new("residual [°]", Division::Angle);
+        let rows = vec![(PanelRow::new(AxisSpec::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         // Five decimals, because the fit of a smooth record differs from 1 in the fourth.
         let r_squared = finite(self.r_squared).map(|value| format!("{} = {}", symbol("R²"), number::fixed(value, 5)));
@@ -79,7 +79,7 @@ impl DerivativeCurves {
     /// Panels: heading, yaw rate and yaw acceleration above each other, with the effect of differentiation on a small
     /// error of the heading.
     pub fn panels(&self) -> Panels {
-        let row = |y: Ruler, series: fn(&MotionCurves) -> &PlotCurve| {
+        let row = |y: AxisSpec, series: fn(&MotionCurves) -> &PlotCurve| {
             let layer = |motion: &MotionCurves| {
                 let name = motion.name.as_deref().unwrap_or_else(|| motion.origin.label());
                 Layer::line(name, series(motion).clone(), Pen::of(&motion.origin))
@@ -87,9 +87,9 @@ impl DerivativeCurves {
             (PanelRow::new(y, 0.2), self.curves.iter().map(layer).collect())
         };
         let rows = vec![
-            row(Ruler::heading(), |motion| &motion.heading),
-            row(Ruler::yaw_rate(), |motion| &motion.yaw_rate),
-            row(Ruler::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |motion| &motion.yaw_acceleration),
+            row(AxisSpec::heading(), |motion| &motion.heading),
+            row(AxisSpec::yaw_rate(), |motion| &motion.yaw_rate),
+            row(AxisSpec::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |motion| &motion.yaw_acceleration),
         ];
         Panels::over_time(rows)
     }
@@ -147,18 +147,18 @@ impl Replays {
                 ..LayeredPanel::default()
             }
         };
-        let residual = Ruler::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);
+        let residual = AxisSpec::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);
         let across = if self.replays.len() < 3 { 1 } else { 2 };
         let multiples = self.replays.iter().map(below).collect();
-        let lower = Stack::multiples(across, Ruler::time(), PanelRow::zeroed(residual, 0.085), multiples);
-        let mut time = Ruler::time();
+        let lower = Stack::multiples(across, AxisSpec::time(), PanelRow::zeroed(residual, 0.085), multiples);
+        let mut time = AxisSpec::time();
         let mut stacks = vec![lower];
         if self.replays.is_empty() {
             stacks.clear();
         } else {
             time.title.clear();
         }
-        stacks.insert(0, Stack::over(time, vec![(PanelRow::new(Ruler::heading(), 0.28), upper)]));
+        stacks.insert(0, Stack::over(time, vec![(PanelRow::new(AxisSpec::heading(), 0.28), upper)]));
         let note = (!self.replays.is_empty()).then(|| String::from("What leaves its panel is cut."));
         Panels { stacks, note, ..Panels::default() }
     }
@@ -224,7 +224,7 @@ impl Intervals {
             let truth = line(CurveOrigin::Truth, &self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);
             RowsColumn {
-                x: Ruler::decimal(title).within(SPREADS, centre),
+                x: AxisSpec::decimal(title).within(SPREADS, centre),
                 rows: self.estimates.iter().map(row).collect(),
                 lines: truth.into_iter().chain(line(CurveOrigin::Published, &self.published)).collect(),
                 ..RowsColumn::default()

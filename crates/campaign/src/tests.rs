@@ -5,10 +5,10 @@ use std::path::Path;
 
 use simulate::limits::MAX_STEPS;
 
-use crate::engine::{TrialRunner, key};
+use crate::engine::{TrialRunner, stream_key};
 use crate::scenario::Scenario;
 use crate::scenario::keys::ScenarioKey;
-use crate::task::Task;
+use crate::shard::TrialId;
 
 /// Scenarios that together contain every numeric key, one per line.
 const EVERYTHING: [&str; 5] = [
@@ -104,8 +104,8 @@ fn is_refused_or_ends(text: &str) {
         with_each_number(text, value, |_, _, changed| match parse(changed) {
             Err(message) => assert!(message.contains("--> all.toml:") && message.contains("= help: "), "{message}"),
             Ok(scenario) => {
-                let task = Task { cell: 0, replicate: 0 };
-                if let Ok(trial_spec) = scenario.cells[0].trial_spec(&key(&scenario, task)) {
+                let task = TrialId { cell: 0, replicate: 0 };
+                if let Ok(trial_spec) = scenario.cells[0].trial_spec(&stream_key(&scenario, task)) {
                     let steps = trial_spec.specification.simulation.cost().steps;
                     assert!(steps <= MAX_STEPS as f64, "{steps} steps in\n{changed}");
                 }
@@ -161,7 +161,7 @@ fn a_drawn_trial_without_end_is_a_failed_row() {
     let runner = TrialRunner::new(&scenario, 0..=0);
     let failures: Vec<Option<String>> = (0..40)
         .map(|replicate| {
-            runner.run(Task { cell: 0, replicate }).rows[0].failure.as_ref().map(|reason| reason.to_string())
+            runner.run(TrialId { cell: 0, replicate }).rows[0].failure.as_ref().map(|reason| reason.to_string())
         })
         .collect();
     let refused =

@@ -51,14 +51,14 @@ impl Timings {
     }
 
     /// Adds the durations of another part.
-    pub fn join(&mut self, other: &Self) {
-        other.times.iter().for_each(|(place, times)| self.times.entry(*place).or_default().join(times));
+    pub fn merge(&mut self, other: &Self) {
+        other.times.iter().for_each(|(place, times)| self.times.entry(*place).or_default().merge(times));
     }
 
     /// Mean duration of a method over all trials, µs, with its standard error; `None` without trials.
     pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
         let mut all = Moments::default();
-        self.times.iter().filter(|((_, place), _)| *place == 1 + method).for_each(|(_, times)| all.join(times));
+        self.times.iter().filter(|((_, place), _)| *place == 1 + method).for_each(|(_, times)| all.merge(times));
         (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
     }
 
@@ -88,7 +88,7 @@ impl Timings {
     }
 
     /// Text of `timings.csv`.
-    pub fn to_text(&self, design: &Design) -> Result<Vec<u8>, Failure> {
+    pub fn to_csv(&self, design: &Design) -> Result<Vec<u8>, Failure> {
         let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to write timings: {error}"));
         let mut file = csv::Writer::from_writer(Vec::new());
         self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
@@ -96,7 +96,7 @@ impl Timings {
     }
 
     /// Durations from the text of `timings.csv`; methods outside the design are omitted. Fails for an invalid text.
-    pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
+    pub fn from_csv(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
         Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
     }

@@ -4,12 +4,12 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use crate::block::Block;
-use crate::blocks::BlockStore;
+use crate::block_store::BlockStore;
 use crate::engine::TrialOutcome;
 use crate::failure::Failure;
 use crate::rows::StudyRow;
 use crate::scenario::Scenario;
-use crate::task::Task;
+use crate::shard::TrialId;
 use crate::timings::Timings;
 
 /// Age of the first unsaved row at which an incomplete block is stored, which limits the loss if the program is
@@ -51,12 +51,12 @@ impl<'a> BlockWriter<'a> {
 
     /// Replicates of a block of the scenario.
     fn range(&self, block: Block) -> Range<u64> {
-        block.range(self.scenario.trials_of(block.cell))
+        block.range(self.scenario.max_trials_of_cell(block.cell))
     }
 
     fn add(&mut self, outcome: TrialOutcome) -> Result<(), Failure> {
         let Some(row) = outcome.rows.first() else { return Ok(()) };
-        let task = Task { cell: row.cell as usize, replicate: row.replicate };
+        let task = TrialId { cell: row.cell as usize, replicate: row.replicate };
         let block = Block::of(task);
         let all = self.range(block);
         if self.block != Some(block) {

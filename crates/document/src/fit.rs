@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use crate::earlier_trials::EarlierTrials;
-use crate::form::ImoFormEntry;
 use crate::identified_ship::IdentifiedShip;
+use crate::imo_form::ImoFormEntry;
 use crate::method::MethodEntry;
 use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
@@ -196,7 +196,7 @@ impl FitDocument {
     }
 
     /// Method shown in the plots; `None` if no method gives an estimate.
-    pub fn drawn_method(&self) -> Option<&str> {
+    pub fn plotted_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
         answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
     }

@@ -97,7 +97,7 @@ pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 impl IdentifiedHull {
     /// Hull form. Fails for an unknown form, and if the coefficients are not those of the form.
     pub fn form(&self) -> Result<HullForm, IdentifiedShipError> {
-        let refused = || self.refused();
+        let refused = || self.unknown_model_error();
         let forms = HullForm::candidates(Some(&self.particulars()?));
         let form = forms.into_iter().find(|form| form.as_str() == self.form).ok_or_else(refused)?;
         let keys = self.coefficients.iter().map(|stored| stored.key.as_str());
@@ -109,13 +109,13 @@ impl IdentifiedHull {
     pub fn particulars(&self) -> Result<HullParticulars, IdentifiedShipError> {
         let mut particulars = HullParticulars::default();
         for (key, value) in &self.particulars {
-            Particular::find(key).ok_or_else(|| self.refused())?.set(&mut particulars, *value);
+            Particular::find(key).ok_or_else(|| self.unknown_model_error())?.set(&mut particulars, *value);
         }
         Ok(particulars)
     }
 
     /// Error of an unknown hull model.
-    pub fn refused(&self) -> IdentifiedShipError {
+    pub fn unknown_model_error(&self) -> IdentifiedShipError {
         IdentifiedShipError::Hull(self.form.clone())
     }
 

@@ -66,7 +66,7 @@ pub fn record(stem: &str) -> String {
 }
 
 /// Display name and unit of a figure of merit from the unit suffix of its identifier; an empty unit without one.
-pub fn figure(id: &str) -> (String, &'static str) {
+pub fn figure_of_merit(id: &str) -> (String, &'static str) {
     let known = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
     let (stem, unit) = known.unwrap_or((id, ""));
     (plain(stem), unit)
@@ -123,9 +123,9 @@ mod tests {
 
     #[test]
     fn figures_end_in_their_unit() {
-        assert_eq!(figure("first_overshoot_deg"), ("first overshoot".to_owned(), "deg"));
-        assert_eq!(figure("largest_yaw_rate_deg_s"), ("largest yaw rate".to_owned(), "deg/s"));
-        assert_eq!(figure("approach_m_s"), ("approach".to_owned(), "m/s"));
-        assert_eq!(figure("stable"), ("stable".to_owned(), ""));
+        assert_eq!(figure_of_merit("first_overshoot_deg"), ("first overshoot".to_owned(), "deg"));
+        assert_eq!(figure_of_merit("largest_yaw_rate_deg_s"), ("largest yaw rate".to_owned(), "deg/s"));
+        assert_eq!(figure_of_merit("approach_m_s"), ("approach".to_owned(), "m/s"));
+        assert_eq!(figure_of_merit("stable"), ("stable".to_owned(), ""));
     }
 }

@@ -30,7 +30,7 @@ impl Quantity {
     }
 
     /// Quantity of unknown uncertainty.
-    pub fn bare(value: f64) -> Self {
+    pub fn without_uncertainty(value: f64) -> Self {
         Self::new(value, None)
     }
 

@@ -124,7 +124,7 @@ impl Estimate {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
             Uncertainty::Intervals { K, .. } => with_error(self.response.K(), None, Some(*K)),
-            Uncertainty::None { .. } => Quantity::bare(self.response.K()),
+            Uncertainty::None { .. } => Quantity::without_uncertainty(self.response.K()),
         }
     }
 
@@ -133,7 +133,7 @@ impl Estimate {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
             Uncertainty::Intervals { T, .. } => with_error(self.response.T(), None, Some(*T)),
-            Uncertainty::None { .. } => Quantity::bare(self.response.T()),
+            Uncertainty::None { .. } => Quantity::without_uncertainty(self.response.T()),
         }
     }
 
@@ -143,7 +143,7 @@ impl Estimate {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => bias(&self.response, covariance),
             Uncertainty::Intervals { rudder_bias, .. } => with_error(value, None, Some(*rudder_bias)),
-            Uncertainty::None { .. } => Quantity::bare(value),
+            Uncertainty::None { .. } => Quantity::without_uncertainty(value),
         }
     }
 }
@@ -246,7 +246,7 @@ fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (b, value) = (response.K_over_T, response.rudder_bias);
     let m = &covariance.matrix;
     if m[(2, 2)] == 0.0 {
-        return Quantity::bare(value);
+        return Quantity::without_uncertainty(value);
     }
     let z2 = covariance.quantile95().powi(2);
     // (x b)² = z² (b² s_δδ − 2 x b s_bδ + x² s_bb), a quadratic in the distance x from the estimate.

@@ -141,13 +141,17 @@ mod tests {
         let entry = |method: &str, k_and_t: Option<[Quantity; 2]>| MethodEntry {
             method: method.into(),
             status: Status::Ok,
-            parameters: k_and_t.map(|[k_per_s, t_s]| IndexEstimates { k_per_s, t_s, delta_r_deg: Quantity::bare(0.0) }),
+            parameters: k_and_t.map(|[k_per_s, t_s]| IndexEstimates {
+                k_per_s,
+                t_s,
+                delta_r_deg: Quantity::without_uncertainty(0.0),
+            }),
             heading_rmse_deg: k_and_t.map(|_| 2.0),
             ..MethodEntry::default()
         };
         let usual = |k: f64, t: f64, ci95: Option<[f64; 2]>| {
-            let t = Quantity { ci95, ..Quantity::bare(t) };
-            [entry("output-error", Some([Quantity::bare(k), t])), entry("maximum-likelihood", None)]
+            let t = Quantity { ci95, ..Quantity::without_uncertainty(t) };
+            [entry("output-error", Some([Quantity::without_uncertainty(k), t])), entry("maximum-likelihood", None)]
         };
         let nearest = Recommendation { reason: VerdictReason::NearestReplay, lack: None, is_calm: false };
         let reason = |entries: &[MethodEntry], scatter: f64| {
@@ -160,7 +164,10 @@ mod tests {
         assert!(reason(&usual(-0.1, -40.0, Some([-90.0, 20.0])), 20.0).contains("below zero"));
         let mut biased = usual(0.1, 40.0, None).to_vec();
         biased[0] = entry("output-error", None);
-        biased.push(entry("least-squares", Some([Quantity::bare(0.1), Quantity::bare(40.0)])));
+        biased.push(entry(
+            "least-squares",
+            Some([Quantity::without_uncertainty(0.1), Quantity::without_uncertainty(40.0)]),
+        ));
         assert!(reason(&biased, 20.0).contains("found no answer"));
         assert!(reason(&usual(0.1, 40.0, None), 1.9).contains("a straight line"));
         assert_eq!(reason(&biased[2..], 20.0), "");
@@ -173,9 +180,9 @@ mod tests {
             method: method.into(),
             status: Status::Ok,
             parameters: Some(IndexEstimates {
-                k_per_s: Quantity::bare(0.1),
-                t_s: Quantity::bare(t),
-                delta_r_deg: Quantity::bare(0.0),
+                k_per_s: Quantity::without_uncertainty(0.1),
+                t_s: Quantity::without_uncertainty(t),
+                delta_r_deg: Quantity::without_uncertainty(0.0),
             }),
             heading_rmse_deg: Some(rms),
             ..MethodEntry::default()

@@ -59,7 +59,7 @@ impl HullSampler {
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
         let hull = Self { stored: stored.clone(), form, coefficients, root, from: from.transpose()? };
-        hull.with_coefficients(&stored.values()).ok_or_else(|| stored.refused())?;
+        hull.with_coefficients(&stored.values()).ok_or_else(|| stored.unknown_model_error())?;
         Ok(hull)
     }
 

@@ -255,7 +255,7 @@ fn turns(
         Some(current) => turn.figures(&turn::with_current_error(passage, &current, number as u64)),
     };
     let drawn: Vec<Characteristics> = made.iter().enumerate().map(drawn_figures).collect();
-    let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::bare));
+    let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::without_uncertainty));
     (figures, TurnTracks::of(&turn, &record, most_probable, made))
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use campaign::failure::OnPath;
 use pyo3::prelude::*;
-use study::commands::bench::{BenchRequest, measure, skipped};
+use study::commands::bench::{BenchRequest, run_benchmark, skipped};
 
 use crate::options::request;
 use crate::python_method::{PyIdentifier, PythonMethods};
@@ -28,7 +28,7 @@ pub fn bench(
         let asked: BenchRequest = request(options.collect())?;
         let entrant = |(label, function): (String, _)| (label, Arc::new(PyIdentifier(function)) as _);
         let entrants = functions.into_iter().map(entrant).collect();
-        let results = measure(&asked, seed, &entrants, None, observer.as_ref())?;
+        let results = run_benchmark(&asked, seed, &entrants, None, observer.as_ref())?;
         let text = results.json().on("describe", "bench.json".as_ref())?;
         Ok((text, results.skipped.iter().map(skipped).collect::<Vec<String>>()))
     };

@@ -7,7 +7,7 @@ use identify::Estimate;
 use identify::replay::replay;
 use pyo3::prelude::*;
 use study::documents;
-use study::records::repetitions;
+use study::records::repetition_warnings;
 use study::work;
 use trial::Trial;
 
@@ -62,7 +62,7 @@ pub fn fit(
         let priors = earlier(&priors)?;
         let mut methods = work::fit::methods(&methods, seed)?;
         for (label, function) in functions {
-            name::label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
+            name::check_label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
             if methods.iter().any(|(other, _)| *other == label) {
                 return Err(Failure::input(format!(
                     "own: {label:?}: another method has this label; give it one of its own"
@@ -71,7 +71,7 @@ pub fn fit(
             methods.push((label, Box::new(PyIdentifier(function))));
         }
         let mut warnings = Warnings::default();
-        warnings.extend(reading.iter().cloned().chain(repetitions(&records, &validation)));
+        warnings.extend(reading.iter().cloned().chain(repetition_warnings(&records, &validation)));
         let done = work::fit::fit([&records, &validation], &methods, &priors, true, warnings)?.with_predicted_circle();
         let warnings = sentences(done.document.answer_warnings().filter(|warning| !reading.contains(warning)));
         Ok(PyFit {

@@ -34,8 +34,8 @@ pub fn predict(
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
         let mut warnings = Warnings::default();
         let read = |(name, text): &(String, Option<String>)| match text {
-            Some(text) => StoredModel::of_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
-            None => StoredModel::of_file(Path::new(name), &asked, &mut warnings),
+            Some(text) => StoredModel::from_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
+            None => StoredModel::from_file(Path::new(name), &asked, &mut warnings),
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
         warnings.extend(reading.iter().cloned());

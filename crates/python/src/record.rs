@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use study::options::ReadingOptions;
-use study::records::{expand, file_of, of_log, read_all, source};
+use study::records::{expand, file_of, read_all, source, trial_from_log};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
@@ -164,13 +164,13 @@ pub fn of_table(
     sidecar: Option<&str>,
 ) -> Result<PyRecord, Failure> {
     let path = PathBuf::from(format!("{name}.csv"));
-    name::of_file(&path)?;
+    name::study_name(&path)?;
     let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
     let sidecar = sidecar.map_err(Failure::input)?;
     let mut log = Log::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
     let mut warnings = Warnings::default();
     warnings.extend(source(&path).of(std::mem::take(&mut log.warnings)));
-    let trial = of_log(log, &path, options, &mut warnings)?;
+    let trial = trial_from_log(log, &path, options, &mut warnings)?;
     Ok(PyRecord { trial, warnings: warnings.ranked() })
 }
 

@@ -8,7 +8,7 @@ use campaign::Observer;
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::task::default_folder;
+use campaign::shard::default_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -89,7 +89,7 @@ fn study(
     let theme = FigureOptions { paper: None, dpi: 600.0, style: None }.theme()?;
     let folder = ResultFolder::make(&out.unwrap_or_else(|| default_folder(&scenario.name)))?;
     let stored = collect(&scenario, &folder, restart, watch)?;
-    let publish = || publish::put(&stored, &folder, &theme, FigureChoice::Named);
+    let publish = || publish::write_files(&stored, &folder, &theme, FigureChoice::Named);
     let summary = match &watch.threads {
         Some(threads) => threads.install(publish),
         None => publish(),

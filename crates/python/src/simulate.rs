@@ -1,7 +1,7 @@
 //! `simulate`: trials of a scenario, as records with their truth.
 
-use campaign::answers::record_name;
 use campaign::failure::Failure;
+use campaign::outside_estimates::record_name;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use study::options::{Replicates, SimulateRequest};

@@ -5,7 +5,7 @@ use document::{Warning, Warnings};
 use pyo3::prelude::*;
 use study::documents::{self, curves::TracedRecord};
 use study::options::TraceRequest;
-use study::records::repetitions;
+use study::records::repetition_warnings;
 use study::work;
 
 use crate::curve::{ReplayArrays, curve};
@@ -53,9 +53,9 @@ pub fn trace(
     patiently(py, move || {
         // The command line requires the name of a record; the records themselves are passed separately.
         let asked: TraceRequest = request([options, vec![String::from("record")]].concat())?;
-        let [records, validation] = [records, validation].map(|trials| work::trace::without(&asked, trials));
+        let [records, validation] = [records, validation].map(|trials| work::trace::withhold_channels(&asked, trials));
         let mut warnings = Warnings::default();
-        warnings.extend(reading.iter().cloned().chain(repetitions(&records, &validation)));
+        warnings.extend(reading.iter().cloned().chain(repetition_warnings(&records, &validation)));
         let traced = work::trace::trace(
             [&records, &validation],
             &work::trace::settings(&asked)?,

@@ -149,7 +149,7 @@ impl Axis {
     }
 
     /// Scale that gives a value from its place: kind, ends and the fraction where it begins, or the names.
-    pub(crate) fn described(&self) -> String {
+    pub(crate) fn scale_text(&self) -> String {
         let (lo, hi) = (self.lo.min(self.hi), self.lo.max(self.hi));
         match &self.scale {
             AxisScale::Linear(_) => format!("linear|{lo}|{hi}"),
@@ -220,7 +220,7 @@ impl Axis {
 
     /// The axis with as many ticks as there is room for labels, `width` and `font` in points. Names are wrapped if
     /// their words fit.
-    pub(crate) fn fitted(self, width: f64, font: f64) -> Self {
+    pub(crate) fn with_fitting_ticks(self, width: f64, font: f64) -> Self {
         let pitch = width / self.ticks.len().max(1) as f64 - 0.4 * font;
         let has_room = |label: &str| label.split(' ').all(|word| text_width(word, font, false) <= pitch);
         if self.is_names() {

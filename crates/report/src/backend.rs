@@ -16,8 +16,8 @@ use plotters_backend::{
     FontTransform,
 };
 
-use crate::changes::Changes;
-use crate::fonts::{FAMILY_WITH_FALLBACK, LINE, text_width};
+use crate::changes::StyleChanges;
+use crate::fonts::{FAMILY_WITH_FALLBACK, LINE_SPACING, text_width};
 use crate::markup::{is_markup, runs};
 use crate::palette::{Dash, PAPER};
 use crate::printable::is_printable;
@@ -33,7 +33,7 @@ const TALLEST: u32 = 2_000_000;
 const MAX_REPEATS: f64 = 5000.0;
 
 /// Result of drawing; writing to memory does not fail.
-pub(crate) type Plotted<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
+pub(crate) type PlotResult<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>;
 
 type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
 
@@ -80,7 +80,7 @@ struct SvgDocument {
     /// Style and data of the open path.
     path: Option<(String, String)>,
     group: Option<OpenGroup>,
-    changes: Arc<Changes>,
+    changes: Arc<StyleChanges>,
 }
 
 /// SVG backend. Clones write into the same document.
@@ -92,7 +92,7 @@ pub(crate) struct Svg {
 
 impl Svg {
     /// An empty sheet of this width in points.
-    pub(crate) fn new(width: f64, changes: Arc<Changes>) -> Self {
+    pub(crate) fn new(width: f64, changes: Arc<StyleChanges>) -> Self {
         let document = SvgDocument { elements: String::new(), path: None, group: None, changes };
         Self { width: units(width).max(1) as u32, document: Rc::new(RefCell::new(document)) }
     }
@@ -311,7 +311,7 @@ impl DrawingBackend for Svg {
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, (x, y): BackendCoord) -> BackendResult {
         let mut document = self.document.borrow_mut();
         let (size, count) = (style.size(), text.split('\n').count());
-        let below = LINE * size * (count - 1) as f64;
+        let below = LINE_SPACING * size * (count - 1) as f64;
         // From the anchor to the base line of the first line.
         let first = match style.anchor().v_pos {
             VPos::Top => 0.8 * size,
@@ -333,7 +333,7 @@ impl DrawingBackend for Svg {
         };
         let (fill, font) = (document.colour(style.color()), (10.0 * size).round() / 10.0);
         for (number, line) in text.split('\n').enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let base = (f64::from(y) + first + LINE * size * number as f64).round();
+            let base = (f64::from(y) + first + LINE_SPACING * size * number as f64).round();
             let run = |(is_italic, run): (bool, &str)| match is_italic {
                 true => format!("<tspan font-style=\"italic\">{}</tspan>", escaped(run)),
                 false => escaped(run),
@@ -352,7 +352,7 @@ impl DrawingBackend for Svg {
     ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
         let (size, bold) = (style.size(), matches!(style.style(), FontStyle::Bold));
         let widest = text.split('\n').map(|line| text_width(line, size, bold)).fold(0.0, f64::max);
-        Ok((widest.ceil() as u32, (LINE * size * text.split('\n').count() as f64).ceil() as u32))
+        Ok((widest.ceil() as u32, (LINE_SPACING * size * text.split('\n').count() as f64).ceil() as u32))
     }
 }
 
@@ -380,7 +380,7 @@ mod tests {
     use crate::markup::symbol;
     use crate::palette::{DASHED, INK};
 
-    fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> Plotted) -> String {
+    fn drawn(fill: impl FnOnce(&DrawingArea<Svg, Shift>, &Svg) -> PlotResult) -> String {
         let svg = Svg::new(100.0, Arc::default());
         fill(&svg.clone().into_drawing_area(), &svg).unwrap();
         svg.finish(30.0)

@@ -7,7 +7,7 @@ use plotters::element::{Circle, DynElement, EmptyElement, IntoDynElement as _, P
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
-use crate::backend::{Plotted, Svg, SvgGroup, UNITS, units};
+use crate::backend::{PlotResult, Svg, SvgGroup, UNITS, units};
 use crate::fonts::{FAMILY, text_width};
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
@@ -117,7 +117,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    pub(crate) fn line(&self, points: &[PagePoint], stroke: Stroke) -> Plotted {
+    pub(crate) fn line(&self, points: &[PagePoint], stroke: Stroke) -> PlotResult {
         let Some(points) = placed(points) else { return Ok(()) };
         self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
         self.area.draw(&PathElement::new(points, stroke.style()))?;
@@ -125,27 +125,27 @@ impl Canvas {
         Ok(())
     }
 
-    pub(crate) fn fill(&self, points: &[PagePoint], colour: RGBColor, opacity: f64) -> Plotted {
+    pub(crate) fn fill(&self, points: &[PagePoint], colour: RGBColor, opacity: f64) -> PlotResult {
         let Some(points) = placed(points) else { return Ok(()) };
         self.area.draw(&Polygon::new(points, colour.mix(opacity).filled()))
     }
 
     /// Outline of a rectangle.
-    pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> Plotted {
-        let corners = [at((rect.x, rect.y)), at((rect.right(), rect.bottom()))];
+    pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> PlotResult {
+        let corners = [page_units((rect.x, rect.y)), page_units((rect.right(), rect.bottom()))];
         self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
         self.area.draw(&Rectangle::new(corners, stroke.style()))?;
         self.svg.end();
         Ok(())
     }
 
-    pub(crate) fn text(&self, place: PagePoint, text: &TextLine) -> Plotted {
+    pub(crate) fn text(&self, place: PagePoint, text: &TextLine) -> PlotResult {
         let Some(places) = placed(&[place]) else { return Ok(()) };
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
     /// Text on a white background, for places with lines underneath.
-    pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> Plotted {
+    pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> PlotResult {
         let [left, right] = text.ends(x);
         let (left, right, half) = (left - 0.12 * text.size, right + 0.12 * text.size, 0.5 * text.size);
         self.fill(&[(left, y - half), (right, y - half), (right, y + half), (left, y + half)], PAPER, 0.85)?;
@@ -153,12 +153,12 @@ impl Canvas {
     }
 
     /// Draws elements at places in backend units, such as a marker or a ship outline.
-    pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> Plotted {
+    pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> PlotResult {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
 
     /// Arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
-    pub(crate) fn head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> Plotted {
+    pub(crate) fn arrow_head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> PlotResult {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
         self.fill(&[(x, y), (bx - half * dy, by + half * dx), (bx + half * dy, by - half * dx)], colour, 1.0)
@@ -166,13 +166,13 @@ impl Canvas {
 }
 
 /// Point of the page converted to the units of the SVG backend.
-pub(crate) fn at((x, y): PagePoint) -> (i32, i32) {
+pub(crate) fn page_units((x, y): PagePoint) -> (i32, i32) {
     (units(x), units(y))
 }
 
 fn placed(points: &[PagePoint]) -> Option<Vec<(i32, i32)>> {
     let is_finite = points.iter().all(|(x, y)| x.is_finite() && y.is_finite());
-    is_finite.then(|| points.iter().copied().map(at).collect())
+    is_finite.then(|| points.iter().copied().map(page_units).collect())
 }
 
 #[rustfmt::skip]
@@ -187,7 +187,7 @@ const HULL: [(f64, f64); 7] =
 
 /// Polygon about a place, its corners in points from that place.
 fn polygon<C: Clone + 'static>(at: &C, corners: impl Iterator<Item = PagePoint>, colour: RGBColor) -> Element<C> {
-    let corners: Vec<(i32, i32)> = corners.map(self::at).collect();
+    let corners: Vec<(i32, i32)> = corners.map(self::page_units).collect();
     (EmptyElement::at(at.clone()) + Polygon::new(corners, colour.filled())).into_dyn()
 }
 
@@ -202,7 +202,7 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
         _ => polygon(&at, corners.iter().map(|(x, y)| (scale * radius * x, scale * radius * y)), colour),
     };
     let stroke = |[from, to]: [(f64, f64); 2]| {
-        let ends = [from, to].map(|(x, y)| self::at((radius * x, radius * y)));
+        let ends = [from, to].map(|(x, y)| self::page_units((radius * x, radius * y)));
         let style = Stroke::solid(look.colour, 0.55 * radius).style();
         (EmptyElement::at(at.clone()) + PathElement::new(ends.to_vec(), style)).into_dyn()
     };
@@ -223,7 +223,12 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
 
 /// Ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`. A white edge separates it from
 /// the lines under it.
-pub(crate) fn hull<C: Clone + 'static>(at: C, (dx, dy): PagePoint, length: f64, colour: RGBColor) -> Vec<Element<C>> {
+pub(crate) fn ship_outline<C: Clone + 'static>(
+    at: C,
+    (dx, dy): PagePoint,
+    length: f64,
+    colour: RGBColor,
+) -> Vec<Element<C>> {
     let outline = |half: f64, beam: f64, colour: RGBColor| {
         let turned = HULL.iter().map(move |(forward, side)| {
             let (forward, side) = (half * forward, beam * half * side);

@@ -8,7 +8,7 @@ use plotters::style::RGBColor;
 
 /// Replacement colours, and ends of axes by their titles.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Changes {
+pub(crate) struct StyleChanges {
     pub colours: Vec<(RGBColor, RGBColor)>,
     pub limits: BTreeMap<String, [f64; 2]>,
 }
@@ -20,7 +20,7 @@ pub(crate) fn colour(text: &str) -> Option<RGBColor> {
     Some(RGBColor(part(0)?, part(2)?, part(4)?))
 }
 
-impl Changes {
+impl StyleChanges {
     /// Replacement of a colour, or the colour itself.
     pub(crate) fn of(&self, colour: RGBColor) -> RGBColor {
         self.colours.iter().find(|(old, _)| *old == colour).map_or(colour, |(_, new)| *new)

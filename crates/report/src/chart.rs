@@ -9,7 +9,7 @@ use plotters::series::LineSeries;
 use plotters::style::{Color as _, RGBAColor};
 
 use crate::axis::Axis;
-use crate::backend::{Bounds, Plotted, Svg, SvgGroup, UNITS, units};
+use crate::backend::{Bounds, PlotResult, Svg, SvgGroup, UNITS, units};
 use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
 use crate::palette::{INK, Look, PAPER};
@@ -56,7 +56,7 @@ impl Chart {
     pub(crate) fn data_right(&self) -> f64 {
         Some(self.x.last())
             .filter(|last| last.is_finite())
-            .and_then(|last| self.across(last))
+            .and_then(|last| self.page_x(last))
             .unwrap_or(self.rect.right())
     }
 
@@ -66,19 +66,19 @@ impl Chart {
     }
 
     /// Horizontal page coordinate of a value, points; `None` if it is not on the scale.
-    pub(crate) fn across(&self, x: f64) -> Option<f64> {
+    pub(crate) fn page_x(&self, x: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS;
         self.x.has_place(x).then(at)
     }
 
     /// Vertical page coordinate of a value, points; `None` if it is not on the scale.
-    pub(crate) fn up(&self, y: f64) -> Option<f64> {
+    pub(crate) fn page_y(&self, y: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS;
         self.y.has_place(y).then(at)
     }
 
     /// Page point of a data point, also outside the frame; `None` if it is not on the scales.
-    pub(crate) fn place(&self, x: f64, y: f64) -> Option<PagePoint> {
+    pub(crate) fn page_point(&self, x: f64, y: f64) -> Option<PagePoint> {
         self.reach(x, y).filter(|_| self.has_place(&(x, y)))
     }
 
@@ -90,11 +90,11 @@ impl Chart {
 
     /// Place of a pair of values inside the frame.
     pub(crate) fn inside(&self, x: f64, y: f64) -> Option<PagePoint> {
-        self.place(x, y).filter(|place| self.rect.contains(*place))
+        self.page_point(x, y).filter(|place| self.rect.contains(*place))
     }
 
     /// Draws elements at values, all in one group.
-    pub(crate) fn draw(&self, group: SvgGroup, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> Plotted {
+    pub(crate) fn draw(&self, group: SvgGroup, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> PlotResult {
         self.canvas.svg.begin(group);
         elements.into_iter().try_for_each(|element| self.data.draw(&element))?;
         self.canvas.svg.end();
@@ -116,7 +116,7 @@ impl Chart {
         name: Option<&str>,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         stroke: Stroke,
-    ) -> Plotted {
+    ) -> PlotResult {
         let pairs: Vec<(f64, f64)> = pairs.into_iter().collect();
         let parts = pairs.split(|pair| !self.has_place(pair)).filter(|part| part.len() > 1);
         let lines = parts.flat_map(|part| LineSeries::new(part.to_vec(), stroke.style()));
@@ -124,7 +124,7 @@ impl Chart {
     }
 
     /// Area between two curves.
-    pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> Plotted {
+    pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> PlotResult {
         let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.has_place(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
@@ -135,13 +135,13 @@ impl Chart {
         name: Option<&str>,
         corners: impl IntoIterator<Item = (f64, f64)>,
         colour: RGBAColor,
-    ) -> Plotted {
+    ) -> PlotResult {
         let area = Polygon::new(corners.into_iter().collect::<Vec<_>>(), colour.filled());
         self.draw(self.cut(name), [area.into_dyn()])
     }
 
     /// Rectangle between two opposite corners.
-    pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> Plotted {
+    pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> PlotResult {
         self.area(None, [(left, low), (right, low), (right, high), (left, high)], colour)
     }
 
@@ -152,20 +152,20 @@ impl Chart {
         pairs: impl IntoIterator<Item = (f64, f64)>,
         radius: f64,
         colour: RGBAColor,
-    ) -> Plotted {
+    ) -> PlotResult {
         let dot = |pair| Circle::new(pair, units(radius).max(1) as u32, colour.filled()).into_dyn();
         self.draw(SvgGroup::named(name), pairs.into_iter().filter(|&(x, y)| self.inside(x, y).is_some()).map(dot))
     }
 
     /// Marker at a pair inside the frame, drawn whole even on the frame.
-    pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, look: &Look) -> Plotted {
+    pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, look: &Look) -> PlotResult {
         let is_inside = self.inside(x, y).is_some();
         self.draw(SvgGroup::named(name), marker((x, y), radius, look).into_iter().filter(|_| is_inside))
     }
 
     /// Interval with an arrow head at an end beyond the frame; returns whether there is such an end. An infinite end is
     /// beyond every frame.
-    pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> Plotted<bool> {
+    pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> PlotResult<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
         let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.reach(end, y)) else {
@@ -181,26 +181,26 @@ impl Chart {
         let edges = [self.rect.x, self.data_right()];
         let beyond = [(left < edges[0] - slack, edges[0], -1.0), (right > edges[1] + slack, edges[1], 1.0)];
         for (_, edge, direction) in beyond.into_iter().filter(|end| end.0) {
-            self.canvas.head((edge, height), (direction, 0.0), 0.6 * theme.small_font, stroke.colour)?;
+            self.canvas.arrow_head((edge, height), (direction, 0.0), 0.6 * theme.small_font, stroke.colour)?;
         }
         Ok(beyond.iter().any(|end| end.0))
     }
 
     /// Line from bottom to top, if its value is inside the frame.
-    pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> Plotted {
-        let is_inside = self.across(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
+    pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> PlotResult {
+        let is_inside = self.page_x(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
         let (low, high) = self.y.ends();
         self.line(name, [(x, low), (x, high)].into_iter().filter(|_| is_inside), stroke)
     }
 
     /// Line from left to right.
-    pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> Plotted {
+    pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> PlotResult {
         let (low, high) = self.x.ends();
         self.line(None, [(low, y), (high, y)], stroke)
     }
 
     /// Frame over the data, with two short slanted lines at the break of a logarithmic axis.
-    pub(crate) fn frame(&self, theme: &Theme) -> Plotted {
+    pub(crate) fn frame(&self, theme: &Theme) -> PlotResult {
         let stroke = Stroke::solid(INK, theme.thin);
         self.canvas.outline(self.rect, stroke)?;
         let Rect { x, y: _, w, h } = self.rect;

@@ -18,7 +18,7 @@ pub(crate) const FAMILY: &str = "DejaVu Sans";
 pub(crate) const FAMILY_WITH_FALLBACK: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 
 /// Line spacing of a text, in font sizes.
-pub(crate) const LINE: f64 = 1.15;
+pub(crate) const LINE_SPACING: f64 = 1.15;
 
 /// Number of font units per em.
 const UNITS_PER_EM: f64 = 2048.0;

@@ -9,7 +9,7 @@
 //! | the kinds of figure | [`figures`] |
 //! | sizes for screen and print | [`theme`] |
 //! | which method has which colour, marker and dash | [`palette`] |
-//! | SVG and PNG files | [`figure`] |
+//! | SVG and PNG files | [`drawing`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
 //! | a page of texts, tables and figures | [`Page`] |
 //! | a page for a browser, from the Markdown of a report and its figures | [`html`] |
@@ -17,12 +17,12 @@
 //! | text from outside, escaped for a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
-//! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, Ruler};
+//! use kempf_report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Plot};
 //! use kempf_report::{PlotCurve, Theme};
 //!
 //! let heading = PlotCurve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
 //! let layers = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
-//! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.3), layers)]));
+//! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(AxisSpec::heading(), 0.3), layers)]));
 //! let figure = figure.draw("The heading grows by 2° in 2 s", &Theme::screen());
 //! assert!(figure.svg().contains("heading"));
 //! ```
@@ -30,8 +30,8 @@
 //! A figure never fails for its data: an undefined number is omitted, and a figure without any data is an empty frame.
 
 pub mod curve;
+pub mod drawing;
 pub mod error;
-pub mod figure;
 pub mod figures;
 pub mod html;
 pub mod markdown;
@@ -50,14 +50,14 @@ mod changes;
 mod chart;
 mod fonts;
 mod indexed;
-mod key;
+mod legend;
 mod lines;
 mod markup;
 mod sheet;
 
 pub use curve::PlotCurve;
+pub use drawing::Drawing;
 pub use error::ReportError;
-pub use figure::Drawing;
 pub use markup::symbol;
 pub use page::{Page, PageFigure, PlacedFigures};
 pub use palette::CurveOrigin;

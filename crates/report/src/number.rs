@@ -84,7 +84,7 @@ pub fn interval(bounds: Option<[f64; 2]>) -> String {
 }
 
 /// A value with as many decimals as [`interval`] gives the ends of its interval; four significant digits without one.
-pub fn supported(value: f64, bounds: Option<[f64; 2]>) -> String {
+pub fn with_supported_digits(value: f64, bounds: Option<[f64; 2]>) -> String {
     match bounds.map(|[lo, hi]| (hi - lo) / STANDARD_DEVIATIONS) {
         Some(sd) if sd.is_finite() && sd > 0.0 => fixed(value, decimals_of_uncertainty(sd)),
         _ => significant(value, 4),
@@ -158,10 +158,10 @@ mod tests {
         assert_eq!(interval(Some([1.0, 1.0])), "[1.0000, 1.0000]");
         assert_eq!(interval(None), "–");
         assert_eq!(interval(Some([f64::NAN, 1.0])), "–");
-        assert_eq!(supported(0.078_12, Some([0.077_79, 0.078_45])), "0.07812");
-        assert_eq!(supported(0.003, Some([-0.2, 0.2])), "0.00");
-        assert_eq!(supported(0.078_12, Some([0.5, 0.5])), "0.07812");
-        assert_eq!(supported(0.078_12, None), "0.07812");
+        assert_eq!(with_supported_digits(0.078_12, Some([0.077_79, 0.078_45])), "0.07812");
+        assert_eq!(with_supported_digits(0.003, Some([-0.2, 0.2])), "0.00");
+        assert_eq!(with_supported_digits(0.078_12, Some([0.5, 0.5])), "0.07812");
+        assert_eq!(with_supported_digits(0.078_12, None), "0.07812");
         assert_eq!(optional(None, 2), "–");
         assert_eq!(optional(Some(-1.005), 1), "−1.0");
     }

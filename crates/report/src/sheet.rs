@@ -9,18 +9,18 @@ use plotters::drawing::IntoDrawingArea as _;
 use plotters::style::text_anchor::HPos;
 
 use crate::axis::{Axis, MAX_TICKS};
-use crate::backend::{Plotted, Svg, units};
+use crate::backend::{PlotResult, Svg, units};
 use crate::canvas::{Canvas, Stroke, TextLine};
 use crate::chart::Chart;
-use crate::figure::Drawing;
-use crate::fonts::LINE;
-use crate::key::{self, KeyEntry};
+use crate::drawing::Drawing;
+use crate::fonts::LINE_SPACING;
+use crate::legend::{self, LegendEntry};
 use crate::lines::{LEADING, balanced, wrap};
 use crate::palette::{GRID, INK};
 use crate::theme::Theme;
 
 /// Maximum share of the page for the names of rows; longer ones are broken into lines.
-pub(crate) const NAMES: f64 = 0.42;
+pub(crate) const MAX_NAMES_SHARE: f64 = 0.42;
 
 /// Density of the lines between ticks on a logarithmic axis.
 const LIGHT: f64 = 0.45;
@@ -48,7 +48,7 @@ pub(crate) struct Grid {
     /// Rows with their heights in points.
     pub rows: Vec<(AxisSide, f64)>,
     /// Text above each panel, row by row; empty if there is none.
-    pub heads: Vec<Option<KeyEntry>>,
+    pub heads: Vec<Option<LegendEntry>>,
     /// Number of panels, if the last row is not full.
     pub panels: Option<usize>,
     /// Common title of all vertical axes, for rows too low to have one each.
@@ -89,7 +89,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    pub(crate) fn new(theme: &Theme, finding: &str) -> Plotted<Self> {
+    pub(crate) fn new(theme: &Theme, finding: &str) -> PlotResult<Self> {
         let svg = Svg::new(theme.width, Arc::clone(&theme.changes));
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
         let mut sheet = Self { theme: theme.clone(), canvas, y: 0.5 * theme.small_font, edge: 0.0 };
@@ -103,7 +103,7 @@ impl Sheet {
     }
 
     /// Writes lines of a text at `x`, with a spacing of `leading` font sizes.
-    fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> Plotted {
+    fn lines(&mut self, lines: Vec<String>, x: f64, text: TextLine, leading: f64) -> PlotResult {
         for line in lines {
             self.y += leading * text.size;
             self.canvas.text((x, self.y - MIDDLE * text.size), &TextLine { text: line, ..text.clone() })?;
@@ -112,33 +112,33 @@ impl Sheet {
     }
 
     /// Draws the key, centred above the content that follows.
-    pub(crate) fn legend(&mut self, entries: &[KeyEntry]) -> Plotted {
+    pub(crate) fn legend(&mut self, entries: &[LegendEntry]) -> PlotResult {
         let theme = self.theme.clone();
         let room = theme.width - 2.0 * theme.small_font;
-        let fewest = key::rows(entries, room, &theme).len();
+        let fewest = legend::rows(entries, room, &theme).len();
         // Rows of equal length look better than full rows and a rest.
-        let narrower = (8..=20).map(|share| key::rows(entries, 0.05 * f64::from(share) * room, &theme));
+        let narrower = (8..=20).map(|share| legend::rows(entries, 0.05 * f64::from(share) * room, &theme));
         let rows = narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default();
-        let widest = rows.iter().map(|row| key::row_width(row, &theme)).fold(0.0, f64::max);
+        let widest = rows.iter().map(|row| legend::row_width(row, &theme)).fold(0.0, f64::max);
         for row in &rows {
             // Single entries are below each other.
-            let width = if rows.len() == entries.len() { widest } else { key::row_width(row, &theme) };
+            let width = if rows.len() == entries.len() { widest } else { legend::row_width(row, &theme) };
             let mut x = ((theme.width - width) / 2.0).max(theme.small_font);
             self.y += LEADING * theme.small_font;
             let mut most = 1;
             for entry in *row {
                 let place = (x, self.y - MIDDLE * theme.small_font);
                 most = most.max(entry.draw(&self.canvas, place, room + theme.small_font - x, &theme)?);
-                x += entry.width(&theme) + key::gap(&theme);
+                x += entry.width(&theme) + legend::gap(&theme);
             }
-            self.y += LINE * theme.small_font * (most - 1) as f64;
+            self.y += LINE_SPACING * theme.small_font * (most - 1) as f64;
         }
         self.y += if entries.is_empty() { 0.0 } else { 0.7 * theme.small_font };
         Ok(())
     }
 
     /// Writes remarks under the content so far, wrapped to the width of the page.
-    pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> Plotted {
+    pub(crate) fn note(&mut self, remarks: &[impl AsRef<str>]) -> PlotResult {
         let (margin, width) = (self.theme.small_font, self.theme.width);
         let text = remarks.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(" ");
         let lines = wrap(&text, margin, false, width - 2.0 * margin);
@@ -152,7 +152,7 @@ impl Sheet {
         let labels = grid.rows.iter().map(|(side, height)| self.row(side, *height).axis.widest(theme.tick_font));
         let titles = grid.rows.iter().map(|(side, height)| self.row(side, *height).title.lines().count());
         let lines = titles.max().unwrap_or(0).max(usize::from(grid.shared_title.is_some())) as f64;
-        let titles = if lines == 0.0 { 0.0 } else { (lines * LINE + 0.5) * theme.label_font };
+        let titles = if lines == 0.0 { 0.0 } else { (lines * LINE_SPACING + 0.5) * theme.label_font };
         0.5 * theme.small_font + titles + labels.fold(0.0, f64::max) + 2.0 * self.tick_length()
     }
 
@@ -164,19 +164,20 @@ impl Sheet {
             .changes
             .limited(side.axis.clone(), &side.title)
             .ticked(count)
-            .wrapped(theme.tick_font, NAMES * theme.width);
+            .wrapped(theme.tick_font, MAX_NAMES_SHARE * theme.width);
         AxisSide::new(axis, balanced(&side.title, theme.label_font, false, height).join("\n"))
     }
 
     /// Column with its ticks, and with labels and title wrapped.
     fn column(&self, side: &AxisSide, left: f64, width: f64) -> GridColumn {
         let theme = &self.theme;
-        let axis = theme.changes.limited(side.axis.clone(), &side.title).fitted(width, theme.tick_font);
+        let axis = theme.changes.limited(side.axis.clone(), &side.title).with_fitting_ticks(width, theme.tick_font);
         let title = wrap(&side.title, theme.label_font, false, width + theme.label_font);
         let is_turned = axis.is_names() && !axis.fits(width, theme.tick_font);
         let lines = axis.labels().map(|label| label.lines().count()).max().unwrap_or(0);
-        let labels = if is_turned { axis.widest(theme.tick_font) } else { LINE * theme.tick_font * lines as f64 };
-        let titles = if title.is_empty() { 0.0 } else { (0.45 + LINE * title.len() as f64) * theme.label_font };
+        let labels =
+            if is_turned { axis.widest(theme.tick_font) } else { LINE_SPACING * theme.tick_font * lines as f64 };
+        let titles = if title.is_empty() { 0.0 } else { (0.45 + LINE_SPACING * title.len() as f64) * theme.label_font };
         let below = 2.0 * self.tick_length() + labels + titles;
         GridColumn { side: AxisSide::new(axis, title.join("\n")), left, width, is_turned, below }
     }
@@ -197,7 +198,7 @@ impl Sheet {
 
     /// Draws a grid into a strip of the page, given by its left edge and its width, points. The left margin of the grid
     /// is a minimum.
-    pub(crate) fn grid_within(&mut self, grid: Grid, left: f64, width: f64) -> Plotted<Vec<Chart>> {
+    pub(crate) fn grid_within(&mut self, grid: Grid, left: f64, width: f64) -> PlotResult<Vec<Chart>> {
         let page = self.theme.width;
         let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
         // The strip is laid out like a page that ends at its right edge.
@@ -208,7 +209,7 @@ impl Sheet {
     }
 
     /// Draws mesh, axes and labels of the panels and returns their charts, row by row.
-    pub(crate) fn grid(&mut self, grid: Grid) -> Plotted<Vec<Chart>> {
+    pub(crate) fn grid(&mut self, grid: Grid) -> PlotResult<Vec<Chart>> {
         let theme = self.theme.clone();
         let (count, gap) = (grid.columns.len().max(1), Self::gap(&theme));
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
@@ -221,10 +222,10 @@ impl Sheet {
         let (mut charts, mut lowest) = (Vec::with_capacity(total), self.y);
         for (row, (side, height)) in grid.rows.iter().enumerate() {
             let room = width + gap - theme.small_font;
-            let heads: Vec<Option<&KeyEntry>> =
+            let heads: Vec<Option<&LegendEntry>> =
                 (0..count).map(|column| grid.heads.get(row * count + column)?.as_ref()).collect();
             let lines = heads.iter().flatten().map(|head| head.lines(room, &theme).len()).max().unwrap_or(0) as f64;
-            let further = LINE * (lines - 1.0);
+            let further = LINE_SPACING * (lines - 1.0);
             self.y += if lines > 0.0 { (0.15 + LEADING + further) * theme.small_font } else { 0.0 };
             let up = self.row(side, *height);
             let title = if side.title.is_empty() { grid.shared_title.as_deref().unwrap_or("") } else { &side.title };
@@ -235,7 +236,8 @@ impl Sheet {
                 }
                 let is_last = row * count + number + count >= total;
                 let chart = self.chart(column, &up, *height, [number == 0, is_last])?;
-                let axes = [(column.side.axis.described(), &*grid.columns[number].title), (up.axis.described(), title)];
+                let axes =
+                    [(column.side.axis.scale_text(), &*grid.columns[number].title), (up.axis.scale_text(), title)];
                 self.canvas.svg.panel(chart.bounds(), axes);
                 lowest = lowest.max(if is_last { self.y + height + column.below } else { 0.0 });
                 charts.push(chart);
@@ -254,7 +256,7 @@ impl Sheet {
 
     /// Chart of plotters with its mesh, axes and ticks, and with labels and titles if requested: at the left, and
     /// below.
-    fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> Plotted<Chart> {
+    fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> PlotResult<Chart> {
         let theme = &self.theme;
         let tick = self.tick_length();
         let beside = if labelled[0] { x.left - self.edge - 0.5 * theme.small_font } else { tick };
@@ -292,7 +294,7 @@ impl Sheet {
         let chart = Chart::new(&context, self.canvas.clone(), [x.side.axis.clone(), y.axis.clone()]);
         for (value, label) in x.side.axis.ticks.iter().filter(|_| labelled[1] && x.is_turned) {
             let text = TextLine { turned: true, ..TextLine::new(label.as_str(), theme.tick_font, HPos::Right) };
-            self.canvas.text((chart.across(*value).unwrap_or(f64::NAN), chart.rect.bottom() + 2.0 * tick), &text)?;
+            self.canvas.text((chart.page_x(*value).unwrap_or(f64::NAN), chart.rect.bottom() + 2.0 * tick), &text)?;
         }
         Ok(chart)
     }
@@ -308,7 +310,7 @@ impl Sheet {
 mod tests {
     use super::*;
     use crate::axis::Division;
-    use crate::key::KeySample;
+    use crate::legend::LegendSymbol;
 
     #[test]
     fn panels_share_edges_and_stay_on_the_page() {
@@ -335,10 +337,10 @@ mod tests {
     fn heads_and_keys_that_are_too_long_go_on_below() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
         let side = AxisSide::new(Axis::linear(0.0, 1.0, Division::Decimal), "x");
-        let head = |text: &str| Some(KeyEntry::new(KeySample::Nothing, text));
+        let head = |text: &str| Some(LegendEntry::new(LegendSymbol::Nothing, text));
         let drawn = |text: &str| {
             let mut sheet = Sheet::new(&theme, "").unwrap();
-            sheet.legend(&[KeyEntry::new(KeySample::Nothing, text.repeat(4))]).unwrap();
+            sheet.legend(&[LegendEntry::new(LegendSymbol::Nothing, text.repeat(4))]).unwrap();
             let heads = vec![head(text), head("b"), head("c")];
             let grid =
                 Grid { heads, columns: vec![side.clone(); 3], rows: vec![(side.clone(), 40.0)], ..Grid::default() };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 use thiserror::Error;
 
-use crate::changes::{Changes, colour};
+use crate::changes::{StyleChanges, colour};
 use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
 use plotters::style::RGBColor;
@@ -110,7 +110,7 @@ impl Style {
     /// screen.
     ///
     /// Fails if a value is out of its range, or if a key is unknown.
-    pub fn on(&self, theme: Theme) -> Result<Theme, StyleError> {
+    pub fn apply_to(&self, theme: Theme) -> Result<Theme, StyleError> {
         let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
             Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),
             value => Ok(value.map_or(1.0, |value| value / usual)),
@@ -118,7 +118,7 @@ impl Style {
         let font = share("font-size-pt", self.font_size_pt, theme.label_font, FONT)?;
         let line = share("line-width-pt", self.line_width_pt, theme.line, LINE)?;
         let marker = share("marker-radius-pt", self.marker_radius_pt, theme.marker, LINE)?;
-        let dpi = share("dpi", self.dpi, theme.dpi, crate::theme::DPI)?;
+        let dpi = share("dpi", self.dpi, theme.dpi, crate::theme::DPI_RANGE)?;
         Ok(Theme {
             dpi: theme.dpi * dpi,
             tick_font: theme.tick_font * font,
@@ -129,7 +129,7 @@ impl Style {
             thin: theme.thin * line,
             marker: theme.marker * marker,
             dot: theme.dot * marker,
-            changes: Arc::new(Changes { colours: self.colours()?, limits: self.limits()?.clone() }),
+            changes: Arc::new(StyleChanges { colours: self.colours()?, limits: self.limits()?.clone() }),
             ..theme
         })
     }
@@ -168,15 +168,15 @@ impl Style {
 mod tests {
     use super::*;
     use crate::curve::PlotCurve;
-    use crate::figures::{Layer, PanelRow, Panels, Pen, Plot, Ruler};
+    use crate::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Plot};
 
     fn drawn(style: &Style) -> String {
         let line = |y: [f64; 3], colour| Layer::line("", PlotCurve::new([0.0, 50.0, 100.0], y), Pen::new(colour));
         let rows = vec![
-            (PanelRow::new(Ruler::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
-            (PanelRow::new(Ruler::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),
+            (PanelRow::new(AxisSpec::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
+            (PanelRow::new(AxisSpec::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),
         ];
-        let theme = style.on(Theme::screen()).unwrap();
+        let theme = style.apply_to(Theme::screen()).unwrap();
         Plot::from(Panels::over_time(rows)).draw("\"#D55E00\"", &theme).svg().to_owned()
     }
 
@@ -202,7 +202,7 @@ mod tests {
     fn what_is_wrong_is_named() {
         let of =
             |name: &str, colour: &str| Style { colours: [(name.into(), colour.into())].into(), ..Style::default() };
-        let said = |style: Style| style.on(Theme::screen()).unwrap_err().to_string();
+        let said = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
         assert!(
             said(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
         );

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::changes::Changes;
+use crate::changes::StyleChanges;
 use crate::error::ReportError;
 
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
@@ -12,9 +12,9 @@ const COLUMN_MM: f64 = 85.0;
 /// Width of a full page of text, mm.
 const PAGE_MM: f64 = 180.0;
 /// Minimum and maximum width of a printed figure, mm.
-pub const WIDTH_MM: [f64; 2] = [60.0, 400.0];
+pub const WIDTH_RANGE_MM: [f64; 2] = [60.0, 400.0];
 /// Minimum and maximum resolution of a printed figure, dots per inch.
-pub const DPI: [f64; 2] = [72.0, 1200.0];
+pub const DPI_RANGE: [f64; 2] = [72.0, 1200.0];
 
 /// Sizes of a figure, in points on the finished page.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Theme {
     /// Radius of a measured point.
     pub(crate) dot: f64,
     /// Changes of a style in addition to sizes.
-    pub(crate) changes: Arc<Changes>,
+    pub(crate) changes: Arc<StyleChanges>,
 }
 
 impl Theme {
@@ -64,11 +64,11 @@ impl Theme {
     /// Fails outside 60–400 mm and 72–1200 dpi.
     pub fn paper(width_mm: f64, dpi: f64) -> Result<Self, ReportError> {
         let inside = |v: f64, [lo, hi]: [f64; 2]| v >= lo && v <= hi;
-        if !inside(width_mm, WIDTH_MM) {
-            return Err(ReportError::Width { width_mm, min_mm: WIDTH_MM[0], max_mm: WIDTH_MM[1] });
+        if !inside(width_mm, WIDTH_RANGE_MM) {
+            return Err(ReportError::Width { width_mm, min_mm: WIDTH_RANGE_MM[0], max_mm: WIDTH_RANGE_MM[1] });
         }
-        if !inside(dpi, DPI) {
-            return Err(ReportError::Resolution { dpi, min: DPI[0], max: DPI[1] });
+        if !inside(dpi, DPI_RANGE) {
+            return Err(ReportError::Resolution { dpi, min: DPI_RANGE[0], max: DPI_RANGE[1] });
         }
         Ok(Self::printed(width_mm, dpi))
     }
@@ -98,7 +98,7 @@ impl Theme {
 
     /// Height of a panel, points: `share` of the width, more in a narrow figure, whose type is large relative to its
     /// width.
-    pub(crate) fn tall(&self, share: f64) -> f64 {
+    pub(crate) fn panel_height(&self, share: f64) -> f64 {
         share * self.width * if self.is_narrow() { 1.45 } else { 1.0 }
     }
 

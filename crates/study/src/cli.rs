@@ -9,7 +9,9 @@ use crate::commands::{
     bench, check, doctor, find, fit, inspect, list, predict, report, run, schema, score, shell, sidecar, simulate,
     trace,
 };
-use crate::options::{Common, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest};
+use crate::options::{
+    CommonOptions, FindRequest, FitRequest, PredictRequest, RunRequest, SimulateRequest, TraceRequest,
+};
 use crate::{failures, interrupt, threads};
 use campaign::failure::Failure;
 use campaign::scenario::problem::suggestion;
@@ -32,7 +34,7 @@ struct Cli {
     #[command(flatten)]
     request: RunRequest,
     #[command(flatten)]
-    common: Common,
+    common: CommonOptions,
 }
 
 /// Options of a command together with the options common to all commands.
@@ -41,7 +43,7 @@ struct With<R: Args> {
     #[command(flatten)]
     request: R,
     #[command(flatten)]
-    common: Common,
+    common: CommonOptions,
 }
 
 #[derive(Debug, Subcommand)]
@@ -73,7 +75,7 @@ enum Command {
     /// for several studies also one page over them
     Report(With<report::ReportRequest>),
     /// Check the machine and the terminal: version, threads, instruction set, whether files can be written
-    Doctor(Common),
+    Doctor(CommonOptions),
     /// Print the JSON schema of a file, for editors and programs
     Schema(With<schema::SchemaRequest>),
     /// Print the completion script of a shell
@@ -84,12 +86,12 @@ enum Command {
 
 impl<R: Args> With<R> {
     /// Runs a command that works on one thread.
-    fn answer(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn answer(&self, run: impl FnOnce(&R, &CommonOptions) -> Result<(), Failure>) -> Result<(), Failure> {
         run(&self.request, &self.common)
     }
 
     /// Runs a command that works on several threads.
-    fn work(&self, run: impl FnOnce(&R, &Common) -> Result<(), Failure>) -> Result<(), Failure> {
+    fn work(&self, run: impl FnOnce(&R, &CommonOptions) -> Result<(), Failure>) -> Result<(), Failure> {
         threads::start(&self.common)?;
         run(&self.request, &self.common)
     }

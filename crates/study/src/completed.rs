@@ -47,7 +47,7 @@ pub fn methods_or_all() -> Vec<String> {
 }
 
 /// Names of the methods of a scenario.
-pub fn entrants() -> Vec<String> {
+pub fn scenario_methods() -> Vec<String> {
     methods().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::commands::report::{self, ReportRequest};
-use crate::options::{Common, FigureChoice, FigureOptions, Format, StudyFigureOptions};
+use crate::options::{CommonOptions, FigureChoice, FigureOptions, Format, StudyFigureOptions};
 use campaign::NoObserver;
 use campaign::collect::{collect, collect_shard};
 use campaign::disk::faults;
@@ -14,7 +14,7 @@ use campaign::failure::Failure;
 use campaign::files::{BLOCK_TIMINGS, MANIFEST, ROWS, TIMINGS};
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
-use campaign::task::Shard;
+use campaign::shard::Shard;
 
 const TEXT: &str = r#"
 question = "Is anything lost?"
@@ -35,8 +35,8 @@ fn scenario(more: &str) -> Scenario {
         .unwrap_or_else(|failure| panic!("{failure}"))
 }
 
-fn quiet(out: Option<&Path>) -> Common {
-    Common { out: out.map(Path::to_owned), threads: None, seed: None, quiet: true, format: Format::Text }
+fn quiet(out: Option<&Path>) -> CommonOptions {
+    CommonOptions { out: out.map(Path::to_owned), threads: None, seed: None, quiet: true, format: Format::Text }
 }
 
 /// Style of small figures, which take little time.

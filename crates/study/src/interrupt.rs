@@ -11,7 +11,7 @@ static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Ends the program during work that cannot be stopped, with the message of a failure.
-pub fn give_up(failure: &Failure) -> ! {
+pub fn exit_with_failure(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::fail(failure)))
 }
 
@@ -28,11 +28,11 @@ pub fn install() {
 }
 
 /// Sets whether the next interruption is a request to stop; with `false` it ends the program at once.
-pub fn listen(is_request: bool) {
+pub fn set_graceful_stop(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
 /// `true` if Ctrl-C has requested a stop.
-pub fn is_asked() -> bool {
+pub fn is_stop_requested() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

@@ -11,7 +11,7 @@ pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, P
 use ::trace::{EffectId, Rule, Selection};
 use campaign::failure::Failure;
 use campaign::scenario::problem::suggestion;
-use campaign::task::Shard;
+use campaign::shard::Shard;
 use clap::builder::StringValueParser;
 use clap::{Args, ValueEnum};
 use report::Table;
@@ -38,7 +38,7 @@ pub const MAX_THREADS: i64 = 1024;
 
 /// Options of every command.
 #[derive(Debug, Clone, Args)]
-pub struct Common {
+pub struct CommonOptions {
     /// Folder for results [default: `results/SCENARIO`, `./TRIAL-fit`, `./TRIAL-trace`, `./MODEL-predict`]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -56,7 +56,7 @@ pub struct Common {
     pub format: Format,
 }
 
-impl Common {
+impl CommonOptions {
     /// `true` if standard output stays empty; a requested format is written even with `--quiet`.
     pub fn is_silent(&self) -> bool {
         self.quiet && self.format == Format::Text
@@ -123,7 +123,7 @@ pub struct ReadingOptions {
 
 /// Options for samples of an estimate as a file.
 #[derive(Debug, Clone, Args)]
-pub struct DrawsOptions {
+pub struct SampleFileOptions {
     /// Also write samples of K, T and all other parameters from their covariance, one row each, as draws.parquet; their
     /// seed is --seed, or 0 without it
     #[arg(long)]
@@ -197,7 +197,7 @@ pub struct FitRequest {
     pub reading: ReadingOptions,
     /// Samples of the estimates
     #[command(flatten)]
-    pub draws: DrawsOptions,
+    pub draws: SampleFileOptions,
     /// How figures are drawn, and whether they are drawn
     #[command(flatten)]
     pub style: PageFigureOptions,
@@ -285,7 +285,7 @@ pub struct TraceRequest {
     pub rule: Rule,
     /// Samples of the model
     #[command(flatten)]
-    pub draws: DrawsOptions,
+    pub draws: SampleFileOptions,
     /// How figures are drawn, and whether they are drawn
     #[command(flatten)]
     pub style: PageFigureOptions,

@@ -12,9 +12,9 @@ use trial::file::{STDIN, display_path};
 use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
-use campaign::answers::TRIALS;
 use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::identified_ship::RecordFacts;
+use campaign::outside_estimates::TRIALS;
 use campaign::scenario::name;
 
 /// File name extensions of records in a folder.
@@ -69,7 +69,7 @@ pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &m
         )));
     }
     // Folders and figures are named after the record.
-    name::of_file(display_path(path))?;
+    name::study_name(display_path(path))?;
     let sidecar = Sidecar::path_for(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
     warnings.extend(source(display_path(path)).of(std::mem::take(&mut log.warnings)));
@@ -124,7 +124,7 @@ pub fn read_for_replay(
 }
 
 fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
-    of_log(
+    trial_from_log(
         open(path, options.columns.as_deref(), &options.with_columns, warnings)?,
         display_path(path),
         options,
@@ -135,7 +135,12 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
 /// Record in a log: the selected part, or its zig-zag. `path` is its name in messages.
 ///
 /// Fails if that part is not a record, or if the log holds several zig-zags and none is selected.
-pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
+pub fn trial_from_log(
+    log: Log,
+    path: &Path,
+    options: &ReadingOptions,
+    warnings: &mut Warnings,
+) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
         log.into_interval(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
@@ -227,7 +232,7 @@ fn ship(
 }
 
 /// Warning if records with a speed or positions give no track, with the reason.
-pub fn no_track(shown: &RecordFacts) -> Option<Warning> {
+pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
     shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
@@ -242,7 +247,7 @@ pub fn rudder_logged_late(late: f64) -> String {
 
 /// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
 /// record gives no validation.
-pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
+pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
     let twice =
         trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
@@ -254,7 +259,7 @@ pub fn repetitions(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
 }
 
 /// Unique names: the given ones, with a number if several are equal.
-pub fn names(given: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
+pub fn unique_names(given: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in given {
         let name = name.as_ref();
@@ -289,12 +294,12 @@ pub fn file_of(trial: &Trial) -> (&str, &str) {
 
 #[cfg(test)]
 mod tests {
-    use super::names;
+    use super::unique_names;
 
     #[test]
     fn no_two_records_have_the_same_name() {
-        assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
-        assert_eq!(names(["a", "a-2", "a", "a"].into_iter()), ["a", "a-2", "a-3", "a-4"]);
-        assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
+        assert_eq!(unique_names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
+        assert_eq!(unique_names(["a", "a-2", "a", "a"].into_iter()), ["a", "a-2", "a-3", "a-4"]);
+        assert_eq!(unique_names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
     }
 }

@@ -19,7 +19,7 @@ pub struct RescaledRecords {
 /// Brings fitted and held-out records to the scale of the first if their scales differ.
 ///
 /// Fails if the scales differ and a record does not declare length and speed.
-pub fn together(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
+pub fn to_common_scale(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
     let scales = Scales::from_trials(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
         Some(scales) => scales.to_first_scale(records.to_vec()),
@@ -35,7 +35,7 @@ pub fn scale_name(Particulars { length, speed }: Particulars) -> String {
 
 impl RescaledRecords {
     /// Sentence on the scaling of the records; `None` for records of one scale.
-    pub fn sentence(&self) -> Option<String> {
+    pub fn scaling_sentence(&self) -> Option<String> {
         let scales = self.scales.as_ref()?;
         let first = scales.particulars[0];
         let scale_part = |(scale, ship): (usize, &Particulars)| {

@@ -9,14 +9,14 @@ use std::io::{ErrorKind, Write};
 use report::Table;
 use report::printable::escaped;
 
-use crate::options::{Common, Format};
+use crate::options::{CommonOptions, Format};
 use campaign::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
 /// Fails if the lines cannot be written, except to a closed pipe.
-pub fn say(lines: &str) -> Result<(), Failure> {
-    put(&shown(lines))
+pub fn print_lines(lines: &str) -> Result<(), Failure> {
+    put(&escaped_lines(lines))
 }
 
 fn put(text: &str) -> Result<(), Failure> {
@@ -32,7 +32,7 @@ fn put(text: &str) -> Result<(), Failure> {
 /// Writes a line to standard error, with its first word in colour on a terminal. A failure to write is ignored.
 pub fn warn(line: &str) {
     let stream = std::io::stderr();
-    let line = shown(line);
+    let line = escaped_lines(line);
     let line = if has_terminal_colours(&stream) { coloured(&line) } else { line };
     let _ = writeln!(stream.lock(), "{line}");
 }
@@ -74,8 +74,8 @@ pub struct CommandOutput<'a> {
 /// Prints a result and its warnings, unless the output is silent. In formats for programs, standard output has only the
 /// table or the document, and notes go to standard error.
 ///
-/// Fails as [`say`] does.
-pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
+/// Fails as [`print_lines`] does.
+pub fn print_output(common: &CommonOptions, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
     let CommandOutput { frame: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
         if !common.quiet {
@@ -84,13 +84,13 @@ pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) 
     };
     match common.format {
         _ if common.is_silent() => {}
-        Format::Text => say(&format!("{before}\n{}{behind}{notes}", table.to_text()))?,
+        Format::Text => print_lines(&format!("{before}\n{}{behind}{notes}", table.to_text()))?,
         Format::Json => {
-            say_document(document)?;
+            print_unescaped(document)?;
             note(notes.lines().last().unwrap_or_default());
         }
         format => {
-            say(format.render(table).trim_end())?;
+            print_lines(format.render(table).trim_end())?;
             note(notes.trim_start());
         }
     }
@@ -99,20 +99,20 @@ pub fn tell(common: &Common, output: &CommandOutput, warnings: &[impl Display]) 
 }
 
 /// Writes warnings to standard error, one per line, unless `--quiet` is given.
-pub fn warn_of(common: &Common, warnings: &[impl Display]) {
+pub fn warn_of(common: &CommonOptions, warnings: &[impl Display]) {
     let wanted = warnings.iter().filter(|_| !common.quiet);
     wanted.for_each(|warning| warn(&format!("warning: {warning}")));
 }
 
 /// Writes a document to standard output unchanged: JSON itself escapes control characters.
 ///
-/// Fails as [`say`] does.
-pub fn say_document(document: &str) -> Result<(), Failure> {
+/// Fails as [`print_lines`] does.
+pub fn print_unescaped(document: &str) -> Result<(), Failure> {
     put(document.trim_end())
 }
 
 /// Lines with control characters escaped.
-pub fn shown(lines: &str) -> String {
+pub fn escaped_lines(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }
 

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use campaign::failure::Failure;
 use clap::{Args, ValueEnum};
 use report::Theme;
-use report::theme::{DPI, WIDTH_MM};
+use report::theme::{DPI_RANGE, WIDTH_RANGE_MM};
 use trial::file::{Kind, read_text};
 
 /// Style of figures.
 #[derive(Debug, Clone, Args)]
 pub struct FigureOptions {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
-    #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", value_parser = within(WIDTH_RANGE_MM), allow_hyphen_values = true)]
     pub paper: Option<f64>,
     /// Resolution of figures for print
-    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
+    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI_RANGE), allow_hyphen_values = true)]
     pub dpi: f64,
     /// Sizes, colours and limits of axes of the figures; `study schema style` has all keys
     #[arg(long, value_name = "FILE.toml")]
@@ -101,7 +101,7 @@ impl FigureOptions {
             Some((width_mm, dpi)) => Theme::paper(width_mm, dpi).map_err(|error| named(error.to_string()))?,
         };
         let style = report::Style { dpi: style.dpi.filter(|_| self.paper.is_none()), ..style };
-        style.on(theme).map_err(|error| named(error.to_string()))
+        style.apply_to(theme).map_err(|error| named(error.to_string()))
     }
 }
 

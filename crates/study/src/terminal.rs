@@ -24,7 +24,7 @@ impl Terminal {
 
 impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
-        interrupt::listen(true);
+        interrupt::set_graceful_stop(true);
         let threads = rayon::current_num_threads();
         self.steps.get_or_init(|| ProgressSteps::new(self.label, most, done, threads, self.quiet));
     }
@@ -35,7 +35,7 @@ impl Observer for Terminal {
 
     fn end(&self) {
         self.steps.get().iter().for_each(|steps| steps.finish());
-        interrupt::listen(false);
+        interrupt::set_graceful_stop(false);
     }
 
     fn note(&self, line: &str) {
@@ -49,10 +49,10 @@ impl Observer for Terminal {
     }
 
     fn is_asked_to_stop(&self) -> bool {
-        interrupt::is_asked()
+        interrupt::is_stop_requested()
     }
 
-    fn give_up(&self, failure: &Failure) {
-        interrupt::give_up(failure)
+    fn on_unstoppable_trial(&self, failure: &Failure) {
+        interrupt::exit_with_failure(failure)
     }
 }

@@ -2,7 +2,7 @@
 
 use campaign::failure::Failure;
 
-use crate::options::{Common, MAX_THREADS};
+use crate::options::{CommonOptions, MAX_THREADS};
 
 /// Environment variable for the number of threads, used if the command line gives none.
 const THREADS: &str = "RAYON_NUM_THREADS";
@@ -13,7 +13,7 @@ pub fn cores() -> usize {
 }
 
 /// Number of threads for parallel work.
-pub fn count(common: &Common) -> usize {
+pub fn count(common: &CommonOptions) -> usize {
     let variable = std::env::var(THREADS).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
     common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
 }
@@ -27,7 +27,7 @@ fn threads_of(variable: Option<&str>, cores: usize) -> usize {
 }
 
 /// Starts the threads of all parallel work.
-pub fn start(common: &Common) -> Result<(), Failure> {
+pub fn start(common: &CommonOptions) -> Result<(), Failure> {
     let threads = count(common);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)

@@ -201,7 +201,7 @@ impl TraceParts<'_> {
     fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, fitted: f64) -> ParameterEntry {
         let quantity = match entry.prior.is_fitted() {
             true => quantity(NormalMixture { parts }.summary()),
-            false => Quantity::bare(parts[0].1),
+            false => Quantity::without_uncertainty(parts[0].1),
         };
         self.number(entry.parameter, quantity, entry.only, entry.is_at_bound(fitted))
     }
@@ -271,7 +271,7 @@ impl TraceParts<'_> {
         let sd = sea.sd * self.full.law.variance[0].sqrt();
         let values = [sd, sea.frequency, sea.damping];
         let parameters = waves.parameters().iter().zip(values).map(|(parameter, value)| {
-            (parameter.symbol.into(), self.number(parameter, Quantity::bare(value), None, false))
+            (parameter.symbol.into(), self.number(parameter, Quantity::without_uncertainty(value), None, false))
         });
         let gain = self.full.waves_gain;
         let probability = |factor: f64| prior_odds::probability_from_gain(0.5 * gain, factor);

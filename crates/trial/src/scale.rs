@@ -170,10 +170,10 @@ mod tests {
         assert!(word == Scaling::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
         assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
         assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
-        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::bare(2.0)]), (None, Scaling::CannotBeTold));
+        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]), (None, Scaling::CannotBeTold));
         // One of three estimates without an error: the verdict is that of the two others, except agreement of all
         // three.
-        let three = [of(1.0, 0.01), Quantity::bare(1.0), of(1.01, 0.01)];
+        let three = [of(1.0, 0.01), Quantity::without_uncertainty(1.0), of(1.01, 0.01)];
         assert_eq!(compare_scales(&three).1, Scaling::CannotBeTold);
         let (difference, word) = compare_scales(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
         assert!(difference.is_some_and(|d| (d + 0.11 / 0.01 / 2f64.sqrt()).abs() < 1e-9), "{difference:?}");

@@ -176,7 +176,7 @@ pub fn rows(data: &[u8]) -> bool {
 /// Target of the stored design, with the rows of the small study.
 pub fn cells(data: &[u8]) -> bool {
     static ROWS: LazyLock<Vec<u8>> = LazyLock::new(|| seeds::rows().swap_remove(0));
-    match Design::of_text(data) {
+    match Design::from_json(data) {
         Ok(design) => {
             for cell in &design.cells {
                 assert_eq!(cell.labels.len(), design.axes.len(), "labels of a cell and axes");
@@ -238,7 +238,7 @@ fn is_a_failure(failure: &Failure) -> bool {
 fn is_one_message(message: &str) -> bool {
     assert!(!message.trim().is_empty(), "an empty message");
     assert!(message.len() <= LONGEST_MESSAGE, "a message of {} bytes", message.len());
-    let shown = screen::shown(message);
+    let shown = screen::escaped_lines(message);
     let control = shown.chars().find(|&character| character.is_control() && character != '\n');
     assert!(control.is_none(), "a message with the control character {control:?}");
     false

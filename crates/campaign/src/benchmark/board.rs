@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::statistics::{mean, median_and_p90, ranks, ratio};
-use crate::statistics::{Statistic, grouped, resampled, share};
+use crate::statistics::{Statistic, grouped, resample_clusters, wilson_share};
 
 pub use crate::benchmark::statistics::ScoreFigure;
 
@@ -65,19 +65,19 @@ pub struct WilsonShare {
 impl WilsonShare {
     /// Share of `count` in `of`; `None` for no cases.
     pub fn new(count: usize, of: usize) -> Option<Self> {
-        let Statistic { ci95, .. } = share(count as u64, of as u64)?;
+        let Statistic { ci95, .. } = wilson_share(count as u64, of as u64)?;
         Some(Self { count, of, ci95: ci95? })
     }
 }
 
 /// Leaderboards of all tasks that have a score, one per task and study.
 pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
-    let scored = by_field(cases, |task| task.score().is_some());
+    let scored = by_task_and_study(cases, |task| task.score().is_some());
     scored.into_iter().map(|((task, field), group)| board(task, field, &group, methods, reference)).collect()
 }
 
 /// Cases of the selected tasks, grouped by task and study.
-pub(super) fn by_field(
+pub(super) fn by_task_and_study(
     cases: &[BenchCase],
     is_wanted: impl Fn(BenchTask) -> bool,
 ) -> Vec<((BenchTask, &str), Vec<&BenchCase>)> {
@@ -110,7 +110,7 @@ impl Scores {
     /// Two statistics of all cases, with intervals of the cluster bootstrap.
     fn figures(&self, statistic: impl Fn(&[usize]) -> [f64; 2]) -> [ScoreFigure; 2] {
         let whole: Vec<usize> = (0..self.ranks.len()).collect();
-        let (values, drawn) = (statistic(&whole), resampled(&self.clusters, &statistic));
+        let (values, drawn) = (statistic(&whole), resample_clusters(&self.clusters, &statistic));
         [0, 1]
             .map(|k| ScoreFigure::new(values[k], self.clusters.len(), drawn.iter().map(|figures| figures[k]).collect()))
     }

@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::board::{ScoreFigure, Scores, by_field};
+use crate::benchmark::board::{ScoreFigure, Scores, by_task_and_study};
 use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::statistics::mean;
-use crate::statistics::{grouped, resampled_by_set};
+use crate::statistics::{grouped, resample_sets};
 
 /// Overall ranking of the methods.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -21,7 +21,7 @@ pub struct OverallRanking {
 /// Ranking over the tasks that predict a record outside the fit; `None` if there is no such task.
 pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
-    let fields = by_field(cases, is_prediction);
+    let fields = by_task_and_study(cases, is_prediction);
     let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
     // Every method takes part in every prediction.
     let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::of(cases, methods)).collect();
@@ -56,7 +56,7 @@ impl MeanRanks {
         let count = clusters.len();
         let sets = grouped(clusters, |cluster| cases[cluster[0]].set.as_str());
         let sets: Vec<Vec<Vec<usize>>> = sets.into_iter().map(|(_, clusters)| clusters).collect();
-        let drawn = resampled_by_set(&sets, means);
+        let drawn = resample_sets(&sets, means);
         Self { clusters: count, whole, drawn, methods: methods.into_iter().map(|(method, _)| method).collect() }
     }
 }

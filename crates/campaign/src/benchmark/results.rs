@@ -6,7 +6,7 @@ use crate::benchmark::board::{Board, boards};
 use crate::benchmark::cases::{BenchCase, BenchSet, BenchTask, Skipped};
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
-use crate::benchmark::questions;
+use crate::benchmark::study_cases;
 use crate::rows::StudyRow;
 use crate::scenario::Scenario;
 use crate::statistics::distinct;
@@ -76,7 +76,7 @@ impl BenchDocument {
         }));
         let (labels, summaries): (Vec<String>, Vec<String>) = methods.into_iter().unzip();
         let (mut cases, mut sets, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
-        for study in studies.iter().map(|(scenario, rows)| questions::cases(scenario, rows)) {
+        for study in studies.iter().map(|(scenario, rows)| study_cases::cases(scenario, rows)) {
             cases.extend(study.cases.into_iter().filter(|case| tasks.is_empty() || tasks.contains(&case.task)));
             sets.extend(study.sets);
             skipped.extend(study.skipped);
@@ -101,7 +101,7 @@ impl BenchDocument {
     }
 
     /// Names of the studies that have a leaderboard, in order.
-    pub fn fields(&self) -> Vec<&str> {
+    pub fn study_names(&self) -> Vec<&str> {
         distinct(self.boards.iter().map(|board| board.field.as_str()))
     }
 

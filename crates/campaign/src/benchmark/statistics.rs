@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
 
-use crate::statistics::{Moments, interval};
+use crate::statistics::{Moments, percentile_interval};
 
 /// Statistic of scores with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -21,7 +21,7 @@ impl ScoreFigure {
     /// Statistic with the interval of its resampled values, in any order.
     pub fn new(value: f64, clusters: usize, resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
-        Self { value: finite(value), ci95: interval(clusters, resampled).map(|ends| ends.map(finite)) }
+        Self { value: finite(value), ci95: percentile_interval(clusters, resampled).map(|ends| ends.map(finite)) }
     }
 
     /// Order by value; a statistic that falls on a failed estimate comes last.
@@ -62,7 +62,7 @@ pub fn ranks(scores: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::resampled;
+    use crate::statistics::resample_clusters;
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
     use std::f64::consts::LN_2;
@@ -97,9 +97,12 @@ mod tests {
             // Every number twice, in a cluster of its own.
             let clusters: Vec<Vec<usize>> = (0..40).map(|place| vec![place, place]).collect();
             let of = |cases: &[usize]| median_and_p90(cases.iter().map(|&case| values[case]).collect())[0];
-            let figure = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
+            let figure = ScoreFigure::new(of(&clusters.concat()), clusters.len(), resample_clusters(&clusters, of));
             if *sample == 0 {
-                assert_eq!(figure, ScoreFigure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of)));
+                assert_eq!(
+                    figure,
+                    ScoreFigure::new(of(&clusters.concat()), clusters.len(), resample_clusters(&clusters, of))
+                );
             }
             let [Some(low), Some(high)] = figure.ci95.expect("enough clusters") else { panic!("finite") };
             low <= LN_2 && LN_2 <= high

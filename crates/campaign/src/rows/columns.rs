@@ -8,7 +8,7 @@ use identify::StopReason;
 use serde::Deserialize;
 use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
-use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
+use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};
 
 /// Fixed column of a file of rows.
 pub struct RowColumn {
@@ -169,7 +169,7 @@ fn set_stop(row: &mut StudyRow, word: &str) -> Result<(), String> {
 }
 
 /// Trace result of a row, created with its first column.
-fn answer(row: &mut StudyRow) -> &mut TraceAnswer {
+fn answer(row: &mut StudyRow) -> &mut TraceRow {
     row.traced.get_or_insert_default()
 }
 
@@ -318,7 +318,7 @@ fn set_verdict(row: &mut StudyRow, word: &str) -> Result<(), String> {
 }
 
 fn predicted(row: &StudyRow) -> Option<Cow<'_, str>> {
-    let write = |PredictedFigure { name, truth, median, ci90: [low, high] }: &PredictedFigure| {
+    let write = |PredictedCharacteristic { name, truth, median, ci90: [low, high] }: &PredictedCharacteristic| {
         format!("{name}={truth}|{median}|{low}|{high}")
     };
     Some(joined(row.predicted.as_ref()?, write))
@@ -329,7 +329,7 @@ fn set_predicted(row: &mut StudyRow, text: &str) -> Result<(), String> {
         let (name, numbers) = part.split_once('=')?;
         let numbers: Vec<f64> = numbers.split('|').map(str::parse).collect::<Result<_, _>>().ok()?;
         let [truth, median, low, high] = *numbers.as_slice() else { return None };
-        Some(PredictedFigure { name: name.into(), truth, median, ci90: [low, high] })
+        Some(PredictedCharacteristic { name: name.into(), truth, median, ci90: [low, high] })
     };
     row.predicted = Some(list(text, "predictions", read)?.into());
     Ok(())

@@ -106,11 +106,11 @@ pub fn encode(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> Resu
 
 fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet::errors::Result<Vec<u8>> {
     let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-    for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
+    for name in layout.names().filter(|name| !RowLayout::is_dictionary_encoded(name)) {
         properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
     }
     let mut file = SerializedFileWriter::new(Vec::new(), layout.schema(), Arc::new(properties.build()))?;
-    let columns: Vec<Values> = layout.take(rows).collect();
+    let columns: Vec<Values> = layout.columns_of(rows).collect();
     let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: sha256_of(&columns) };
     parquet_table::write_group(&mut file, columns)?;
     let label = serde_json::to_string(&label).expect("texts and numbers");
@@ -162,7 +162,7 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
     if sha256_of(&columns) != values_sha256 {
         return Err("the SHA-256 of its values differs from its label".to_owned().into());
     }
-    Ok(layout.put(columns, rows)?)
+    Ok(layout.rows_from(columns, rows)?)
 }
 
 /// Verified label of a file.

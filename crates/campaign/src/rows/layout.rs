@@ -103,7 +103,7 @@ impl RowLayout {
     }
 
     /// `true` if the values of a column repeat often enough for dictionary encoding; those of estimates do not.
-    pub(super) fn repeats(name: &str) -> bool {
+    pub(super) fn is_dictionary_encoded(name: &str) -> bool {
         let text = [
             "method",
             "failure",
@@ -122,7 +122,7 @@ impl RowLayout {
     }
 
     /// Columns of rows, in order.
-    pub(super) fn take<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
+    pub(super) fn columns_of<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
         self.columns().map(move |(_, source)| match source {
             ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
                 Access::Count(get, _) => Values::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),
@@ -141,7 +141,7 @@ impl RowLayout {
     }
 
     /// Rows from all columns, each of `length` values. Fails for a value that the design does not allow, and names it.
-    pub(super) fn put(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
+    pub(super) fn rows_from(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
         let mut rows = vec![StudyRow::default(); length];
         let mut drawn = vec![vec![None; self.draws.len()]; length];
         for ((_, source), values) in self.columns().zip(columns) {

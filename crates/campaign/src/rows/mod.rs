@@ -14,4 +14,4 @@ mod tests;
 pub use columns::{BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
 pub use file::{BlockLabel, Damage, decode, encode};
 pub use layout::RowLayout;
-pub use row::{EffectSize, LocatedMoment, NamedEffect, PredictedFigure, StudyRow, TraceAnswer};
+pub use row::{EffectSize, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};

@@ -52,7 +52,7 @@ impl NamedEffect {
     }
 
     /// `true` if an effect is this one or one of its aliases.
-    pub fn holds(&self, id: &str) -> bool {
+    pub fn includes(&self, id: &str) -> bool {
         *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)
     }
 }
@@ -74,7 +74,7 @@ pub struct LocatedMoment {
 
 /// Predicted characteristic of a manoeuvre, with that of the true ship.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PredictedFigure {
+pub struct PredictedCharacteristic {
     /// Manoeuvre and characteristic, with the unit: `zig-zag 20/20 first_overshoot_deg`.
     pub name: Box<str>,
     /// True value.
@@ -85,16 +85,16 @@ pub struct PredictedFigure {
     pub ci90: [f64; 2],
 }
 
-impl PredictedFigure {
+impl PredictedCharacteristic {
     /// `true` if the interval contains the truth.
-    pub fn holds(&self) -> bool {
+    pub fn covers_truth(&self) -> bool {
         (self.ci90[0]..=self.ci90[1]).contains(&self.truth)
     }
 }
 
 /// Result of a trace on one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct TraceAnswer {
+pub struct TraceRow {
     /// Verdict.
     pub verdict: Verdict,
     /// Named effects, in the order of discovery.
@@ -159,9 +159,9 @@ pub struct StudyRow {
     /// Reason of termination.
     pub stop: Option<&'static str>,
     /// Result of a trace.
-    pub traced: Option<Box<TraceAnswer>>,
+    pub traced: Option<Box<TraceRow>>,
     /// Predicted characteristics of manoeuvres, empty without a covariance; `None` for a study without predictions.
-    pub predicted: Option<Box<[PredictedFigure]>>,
+    pub predicted: Option<Box<[PredictedCharacteristic]>>,
     /// Sampled values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }

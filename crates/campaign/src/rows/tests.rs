@@ -79,7 +79,7 @@ fn sizes_of_effects_belong_to_the_effects_named() {
         effect("speed_loss", vec![size("m_a", 0.1 + 0.2, Some(1e-17)), size("e_n′", -0.0, None)]),
         effect("wind_moment", Vec::new()),
     ];
-    let row = |named| StudyRow { traced: Some(Box::new(TraceAnswer { named, ..TraceAnswer::default() })), ..good(0) };
+    let row = |named| StudyRow { traced: Some(Box::new(TraceRow { named, ..TraceRow::default() })), ..good(0) };
     let [.., column] = &RECORD_COLUMNS;
     let Access::Text(get, set) = column.access else { panic!("{} is a text", column.name) };
     for named in [named, Vec::new()] {
@@ -113,7 +113,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
         (Dependence::YawRate, "moment with r|r|".into(), vec!["a".into(), "b".into()]);
     let moment = LocatedMoment { depends_on, form, from_s: Some(1.0 / 3.0), until_s: None, alternatives };
     let answer = |verdict: Verdict, named: Vec<NamedEffect>| {
-        let answer = TraceAnswer {
+        let answer = TraceRow {
             verdict,
             named,
             located: vec![moment.clone(); 2],
@@ -127,7 +127,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
     };
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"], Some(-0.1)), effect("speed_loss", &[], None)];
     let name = "zig-zag 20/20 first_overshoot_deg";
-    let figure = |truth| PredictedFigure { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
+    let figure = |truth| PredictedCharacteristic { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
     let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(256) };
     let none = StudyRow { replicate: 257, predicted: Some(Box::default()), ..answer(Verdict::Clean, Vec::new()) };
     let rows = vec![predicts, answer(Verdict::Traced, named), good(257), none];

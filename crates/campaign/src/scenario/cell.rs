@@ -7,7 +7,7 @@ use ship::Particulars;
 use simulate::{Assumption, Disturbances, Manoeuvre, StreamKey};
 use toml::{Table, Value};
 
-use crate::scenario::draw::RandomKey;
+use crate::scenario::draw::SampledKey;
 use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::physics::MissingPhysics;
@@ -44,7 +44,7 @@ pub(crate) enum TrialSource {
 
 /// Template of trials with sampled values.
 pub(crate) struct DrawnSettings {
-    draws: Vec<RandomKey>,
+    draws: Vec<SampledKey>,
     /// Part of the document that specifies a trial.
     document: Table,
     name: String,
@@ -63,7 +63,7 @@ pub struct TrialSpecification<'a> {
 /// Error of sampled values with which no trial can be simulated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{0}")]
-pub struct Refusal(String);
+pub struct InvalidSample(String);
 
 impl DesignCell {
     fn new(points: &[&sweep::SweepPoint], methods: Vec<Method>, source: TrialSource) -> Self {
@@ -94,7 +94,7 @@ impl DesignCell {
     }
 
     /// Number of simulated records per trial.
-    pub fn records(&self) -> usize {
+    pub fn record_count(&self) -> usize {
         self.specification().map_or(0, |spec| 1 + spec.also.len())
     }
 
@@ -158,15 +158,15 @@ impl DesignCell {
     ///
     /// Fails for measured records, and for sampled values that specify no trial, possible for unbounded distributions
     /// only.
-    pub fn trial_spec(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
+    pub fn trial_spec(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, InvalidSample> {
         let TrialSource::Simulated { specification, drawn } = &self.source else {
-            return Err(Refusal("the trials are measured records, and nothing is simulated".to_owned()));
+            return Err(InvalidSample("the trials are measured records, and nothing is simulated".to_owned()));
         };
         let Some(drawn) = drawn else {
             return Ok(TrialSpecification { specification: Cow::Borrowed(&**specification), drawn: Vec::new() });
         };
-        let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
-        let specification = drawn.specification(&values).map_err(|fault| Refusal(fault.problem))?;
+        let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.sample(key)).collect();
+        let specification = drawn.specification(&values).map_err(|fault| InvalidSample(fault.problem))?;
         Ok(TrialSpecification { specification: Cow::Owned(specification), drawn: values })
     }
 }
@@ -177,7 +177,7 @@ impl DrawnSettings {
     ///
     /// Fails with the index of the faulty draw and the fault.
     fn new(
-        draws: &[RandomKey],
+        draws: &[SampledKey],
         document: &Table,
         name: &str,
         folder: &Path,
@@ -189,8 +189,8 @@ impl DrawnSettings {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&fault.key));
             (of_key.unwrap_or(index), fault)
         };
-        let middle: Vec<f64> = draws.iter().map(RandomKey::middle).collect();
-        let document = only(document, &[ScenarioPart::Trial]);
+        let middle: Vec<f64> = draws.iter().map(SampledKey::middle).collect();
+        let document = select_parts(document, &[ScenarioPart::Trial]);
         let drawn = Self { draws: draws.to_vec(), document, name: name.to_owned(), folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|fault| attributed(0, fault))?;
         for (index, draw) in draws.iter().enumerate() {
@@ -209,13 +209,13 @@ impl DrawnSettings {
         for (draw, &value) in self.draws.iter().zip(values) {
             sweep::set(&mut document, &draw.key, Value::Float(value))?;
         }
-        let wire: ScenarioWire = reader::document(&document)?;
+        let wire: ScenarioWire = reader::read_document(&document)?;
         resolve::specification(&wire, &self.name, &self.folder)
     }
 }
 
 /// Selected parts of a document, with empty values for other required keys.
-pub(crate) fn only(document: &Table, parts: &[ScenarioPart]) -> Table {
+pub(crate) fn select_parts(document: &Table, parts: &[ScenarioPart]) -> Table {
     let empty = [
         ("question", Value::String(String::new())),
         ("seed", Value::Integer(0)),
@@ -254,7 +254,7 @@ fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Me
 }
 
 /// One cell of simulated trials: the document with the settings of its points, resolved as a scenario.
-pub(crate) fn swept(
+pub(crate) fn simulated_cell(
     document: &Table,
     points: &[&sweep::SweepPoint],
     design: &[Method],
@@ -272,11 +272,11 @@ pub(crate) fn swept(
         }
     };
     let changed = changed(document, points).map_err(attribute)?;
-    let wire: ScenarioWire = reader::document(&changed).map_err(attribute)?;
+    let wire: ScenarioWire = reader::read_document(&changed).map_err(attribute)?;
     let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
-    limits::entries("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
-    let draws: Vec<RandomKey> = wire
+    limits::check_count("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
+    let draws: Vec<SampledKey> = wire
         .draw
         .iter()
         .enumerate()
@@ -296,7 +296,7 @@ pub(crate) fn swept(
 /// One cell of measured records: the document with the settings of its points.
 ///
 /// Fails at the faulty point; the document without the points may be incomplete.
-pub(crate) fn measured(
+pub(crate) fn measured_cell(
     document: &Table,
     points: &[&sweep::SweepPoint],
     design: &[Method],
@@ -307,7 +307,7 @@ pub(crate) fn measured(
         None => fault,
     };
     let changed = changed(document, points).map_err(attribute)?;
-    let wire: RecordStudyWire = reader::document(&changed).map_err(attribute)?;
+    let wire: RecordStudyWire = reader::read_document(&changed).map_err(attribute)?;
     let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     Ok(DesignCell::new(points, methods, TrialSource::Measured(set)))

@@ -11,10 +11,10 @@ use toml::Table;
 use trial::file::{self, FileError, Kind};
 
 use crate::failure::Failure;
-use crate::scenario::answers::Answers;
 use crate::scenario::cell::{self, DesignCell};
 use crate::scenario::identity::{self, hex};
 use crate::scenario::method::{Method, MethodName, Procedure, methods};
+use crate::scenario::outside_estimates::OutsideEstimates;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
@@ -76,22 +76,22 @@ impl Scenario {
     /// Reads and resolves a scenario file, or the scenario of a manifest with the seed of its run.
     ///
     /// Fails with a message that names file, line and key, the value found and what was expected. The name of the study
-    /// must be a valid file name ([`name::file`]).
+    /// must be a valid file name ([`name::check_file_name`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
-            name::file(&manifest.name).map_err(|unfit| {
+            name::check_file_name(&manifest.name).map_err(|unfit| {
                 let KeyFault { key, mark, problem, expected, advice } =
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
             let mut document = table_of(path, &text)?;
-            let unknown_output = Presentation::without_unknown(&mut document);
+            let unknown_output = Presentation::remove_unknown(&mut document);
             let scenario = Self::of_table(path, &manifest.name, text, &document, seed)?;
             return Ok(Self { unknown_output, ..scenario });
         }
-        Self::parse(path, &name::of_file(path)?, text, seed)
+        Self::parse(path, &name::study_name(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; messages and relative paths refer to `path`.
@@ -129,7 +129,7 @@ impl Scenario {
         if document.contains_key(RECORDS) {
             return Self::of_records(document, name, folder);
         }
-        let wire: ScenarioWire = reader::document(document)?;
+        let wire: ScenarioWire = reader::read_document(document)?;
         let prose = Prose {
             question: wire.question.clone(),
             analysis: wire.analysis.clone(),
@@ -147,8 +147,8 @@ impl Scenario {
         checks::titles(&axes)?;
         checks::size(wire.replicates, combinations.len(), methods.len())?;
         checks::draws(&wire.draw, &axes)?;
-        let of_cells = cell::only(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
-        let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, name, folder));
+        let of_cells = cell::select_parts(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
+        let cells = combinations.iter().map(|points| cell::simulated_cell(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         wire.published.check()?;
         let design = Self::of_design(name, prose, axes, cells, &methods)?;
@@ -165,7 +165,7 @@ impl Scenario {
 
     /// Resolves a document of measured records.
     fn of_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
-        let wire: RecordStudyWire = reader::document(document)?;
+        let wire: RecordStudyWire = reader::read_document(document)?;
         let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
         let prose = Prose { question, analysis, finding, output };
         prose.check()?;
@@ -174,7 +174,7 @@ impl Scenario {
         let axes = sweep::axes(&sweep)?;
         let combinations = sweep::product(&axes)?;
         checks::titles(&axes)?;
-        let cells = combinations.iter().map(|points| cell::measured(document, points, &methods, folder));
+        let cells = combinations.iter().map(|points| cell::measured_cell(document, points, &methods, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.splits.len() as u64);
         let replicates = counts.max().unwrap_or(0);
@@ -216,13 +216,13 @@ impl Scenario {
     }
 
     /// Maximum number of trials of a cell; for measured records the number of splits.
-    pub fn trials_of(&self, cell: usize) -> u64 {
+    pub fn max_trials_of_cell(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
     /// Maximum number of trials of all cells.
-    pub fn trials(&self) -> u64 {
-        (0..self.cells.len()).map(|cell| self.trials_of(cell)).sum()
+    pub fn max_trials(&self) -> u64 {
+        (0..self.cells.len()).map(|cell| self.max_trials_of_cell(cell)).sum()
     }
 
     /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.
@@ -247,14 +247,14 @@ impl Scenario {
     /// Scenario with a further method: the estimates of an outside estimator.
     ///
     /// Fails for an invalid label, and for one already in use.
-    pub fn with_answers(self, label: &str, answers: Answers) -> Result<Self, Failure> {
+    pub fn with_outside_estimates(self, label: &str, answers: OutsideEstimates) -> Result<Self, Failure> {
         let content = format!("answers {}", answers.sha256());
         self.with(label, Procedure::Answers(Arc::new(answers)), &content)
     }
 
     /// Scenario with a further method; `identity_text` enters the SHA-256 of the design.
     fn with(mut self, label: &str, procedure: Procedure, identity_text: &str) -> Result<Self, Failure> {
-        name::label(label)
+        name::check_label(label)
             .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
         if self.labels().any(|other| other == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));

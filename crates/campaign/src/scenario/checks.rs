@@ -61,7 +61,7 @@ pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
 
 /// Checks that no key is changed by two draws, or by a draw and a sweep.
 pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
-    limits::entries("draw", draws.len(), limits::MAX_DRAWS)?;
+    limits::check_count("draw", draws.len(), limits::MAX_DRAWS)?;
     for (index, draw) in draws.iter().enumerate() {
         let key = KeyPath::dotted(draw.key());
         let place = KeyPath::dotted("draw").child(index).child("key");
@@ -106,7 +106,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
         }
-        name::label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
+        name::check_label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use statrs::distribution::ContinuousCDF as _;
 
 use crate::scenario::limits;
 use crate::scenario::part::ScenarioPart;
-use crate::scenario::problem::{AtFault, KeyFault, KeyPath};
+use crate::scenario::problem::{FaultMark, KeyFault, KeyPath};
 
 /// Draw as written in the file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -60,7 +60,7 @@ struct RangeWire {
 
 /// Scenario key that is sampled for every trial, with its distribution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RandomKey {
+pub struct SampledKey {
     /// Key.
     pub key: KeyPath,
     index: u32,
@@ -102,7 +102,7 @@ impl DrawWire {
     }
 
     /// Checks a draw; `index` is its index in the list.
-    pub fn resolve(&self, index: usize) -> Result<RandomKey, KeyFault> {
+    pub fn resolve(&self, index: usize) -> Result<SampledKey, KeyFault> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
         limits::check_depth(&key, &place.child("key"))?;
@@ -120,7 +120,7 @@ impl DrawWire {
         let shape = self.shape(&place)?;
         let between = self.between.unwrap_or_else(|| shape.support());
         let [low, high] = between;
-        let draw = RandomKey { key, index: index as u32, shape, between };
+        let draw = SampledKey { key, index: index as u32, shape, between };
         if !(low < high && draw.probability() >= MIN_PROBABILITY) {
             return Err(KeyFault::value(
                 place.child("between"),
@@ -172,9 +172,9 @@ impl DrawWire {
     }
 }
 
-impl RandomKey {
+impl SampledKey {
     /// Sampled value of the key for the trial of `key`, in the unit of the key.
-    pub fn value(&self, key: &StreamKey) -> f64 {
+    pub fn sample(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
         let [low, high] = self.between;
         loop {
@@ -201,9 +201,9 @@ impl RandomKey {
     pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match fault.mark {
-            AtFault::Name => (self.place().child("key"), AtFault::Value, "changes a key that cannot be drawn"),
-            AtFault::Value | AtFault::Within(_) => {
-                (self.place().child(self.shape.name), AtFault::Name, "reaches a value for which no trial can be made")
+            FaultMark::Name => (self.place().child("key"), FaultMark::Value, "changes a key that cannot be drawn"),
+            FaultMark::Value | FaultMark::Within(_) => {
+                (self.place().child(self.shape.name), FaultMark::Name, "reaches a value for which no trial can be made")
             }
         };
         let problem = format!("the draw of `{}` {what}{cell}: {}", self.key, fault.problem);
@@ -270,12 +270,12 @@ impl DrawnDistribution {
 mod tests {
     use super::*;
 
-    fn draw(text: &str) -> Result<RandomKey, KeyFault> {
+    fn draw(text: &str) -> Result<SampledKey, KeyFault> {
         toml::from_str::<DrawWire>(&format!("key = \"ship.first-order.T-s\"\n{text}")).expect("well formed").resolve(0)
     }
 
-    fn values(draw: &RandomKey) -> Vec<f64> {
-        (0..20_000).map(|replicate| draw.value(&StreamKey { seed: 4, cell: 9, replicate })).collect()
+    fn values(draw: &SampledKey) -> Vec<f64> {
+        (0..20_000).map(|replicate| draw.sample(&StreamKey { seed: 4, cell: 9, replicate })).collect()
     }
 
     /// Mean and standard deviation against the closed forms, within four standard errors of 20,000 samples.
@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn a_replicate_has_the_same_ship_in_every_cell() {
         let draw = draw("uniform = { from = 0.5, to = 3.0 }").expect("valid");
-        let at = |cell: u64, replicate: u64| draw.value(&StreamKey { seed: 1, cell, replicate });
+        let at = |cell: u64, replicate: u64| draw.sample(&StreamKey { seed: 1, cell, replicate });
         assert_eq!(at(0, 5), at(7, 5));
         assert_ne!(at(0, 5), at(0, 6));
     }

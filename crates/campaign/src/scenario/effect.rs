@@ -59,7 +59,7 @@ fn forms_of(id: &str) -> Vec<&'static EffectForm> {
 }
 
 /// Adds the defaults to effects.
-pub fn complete(entries: &mut [EffectWire]) {
+pub fn fill_defaults(entries: &mut [EffectWire]) {
     for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.0) {
         let keys = forms_of(id).into_iter().flat_map(|form| &form.keys);
         for (number, default) in keys.filter_map(|number| Some((number, number.default?))) {
@@ -74,7 +74,7 @@ fn asked<'a>(
     entry: &'a NamedNumbers,
     place: &KeyPath,
 ) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
-    let (id, key, numbers) = number_table::only(entry, place, &IDS)?;
+    let (id, key, numbers) = number_table::single_entry(entry, place, &IDS)?;
     let forms = forms_of(id);
     if forms.is_empty() {
         return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &IDS)));
@@ -100,9 +100,9 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
             return Err(KeyFault::of(key, value, "expected a text in quotes", "write `name = formula` in quotes"));
         }
     };
-    let formula = read(&line, key)?;
+    let formula = parse_formula(&line, key)?;
     values.retain(|name, _| !physics::KEYS.contains(&name));
-    let values: BTreeMap<String, f64> = reader::table(&values, place)?;
+    let values: BTreeMap<String, f64> = reader::read_table(&values, place)?;
     let keys: Vec<NumberKey> =
         formula.parameters().iter().map(|entry| NumberKey::required(entry.key, "A constant of the formula.")).collect();
     number_table::refuse_unknown(&values, &keys, place)?;
@@ -122,7 +122,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
 /// Missing physics stated with the only formula of a ship; `None` without such keys.
 ///
 /// Fails for inconsistent keys, and for a further effect.
-pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
+pub fn stated_physics(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
     for (index, EffectWire(entry)) in entries.iter().enumerate() {
         let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
         let keys: Table = of_physics.map(|(name, value)| (name.clone(), value.clone())).collect();
@@ -137,13 +137,13 @@ pub fn stated(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault
                 "leave the key out",
             ));
         }
-        return reader::table::<PhysicsWire>(&keys, &place)?.checked(&place).map(Some);
+        return reader::read_table::<PhysicsWire>(&keys, &place)?.resolve(&place).map(Some);
     }
     Ok(None)
 }
 
 /// Effect from a line `name = formula`; faults refer to `key`.
-pub fn read(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
+pub fn parse_formula(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     ship::effects::parse_formula(line).map_err(|error| {
         let advice = "docs/src/howto/own-effect.md says what a formula may hold";
         KeyFault::within(error.at, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
@@ -167,15 +167,15 @@ fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Res
 ///
 /// Fails for a hull, whose equations contain such effects, for a second-order effect on a second-order ship, for a
 /// parameter outside its range, and for a formula of channels that the trials are `lacking`.
-pub fn added(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
+pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
     }
-    limits::entries("effect", entries.len(), limits::MAX_EFFECTS)?;
+    limits::check_count("effect", entries.len(), limits::MAX_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let places = entries.iter().enumerate().map(|(index, entry)| (&entry.0, list.child(index)));
     let (formulas, listed): (Vec<_>, Vec<_>) = places.partition(|(entry, _)| entry.contains_key(FORMULA));
-    let listed = listed.into_iter().map(|(entry, place)| Ok((reader::table(entry, &place)?, place)));
+    let listed = listed.into_iter().map(|(entry, place)| Ok((reader::read_table(entry, &place)?, place)));
     let listed = listed.collect::<Result<Vec<(NamedNumbers, KeyPath)>, KeyFault>>()?;
     let asked = listed.iter().map(|(entry, place)| asked(entry, place)).collect::<Result<Vec<_>, _>>()?;
     let Model::Response(response) = &ship.model else {

@@ -22,7 +22,7 @@ pub const MAX_CELLS_TIMES_METHODS: usize = 1_000_000;
 const MAX_NAMES: usize = 16;
 
 /// Refuses a list with too many entries.
-pub fn entries(list: &str, count: usize, most: usize) -> Result<(), KeyFault> {
+pub fn check_count(list: &str, count: usize, most: usize) -> Result<(), KeyFault> {
     if count <= most {
         return Ok(());
     }

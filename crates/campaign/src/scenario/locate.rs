@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::scenario::problem::{AtFault, KeyPath};
+use crate::scenario::problem::{FaultMark, KeyPath};
 
 /// Byte range of the name or value at a path; otherwise of the nearest existing key above it; otherwise of the first
 /// line with content.
 ///
 /// A table or list is located by its name, since its range may be pages long.
-pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
+pub fn span(text: &str, path: &KeyPath, mark: FaultMark) -> Range<usize> {
     let nowhere = first_line(text);
     let Ok(document) = DeTable::parse(text) else { return nowhere };
     let mut place = nowhere;
@@ -33,10 +33,12 @@ pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
             DeValue::Array(inner) => (None, Some(inner)),
             _ => (None, None),
         };
-        let by_name = table.is_some() || array.is_some() || (depth == last && mark == AtFault::Name);
+        let by_name = table.is_some() || array.is_some() || (depth == last && mark == FaultMark::Name);
         place = match (mark, value.get_ref()) {
             _ if by_name => key_span,
-            (AtFault::Within(at), DeValue::String(content)) if depth == last => within(text, value.span(), content, at),
+            (FaultMark::Within(at), DeValue::String(content)) if depth == last => {
+                within(text, value.span(), content, at)
+            }
             _ => value.span(),
         };
     }
@@ -70,24 +72,24 @@ mod tests {
     const TEXT: &str = "# note\nseed = 1\n[sensor]\nheading-noise-deg = -0.1\n[[identifier]]\nsrivc = {}\n[[identifier]]\nlabel = \"x\"\n\
          [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
 
-    fn at(path: &str, mark: AtFault) -> &str {
+    fn at(path: &str, mark: FaultMark) -> &str {
         &TEXT[span(TEXT, &KeyPath::dotted(path), mark)]
     }
 
     #[test]
     fn finds_names_and_values_in_tables_and_lists() {
-        assert_eq!(at("sensor.heading-noise-deg", AtFault::Value), "-0.1");
-        assert_eq!(at("sensor.heading-noise-deg", AtFault::Name), "heading-noise-deg");
-        assert_eq!(at("identifier.1.label", AtFault::Value), "\"x\"");
+        assert_eq!(at("sensor.heading-noise-deg", FaultMark::Value), "-0.1");
+        assert_eq!(at("sensor.heading-noise-deg", FaultMark::Name), "heading-noise-deg");
+        assert_eq!(at("identifier.1.label", FaultMark::Value), "\"x\"");
         let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
-        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Value)], "3");
-        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Name)], "\"a.b\"");
+        assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Value)], "3");
+        assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Name)], "\"a.b\"");
     }
 
     #[test]
     fn finds_a_letter_of_a_text() {
         let marked = |text: &str, at: usize| {
-            let span = span(text, &KeyPath::dotted("effect.0.formula"), AtFault::Within(at));
+            let span = span(text, &KeyPath::dotted("effect.0.formula"), FaultMark::Within(at));
             (span.start, text[span].to_owned())
         };
         assert_eq!(marked("[[effect]]\nformula = \"é = c * x\"\n", 8), (31, String::from("x")));
@@ -97,8 +99,8 @@ mod tests {
 
     #[test]
     fn falls_back_to_the_nearest_key_above() {
-        assert_eq!(at("sensor.no-such-key", AtFault::Value), "sensor");
-        assert_eq!(at("nothing.here", AtFault::Value), "seed = 1");
-        assert_eq!(span("", &KeyPath::default(), AtFault::Name), 0..0);
+        assert_eq!(at("sensor.no-such-key", FaultMark::Value), "sensor");
+        assert_eq!(at("nothing.here", FaultMark::Value), "seed = 1");
+        assert_eq!(span("", &KeyPath::default(), FaultMark::Name), 0..0);
     }
 }

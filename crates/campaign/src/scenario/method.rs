@@ -11,7 +11,7 @@ use ship::effects::Formula;
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
-use crate::scenario::answers::{self, Answers};
+use crate::scenario::outside_estimates::{self, OutsideEstimates};
 use crate::scenario::problem::{KeyFault, KeyPath, of_text};
 use crate::scenario::{effect, limits, name};
 
@@ -37,7 +37,7 @@ pub enum Procedure {
     /// Finds what a first-order response lacks.
     Trace(::trace::Settings),
     /// Looks up the estimates of an outside estimator.
-    Answers(Arc<Answers>),
+    Answers(Arc<OutsideEstimates>),
     /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
 }
@@ -48,7 +48,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
-            Self::Answers(_) => answers::ID,
+            Self::Answers(_) => outside_estimates::ID,
             Self::StraightOn => STRAIGHT_ON,
         }
     }
@@ -75,7 +75,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
             Self::Trace(_) | Self::StraightOn => None,
-            Self::Answers(answers) => Some(answers.to((key.cell, key.replicate))),
+            Self::Answers(answers) => Some(answers.estimate_of((key.cell, key.replicate))),
         }
     }
 }
@@ -148,14 +148,14 @@ impl Default for TraceWire {
 
 /// Methods with unique labels.
 pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> {
-    limits::entries("identifier", wire.len(), limits::MAX_METHODS)?;
+    limits::check_count("identifier", wire.len(), limits::MAX_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
         let procedure = procedure(entry, &key)?;
         let label = entry.label.clone().unwrap_or_else(|| procedure.id().to_owned());
-        name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
+        name::check_label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(KeyFault::name(
                 key.child("label"),
@@ -189,7 +189,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFaul
         (None, Some(wire), None) => {
             let table = key.child("trace");
             let lines = wire.formulas.iter().enumerate();
-            let read = lines.map(|(index, line)| effect::read(line, table.child("formulas").child(index)));
+            let read = lines.map(|(index, line)| effect::parse_formula(line, table.child("formulas").child(index)));
             let formulas = read.collect::<Result<_, _>>()?;
             tracing(wire, formulas).map(Procedure::Trace).map_err(|error| refused(&table, &error))
         }

@@ -9,13 +9,12 @@
 //! | faults and their position | [`problem`], `locate`, [`crate::failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | measured records in place of simulated ships | [`records`] |
-//! | estimates of outside estimators | [`answers`] |
+//! | estimates of outside estimators | [`outside_estimates`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | scenarios with equal rows | [`identity`] |
 //! | schema and keys for editors | [`schema`], [`keys`] |
 //! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 
-pub mod answers;
 pub mod cell;
 mod checked;
 mod checks;
@@ -29,6 +28,7 @@ mod locate;
 pub mod method;
 pub mod name;
 mod number_table;
+pub mod outside_estimates;
 pub mod part;
 mod physics;
 pub mod predictions;
@@ -45,14 +45,14 @@ pub mod stop;
 pub mod sweep;
 mod wire;
 
-pub use answers::Answers;
-pub use cell::{DesignCell, Refusal, TrialSpecification};
+pub use cell::{DesignCell, InvalidSample, TrialSpecification};
 pub use checked::Scenario;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};
+pub use outside_estimates::OutsideEstimates;
 pub use physics::MissingPhysics;
 pub use predictions::Predictions;
 
 pub use prose::{Highlight, MarkedValue, Presentation, Prose, Published};
 pub use specification::{HULL, Specification};
-pub use stop::{Index, StopFigure, StopRule};
+pub use stop::{ResponseIndex, StopFigure, StopRule};

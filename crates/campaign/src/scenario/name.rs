@@ -17,7 +17,7 @@ pub const MAX_NAME_BYTES: usize = 180;
 
 /// Reason why a text cannot be used; displayed as the expected text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Unfit {
+pub enum InvalidText {
     /// Empty or blank.
     #[error("expected a text that is not blank")]
     Blank,
@@ -41,45 +41,45 @@ pub enum Unfit {
 }
 
 /// Checks a label: one printable line.
-pub fn label(text: &str) -> Result<(), Unfit> {
+pub fn check_label(text: &str) -> Result<(), InvalidText> {
     if text.trim().is_empty() {
-        return Err(Unfit::Blank);
+        return Err(InvalidText::Blank);
     }
     let length = text.chars().count();
     if length > MAX_LABEL_CHARS {
-        return Err(Unfit::Long { most: MAX_LABEL_CHARS, length });
+        return Err(InvalidText::Long { most: MAX_LABEL_CHARS, length });
     }
-    text.chars().find(|&c| !is_printable(c)).map_or(Ok(()), |c| Err(Unfit::Unprintable(c)))
+    text.chars().find(|&c| !is_printable(c)).map_or(Ok(()), |c| Err(InvalidText::Unprintable(c)))
 }
 
 /// Checks a file name: it contains no path on any system.
-pub fn file(text: &str) -> Result<(), Unfit> {
+pub fn check_file_name(text: &str) -> Result<(), InvalidText> {
     const ENDS: [char; 2] = ['.', ' '];
     if text.is_empty() {
-        return Err(Unfit::Blank);
+        return Err(InvalidText::Blank);
     }
     if text.len() > MAX_NAME_BYTES {
-        return Err(Unfit::Long { most: MAX_NAME_BYTES, length: text.len() });
+        return Err(InvalidText::Long { most: MAX_NAME_BYTES, length: text.len() });
     }
     for c in text.chars() {
         match c {
-            '/' | '\\' | '<' | '>' | ':' | '"' | '|' | '?' | '*' => return Err(Unfit::OfPaths(c)),
-            c if !is_printable(c) => return Err(Unfit::Unprintable(c)),
+            '/' | '\\' | '<' | '>' | ':' | '"' | '|' | '?' | '*' => return Err(InvalidText::OfPaths(c)),
+            c if !is_printable(c) => return Err(InvalidText::Unprintable(c)),
             _ => {}
         }
     }
-    if text.starts_with(ENDS) || text.ends_with(ENDS) { Err(Unfit::Ends) } else { Ok(()) }
+    if text.starts_with(ENDS) || text.ends_with(ENDS) { Err(InvalidText::Ends) } else { Ok(()) }
 }
 
 /// Checks prose: any number of printable lines.
-pub fn prose(text: &str) -> Result<(), Unfit> {
-    text.chars().find(|&c| !is_printable(c) && !is_layout(c)).map_or(Ok(()), |c| Err(Unfit::Unprintable(c)))
+pub fn check_prose(text: &str) -> Result<(), InvalidText> {
+    text.chars().find(|&c| !is_printable(c) && !is_layout(c)).map_or(Ok(()), |c| Err(InvalidText::Unprintable(c)))
 }
 
 /// Study name from a file name, without the extension.
-pub fn of_file(path: &Path) -> Result<String, Failure> {
+pub fn study_name(path: &Path) -> Result<String, Failure> {
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    match file(&name) {
+    match check_file_name(&name) {
         Ok(()) => Ok(name),
         Err(unfit) => Err(Failure::input(format!(
             "{}: its results cannot be called {}; {unfit}; rename the file",
@@ -118,27 +118,27 @@ mod tests {
     #[test]
     fn a_name_leads_nowhere_else() {
         for name in ["yukun", "船 10°", "zigzag_31-Jul-2020_13_57_45", "a.b", "-x", &"x".repeat(MAX_NAME_BYTES)] {
-            assert_eq!(file(name), Ok(()), "{name}");
+            assert_eq!(check_file_name(name), Ok(()), "{name}");
         }
         for name in
             ["", ".", "..", ".hidden", "a.", " a", "a ", "../a", "/a", "a/b", "a\\b", "C:a", "a?", "a\n", "\u{1b}"]
         {
-            assert!(file(name).is_err(), "{name:?}");
+            assert!(check_file_name(name).is_err(), "{name:?}");
         }
-        assert!(file(&"x".repeat(MAX_NAME_BYTES + 1)).is_err());
+        assert!(check_file_name(&"x".repeat(MAX_NAME_BYTES + 1)).is_err());
     }
 
     #[test]
     fn a_label_is_one_line_that_can_be_printed() {
         for text in ["10/20, rudder ±0.5°", "T₂ 2.5 s", "K\u{302}", "<b> | =1", &"é".repeat(MAX_LABEL_CHARS)] {
-            assert_eq!(label(text), Ok(()), "{text}");
+            assert_eq!(check_label(text), Ok(()), "{text}");
         }
         for text in ["", "  ", "a\nb", "\0", "\u{1b}[31m", "\u{fffe}", "\u{202e}abc", "\u{e000}", "\u{200b}"] {
-            assert!(label(text).is_err(), "{text:?}");
+            assert!(check_label(text).is_err(), "{text:?}");
         }
-        assert_eq!(label(&"é".repeat(81)), Err(Unfit::Long { most: 80, length: 81 }));
-        assert_eq!(prose("one\r\n\ttwo"), Ok(()));
-        assert_eq!(prose("one\u{1b}"), Err(Unfit::Unprintable('\u{1b}')));
+        assert_eq!(check_label(&"é".repeat(81)), Err(InvalidText::Long { most: 80, length: 81 }));
+        assert_eq!(check_prose("one\r\n\ttwo"), Ok(()));
+        assert_eq!(check_prose("one\u{1b}"), Err(InvalidText::Unprintable('\u{1b}')));
     }
 
     #[test]

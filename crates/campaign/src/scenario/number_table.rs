@@ -37,7 +37,7 @@ impl NumberKey {
 }
 
 /// Single name of a table, its key and its numbers. Fails for none or several; the message lists the `choices`.
-pub fn only<'a>(
+pub fn single_entry<'a>(
     named: &'a NamedNumbers,
     place: &KeyPath,
     choices: &[&str],
@@ -65,7 +65,7 @@ pub fn refuse_incomplete(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], ta
 }
 
 /// Adds the defaults of missing keys.
-pub fn complete(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
+pub fn fill_defaults(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
     for (number, default) in keys.iter().filter_map(|number| Some((number, number.default?))) {
         numbers.entry(number.key.to_owned()).or_insert(default);
     }

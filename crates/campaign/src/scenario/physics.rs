@@ -52,7 +52,7 @@ impl PhysicsWire {
     /// Missing physics stated by the entry of a formula.
     ///
     /// Fails for an unknown effect, and for inconsistent keys.
-    pub fn checked(self, place: &KeyPath) -> Result<MissingPhysics, KeyFault> {
+    pub fn resolve(self, place: &KeyPath) -> Result<MissingPhysics, KeyFault> {
         let Self { stands_for: effects, depends_on, changes_s, period_s } = self;
         let ids = effect_ids();
         if let Some(index) = effects.iter().position(|id| !ids.contains(&id.as_str())) {

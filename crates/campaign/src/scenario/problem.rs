@@ -5,7 +5,7 @@ use std::fmt;
 
 use simulate::SpecificationError;
 
-use crate::scenario::name::{Unfit, shown};
+use crate::scenario::name::{InvalidText, shown};
 
 /// Path of a key from the root of a scenario; list entries count from 0.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -51,7 +51,7 @@ impl fmt::Display for KeyPath {
 
 /// Underlined part of a faulty key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AtFault {
+pub enum FaultMark {
     /// Name of the key.
     Name,
     /// Value.
@@ -66,7 +66,7 @@ pub struct KeyFault {
     /// Faulty key.
     pub key: KeyPath,
     /// Underlined part.
-    pub mark: AtFault,
+    pub mark: FaultMark,
     /// Problem, with key and value, in one sentence.
     pub problem: String,
     /// Expected text, printed below the underlined part.
@@ -83,7 +83,7 @@ impl KeyFault {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { key, mark: AtFault::Value, problem: problem.into(), expected: expected.into(), advice: advice.into() }
+        Self { key, mark: FaultMark::Value, problem: problem.into(), expected: expected.into(), advice: advice.into() }
     }
 
     /// Fault within a text value, after `at` characters.
@@ -94,7 +94,7 @@ impl KeyFault {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: AtFault::Within(at), ..Self::value(key, problem, expected, advice) }
+        Self { mark: FaultMark::Within(at), ..Self::value(key, problem, expected, advice) }
     }
 
     /// Fault of a value, with the problem "`key` is VALUE".
@@ -110,14 +110,14 @@ impl KeyFault {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: AtFault::Name, ..Self::value(key, problem, expected, advice) }
+        Self { mark: FaultMark::Name, ..Self::value(key, problem, expected, advice) }
     }
 }
 
 impl From<SpecificationError> for KeyFault {
     fn from(error: SpecificationError) -> Self {
         let [problem, expected, advice] = error.message_parts();
-        let mark = if error.is_about_key() { AtFault::Name } else { AtFault::Value };
+        let mark = if error.is_about_key() { FaultMark::Name } else { FaultMark::Value };
         let key = match error.key {
             "vessel.dead_time" => "effect",
             // No scenario sets these; they matter for some manoeuvres only.
@@ -129,7 +129,7 @@ impl From<SpecificationError> for KeyFault {
 }
 
 /// Fault of an unusable text.
-pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
+pub fn of_text(key: KeyPath, text: &str, unfit: InvalidText) -> KeyFault {
     KeyFault::of(key, shown(text), unfit.to_string(), "change the text")
 }
 

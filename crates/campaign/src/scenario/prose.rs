@@ -47,7 +47,7 @@ impl Presentation {
 
     /// Removes the keys of other versions, which determine no row, from `output` in the scenario of a manifest; their
     /// names.
-    pub(crate) fn without_unknown(document: &mut Table) -> Vec<String> {
+    pub(crate) fn remove_unknown(document: &mut Table) -> Vec<String> {
         let Some(Value::Table(output)) = document.get_mut("output") else { return Vec::new() };
         let is_unknown = |key: &&String| !Self::KEYS.contains(&key.as_str());
         let unknown: Vec<String> = output.keys().filter(is_unknown).cloned().collect();
@@ -97,7 +97,7 @@ impl Prose {
     /// Prose of the text of a scenario; empty for an invalid text.
     pub fn of(scenario: &str) -> Self {
         let mut document: Table = scenario.parse().unwrap_or_default();
-        Presentation::without_unknown(&mut document);
+        Presentation::remove_unknown(&mut document);
         let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
         let output = document.get("output").cloned().and_then(|output| output.try_into().ok()).unwrap_or_default();
         Self { question: text("question"), analysis: text("analysis"), finding: text("finding"), output }
@@ -108,13 +108,13 @@ impl Prose {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
         for (key, text) in prose.chain(output.title.iter().map(|title| ("output.title", title))) {
-            name::prose(text).map_err(|unfit| of_text(KeyPath::dotted(key), text, unfit))?;
+            name::check_prose(text).map_err(|unfit| of_text(KeyPath::dotted(key), text, unfit))?;
         }
         let figure = output.figure.iter().map(|stem| (KeyPath::dotted("output.figure"), stem));
         let figures = output.figures.iter().flatten().enumerate();
         let figures = figures.map(|(index, stem)| (KeyPath::dotted("output.figures").child(index), stem));
         for (key, stem) in figure.chain(figures) {
-            name::file(stem).map_err(|unfit| of_text(key, stem, unfit))?;
+            name::check_file_name(stem).map_err(|unfit| of_text(key, stem, unfit))?;
         }
         Ok(())
     }

@@ -15,12 +15,12 @@ use crate::scenario::problem::{KeyFault, KeyPath, listed, suggestion};
 /// Value of a whole document.
 ///
 /// Fails with the key, the problem and the expected value.
-pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
-    table(document, &KeyPath::default())
+pub fn read_document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
+    read_table(document, &KeyPath::default())
 }
 
 /// Value of the table at `key`.
-pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
+pub fn read_table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
     serde_path_to_error::deserialize(entries(table)).map_err(|error| {
         let mut place = key.clone();
         let mut value: Option<&Value> = None;

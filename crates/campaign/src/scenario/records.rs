@@ -25,7 +25,7 @@ use crate::scenario::prose::Presentation;
 use crate::scenario::sweep::AxisWire;
 
 /// Environment variable for the folder of records that are not next to the scenario.
-pub const DATA: &str = "KEMPF_DATA";
+pub const DATA_FOLDER_VARIABLE: &str = "KEMPF_DATA";
 
 /// Maximum number of records of a cell.
 const MAX_RECORDS: usize = 1000;
@@ -260,7 +260,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
             None => matching(folder, file),
         };
         if paths.is_empty() {
-            let advice = format!("give files beside the scenario, or name their folder in {DATA}");
+            let advice = format!("give files beside the scenario, or name their folder in {DATA_FOLDER_VARIABLE}");
             let problem = format!("`records.files` holds {file:?}, and there is no such file");
             return Err(KeyFault::value(place, problem, "expected records", advice));
         }
@@ -343,9 +343,9 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
     Ok(splits)
 }
 
-/// Files that match a pattern, sorted: next to the scenario, otherwise in the folder of [`DATA`].
+/// Files that match a pattern, sorted: next to the scenario, otherwise in the folder of [`DATA_FOLDER_VARIABLE`].
 fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
-    let data = std::env::var_os(DATA).map(PathBuf::from);
+    let data = std::env::var_os(DATA_FOLDER_VARIABLE).map(PathBuf::from);
     let below = |folder: &Path| -> Vec<PathBuf> {
         let path = folder.join(pattern);
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

@@ -16,7 +16,7 @@ use crate::scenario::{effect, ship};
 
 /// Specification of a trial, with the name of the scenario.
 pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
-    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
+    let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         scenario: name.to_owned(),
         gear: wire.steering_gear.with_defaults_of(&ship),
@@ -50,7 +50,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         Model::Response(response) => Some(response.first_order()),
         Model::Hull(_) => None,
     };
-    let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated(&wire.effect)?);
+    let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated_physics(&wire.effect)?);
     Ok(Specification { also, validation, truth, base, missing, stated, simulation })
 }
 

@@ -13,10 +13,10 @@ use crate::scenario::{effect, reader, ship};
 ///
 /// Fails as the scenario would.
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
-    let mut wire: ScenarioWire = reader::document(document)?;
-    effect::complete(&mut wire.effect);
-    ship::complete(&mut wire.ship);
-    let ship = effect::added(ship::build(&wire.ship)?, &wire.effect, &[])?;
+    let mut wire: ScenarioWire = reader::read_document(document)?;
+    effect::fill_defaults(&mut wire.effect);
+    ship::fill_defaults(&mut wire.ship);
+    let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &[])?;
     wire.steering_gear = wire.steering_gear.with_defaults_of(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {

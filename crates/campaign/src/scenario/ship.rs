@@ -74,7 +74,7 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
 /// Fails with the invalid name or number.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
     let ids: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, USER_HULL]).collect();
-    let (id, key, numbers) = number_table::only(named, &KeyPath::dotted("ship"), &ids)?;
+    let (id, key, numbers) = number_table::single_entry(named, &KeyPath::dotted("ship"), &ids)?;
     let keys = numbers_of(id);
     if !keys.is_empty() {
         refuse_unknown(numbers, keys, &key)?;
@@ -117,8 +117,8 @@ fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault>
 }
 
 /// Adds the defaults to the numbers of a user's ship.
-pub fn complete(named: &mut NamedNumbers) {
-    named.iter_mut().for_each(|(id, numbers)| number_table::complete(numbers, numbers_of(id)));
+pub fn fill_defaults(named: &mut NamedNumbers) {
+    named.iter_mut().for_each(|(id, numbers)| number_table::fill_defaults(numbers, numbers_of(id)));
 }
 
 /// User's ship with its key and numbers.
@@ -189,7 +189,7 @@ impl UserShip<'_> {
         };
         let written = self.numbers.iter().find(|(key, _)| key.split('-').next() == Some(symbol));
         let (name, value) = written.map_or((BIAS.key, bias_deg), |(key, value)| (key, *value));
-        KeyFault::of(self.key.child(name), sweep::written(&toml::Value::Float(value)), expected, "change the number")
+        KeyFault::of(self.key.child(name), sweep::toml_text(&toml::Value::Float(value)), expected, "change the number")
     }
 
     fn particulars(&self) -> Result<Option<Particulars>, KeyFault> {

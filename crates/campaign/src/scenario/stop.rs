@@ -20,7 +20,7 @@ pub struct StopRule {
 
 /// Index of the response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Index {
+pub enum ResponseIndex {
     /// Gain K.
     K,
     /// Time constant T.
@@ -58,10 +58,10 @@ pub enum StopFigure {
 
 impl StopFigure {
     /// Index of the statistic.
-    pub fn index(self) -> Index {
+    pub fn index(self) -> ResponseIndex {
         match self {
-            Self::MeanK | Self::SdK | Self::RmsK | Self::CoverageK => Index::K,
-            Self::MeanT | Self::SdT | Self::RmsT | Self::CoverageT => Index::T,
+            Self::MeanK | Self::SdK | Self::RmsK | Self::CoverageK => ResponseIndex::K,
+            Self::MeanT | Self::SdT | Self::RmsT | Self::CoverageT => ResponseIndex::T,
         }
     }
 }

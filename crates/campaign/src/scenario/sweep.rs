@@ -13,7 +13,7 @@ use crate::scenario::key_units::axis_title;
 use crate::scenario::limits;
 use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
-use crate::scenario::problem::{AtFault, KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{FaultMark, KeyFault, KeyPath, of_text};
 
 /// Maximum number of cells; a larger one is an error in a range.
 const MAX_CELLS: usize = 100_000;
@@ -106,7 +106,7 @@ impl SweepSetting {
                 _ => format!("the sweep changes `{}`, which is the same for the whole study", self.key),
             };
             return Err(KeyFault {
-                mark: if self.key_place == self.value_place { AtFault::Name } else { AtFault::Value },
+                mark: if self.key_place == self.value_place { FaultMark::Name } else { FaultMark::Value },
                 ..KeyFault::value(
                     self.key_place.clone(),
                     problem,
@@ -122,16 +122,16 @@ impl SweepSetting {
     pub fn attributed(&self, fault: KeyFault, cell: Option<&str>) -> KeyFault {
         let (place, mark) = match fault.mark {
             // If the point itself names the key, its name is underlined.
-            AtFault::Name if self.key_place == self.value_place => (self.key_place.clone(), AtFault::Name),
-            AtFault::Name => (self.key_place.clone(), AtFault::Value),
-            AtFault::Value => (self.value_place.clone(), AtFault::Value),
-            AtFault::Within(_) => {
+            FaultMark::Name if self.key_place == self.value_place => (self.key_place.clone(), FaultMark::Name),
+            FaultMark::Name => (self.key_place.clone(), FaultMark::Value),
+            FaultMark::Value => (self.value_place.clone(), FaultMark::Value),
+            FaultMark::Within(_) => {
                 let below = fault.key.parts().strip_prefix(self.key.parts()).unwrap_or_default();
                 (below.iter().fold(self.value_place.clone(), |key, part| key.child(part)), fault.mark)
             }
         };
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
-        let mut problem = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
+        let mut problem = format!("the sweep sets `{}` to {}{cell}", self.key, toml_text(&self.value));
         // Avoids "to −1: `key` is −1".
         if !fault.problem.starts_with(&format!("`{}` is", self.key)) {
             problem = format!("{problem}: {}", fault.problem);
@@ -206,7 +206,7 @@ impl AxisWire {
     /// Checks that axis and points have printable labels, unique within the axis.
     fn check_names(&self, place: &KeyPath, name: &str, points: &[SweepPoint]) -> Result<(), KeyFault> {
         for (i, point) in points.iter().enumerate() {
-            name::label(&point.label).map_err(|unfit| {
+            name::check_label(&point.label).map_err(|unfit| {
                 let (key, advice) = match &self.points {
                     Some(_) => (place.child("points").child(i).child("label"), "change the label"),
                     None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
@@ -214,7 +214,7 @@ impl AxisWire {
                 KeyFault { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
             })?;
         }
-        name::label(name).map_err(|unfit| {
+        name::check_label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
             KeyFault { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), name, unfit) }
         })?;
@@ -313,7 +313,7 @@ fn distinguish(points: &mut [SweepPoint]) {
 }
 
 /// Value in TOML notation, short for very large or small numbers.
-pub fn written(value: &Value) -> String {
+pub fn toml_text(value: &Value) -> String {
     match value {
         Value::Float(number) if !ShortNumber(*number).is_plain() => ShortNumber(*number).to_string(),
         other => other.to_string(),
@@ -340,7 +340,7 @@ pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
 ///
 /// Fails for too many combinations, and if two axes change the same key.
 pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
-    limits::entries("sweep", axes.len(), limits::MAX_SWEEPS)?;
+    limits::check_count("sweep", axes.len(), limits::MAX_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MAX_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();

@@ -7,12 +7,12 @@ use super::bootstrap::{RESAMPLES, SEED};
 use super::statistic::MIN_INTERVAL_VALUES;
 
 /// Values of `compute` on the cases of each resample of clusters.
-pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
+pub fn resample_clusters<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
 }
 
 /// Values of `compute` on resamples in two stages: sets, and clusters within each sampled set.
-pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
+pub fn resample_sets<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
         (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));
     };
@@ -20,7 +20,7 @@ pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) 
 }
 
 /// Percentile 95 % interval of resampled values, in any order; `None` below six clusters.
-pub fn interval(clusters: usize, mut values: Vec<f64>) -> Option<[f64; 2]> {
+pub fn percentile_interval(clusters: usize, mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let end = |p: f64| values[((values.len() - 1) as f64 * p).round() as usize];
     (clusters as u64 >= MIN_INTERVAL_VALUES && !values.is_empty()).then(|| [end(0.025), end(0.975)])
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn sets_are_drawn_whole() {
         let sets = vec![vec![vec![0]; 30], vec![vec![1]; 2]];
-        let sizes = resampled_by_set(&sets, <[usize]>::len);
+        let sizes = resample_sets(&sets, <[usize]>::len);
         assert!(sizes.iter().all(|size| [4, 32, 60].contains(size)), "{sizes:?}");
     }
 }

@@ -6,7 +6,7 @@ use super::statistic::Statistic;
 
 /// Trials of one size, with the number of detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SizeTrials {
+pub struct DetectionCount {
     /// Size, above zero.
     pub size: f64,
     /// Number of trials.
@@ -34,7 +34,7 @@ const HALVINGS: usize = 60;
 ///
 /// The likelihood is maximised with a ridge on the slope. Values beyond the tried sizes are extrapolated. `None` for
 /// fewer than two sizes.
-pub fn size_of_share(tried: &[SizeTrials], share: f64) -> Option<Statistic> {
+pub fn detection_size(tried: &[DetectionCount], share: f64) -> Option<Statistic> {
     let logs = || tried.iter().filter(|level| level.trials > 0).map(|level| level.size.ln());
     let ends = [logs().fold(f64::INFINITY, f64::min), logs().fold(f64::NEG_INFINITY, f64::max)];
     if ends[0] >= ends[1] {
@@ -61,7 +61,7 @@ fn crossing(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
 
 /// Line of the logit against the logarithm of the size, through the logit of the requested share.
 struct ShareLine<'a> {
-    tried: &'a [SizeTrials],
+    tried: &'a [DetectionCount],
     logit: f64,
 }
 
@@ -111,12 +111,12 @@ fn chance(logit: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn tried(seen: [u64; 5], trials: u64) -> Vec<SizeTrials> {
-        seen.iter().zip([0.25, 0.5, 1.0, 2.0, 4.0]).map(|(&seen, size)| SizeTrials { size, trials, seen }).collect()
+    fn tried(seen: [u64; 5], trials: u64) -> Vec<DetectionCount> {
+        seen.iter().zip([0.25, 0.5, 1.0, 2.0, 4.0]).map(|(&seen, size)| DetectionCount { size, trials, seen }).collect()
     }
 
     fn sizes(seen: [u64; 5], trials: u64) -> [f64; 3] {
-        let size = size_of_share(&tried(seen, trials), 0.9).expect("five sizes");
+        let size = detection_size(&tried(seen, trials), 0.9).expect("five sizes");
         let [low, high] = size.ci95.expect("an interval");
         [low, size.value, high]
     }
@@ -165,7 +165,7 @@ mod tests {
         assert!(low > 4.0 && size > 4.0 && high > 100.0, "{low}, {size}, {high}");
         // A decreasing share does not indicate a small size.
         assert!(sizes([8, 8, 3, 0, 0], 10)[0] > 4.0);
-        assert_eq!(size_of_share(&tried([0; 5], 10)[..1], 0.9), None);
-        assert_eq!(size_of_share(&[], 0.9), None);
+        assert_eq!(detection_size(&tried([0; 5], 10)[..1], 0.9), None);
+        assert_eq!(detection_size(&[], 0.9), None);
     }
 }

@@ -12,10 +12,10 @@ mod statistic;
 mod sums;
 
 pub use bootstrap::Resamples;
-pub use clusters::{interval, resampled, resampled_by_set};
+pub use clusters::{percentile_interval, resample_clusters, resample_sets};
 pub use groups::{distinct, grouped};
-pub use logistic::{SizeTrials, size_of_share};
+pub use logistic::{DetectionCount, detection_size};
 pub use moments::Moments;
 pub use sample::{ErrorSample, OrderedSample};
-pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED, Statistic, Z95, share};
+pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED, Statistic, Z95, wilson_share};
 pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};

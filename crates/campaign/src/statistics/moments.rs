@@ -49,7 +49,7 @@ impl Moments {
     }
 
     /// Joins the moments of other values.
-    pub fn join(&mut self, other: &Self) {
+    pub fn merge(&mut self, other: &Self) {
         let (a, b) = (self.count, other.count);
         let n = a + b;
         if n == 0.0 {
@@ -90,7 +90,7 @@ mod tests {
             moments
         };
         let mut joined = of(&values[..2]);
-        joined.join(&of(&values[2..]));
+        joined.merge(&of(&values[2..]));
         let central = |p: i32| values.iter().map(|value| (value - 6.0).powi(p)).sum::<f64>();
         for moments in [joined, of(&values)] {
             let actual = [moments.mean, moments.second, moments.third, moments.fourth, moments.smallest];

@@ -124,7 +124,7 @@ impl OrderedSample {
 
     /// p-quantile (p from 0 to 1) with its distribution-free 95 % interval (Thompson 1936, normal approximation of the
     /// binomial); no interval if the sample is too small for it.
-    pub fn figure(&self, p: f64) -> Option<Statistic> {
+    pub fn quantile_statistic(&self, p: f64) -> Option<Statistic> {
         let value = self.quantile(p)?;
         let n = self.len() as f64;
         let reach = Z95 * (n * p * (1.0 - p)).sqrt();
@@ -135,13 +135,13 @@ impl OrderedSample {
     }
 
     /// Absolute deviations from a centre.
-    pub fn distances(&self, centre: f64) -> Self {
+    pub fn absolute_deviations(&self, centre: f64) -> Self {
         Self::of(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
     }
 
     /// Median absolute deviation from the median, not scaled to a standard deviation.
     pub fn mad(&self) -> Option<Statistic> {
-        self.distances(self.quantile(0.5)?).figure(0.5)
+        self.absolute_deviations(self.quantile(0.5)?).quantile_statistic(0.5)
     }
 
     /// Gaussian kernel density at `points` abscissae over the middle 98 %, at most three quartile distances beyond the
@@ -191,12 +191,16 @@ mod tests {
     fn small_samples_are_exact() {
         let ordered = sample((1..=101).rev().map(f64::from));
         // Ranks of the exact binomial interval for n = 101: 41 and 61.
-        assert_eq!(ordered.figure(0.5), Some(Statistic { value: 51.0, ci95: Some([41.0, 61.0]) }));
+        assert_eq!(ordered.quantile_statistic(0.5), Some(Statistic { value: 51.0, ci95: Some([41.0, 61.0]) }));
         assert_eq!(ordered.mad().map(|figure| figure.value), Some(25.0));
         assert_eq!(ordered.quantile(0.125), Some(13.5));
-        assert_eq!(sample([]).figure(0.5), None);
+        assert_eq!(sample([]).quantile_statistic(0.5), None);
         assert_eq!(sample([1.0, f64::NAN, f64::INFINITY]).len(), 1);
-        assert_eq!(sample([1.0, 2.0, 3.0]).figure(0.5).and_then(|figure| figure.ci95), None, "too few for an interval");
+        assert_eq!(
+            sample([1.0, 2.0, 3.0]).quantile_statistic(0.5).and_then(|figure| figure.ci95),
+            None,
+            "too few for an interval"
+        );
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub struct Statistic {
 
 impl Statistic {
     /// Value and ends of the interval; `None` if undefined.
-    pub fn flat(figure: Option<Self>) -> [Option<f64>; 3] {
+    pub fn value_and_ends(figure: Option<Self>) -> [Option<f64>; 3] {
         let ends = figure.and_then(|figure| figure.ci95);
         [figure.map(|figure| figure.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
     }
@@ -35,7 +35,7 @@ pub const MIN_INTERVAL_VALUES: u64 = 6;
 pub const MIN_SUMMARISED: usize = 5;
 
 /// Share of `count` in `of` with its interval (Wilson 1927); `None` without cases.
-pub fn share(count: u64, cases: u64) -> Option<Statistic> {
+pub fn wilson_share(count: u64, cases: u64) -> Option<Statistic> {
     if cases == 0 {
         return None;
     }
@@ -49,6 +49,6 @@ mod tests {
 
     #[test]
     fn of_nothing_there_is_no_share() {
-        assert_eq!(share(0, 0), None);
+        assert_eq!(wilson_share(0, 0), None);
     }
 }

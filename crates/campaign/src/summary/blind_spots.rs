@@ -2,7 +2,7 @@
 
 use super::tracing::TraceSummary;
 use crate::design::Design;
-use crate::statistics::{SizeTrials, Statistic, grouped, size_of_share};
+use crate::statistics::{DetectionCount, Statistic, detection_size, grouped};
 
 /// Minimum share of the trials that name the effect.
 pub const MIN_NAMED_SHARE: f64 = 0.9;
@@ -19,21 +19,21 @@ pub struct BlindSpot {
     /// Index of the method, a trace.
     pub method: usize,
     /// Trials by size, with the number that name the effect.
-    pub tried: Vec<SizeTrials>,
+    pub tried: Vec<DetectionCount>,
     /// Size at which 90 % of the trials name the effect; extrapolated beyond the tried sizes.
     pub size: Statistic,
 }
 
 impl BlindSpot {
     /// Minimum and maximum tried size.
-    pub fn ends(&self) -> [f64; 2] {
+    pub fn tried_range(&self) -> [f64; 2] {
         let sizes = || self.tried.iter().map(|level| level.size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
     }
 }
 
 /// Axis of effect sizes: the first with a label that consists of a name and its value.
-pub fn axis_of_sizes(design: &Design) -> Option<usize> {
+pub fn effect_size_axis(design: &Design) -> Option<usize> {
     let has_size = |axis: &usize| {
         design
             .cells
@@ -45,19 +45,19 @@ pub fn axis_of_sizes(design: &Design) -> Option<usize> {
 
 /// Blind spots in the order of the cells; empty for a study without sizes.
 pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
-    let Some(axis) = axis_of_sizes(design) else { return Vec::new() };
+    let Some(axis) = effect_size_axis(design) else { return Vec::new() };
     let sized = lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull()).filter_map(|line| {
         let cell = &design.cells[line.cell];
         let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
         let mut place = cell.labels.clone();
         place.remove(axis);
-        let level = SizeTrials { size, trials: line.trials, seen: line.complete };
+        let level = DetectionCount { size, trials: line.trials, seen: line.complete };
         Some(((effect, unit, place, line.method, &line.missing), level))
     });
     let groups = grouped(sized, |(kind, _)| kind.clone());
-    let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, SizeTrials)>)| {
-        let tried: Vec<SizeTrials> = levels.into_iter().map(|(_, level)| level).collect();
-        let size = size_of_share(&tried, MIN_NAMED_SHARE)?;
+    let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, DetectionCount)>)| {
+        let tried: Vec<DetectionCount> = levels.into_iter().map(|(_, level)| level).collect();
+        let size = detection_size(&tried, MIN_NAMED_SHARE)?;
         Some(BlindSpot { effect, unit, place, method, tried, size })
     };
     groups.into_iter().filter_map(spot).collect()
@@ -123,8 +123,8 @@ mod tests {
         let spots = blind_spots(&lines, &design);
         let names: Vec<_> = spots.iter().map(|spot| format!("{} {}", spot.effect, spot.place.join(", "))).collect();
         assert_eq!(names, ["wind tanker", "wind ferry", "waves tanker", "waves ferry"]);
-        assert!(spots.iter().all(|spot| spot.ends() == [0.25, 2.0] && spot.unit == "°"));
+        assert!(spots.iter().all(|spot| spot.tried_range() == [0.25, 2.0] && spot.unit == "°"));
         assert!((0.5..1.0).contains(&spots[0].size.value) && spots[2].size.value > 2.0, "{spots:?}");
-        assert_eq!(axis_of_sizes(&Design::default()), None);
+        assert_eq!(effect_size_axis(&Design::default()), None);
     }
 }

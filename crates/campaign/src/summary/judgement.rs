@@ -5,7 +5,7 @@ use std::fmt;
 use ::trace::Verdict;
 use serde::{Deserialize, Serialize};
 
-use crate::rows::{LocatedMoment, NamedEffect, TraceAnswer};
+use crate::rows::{LocatedMoment, NamedEffect, TraceRow};
 use crate::scenario::MissingPhysics;
 
 /// Tolerance of the time of an effect or of a located moment, s.
@@ -53,7 +53,7 @@ impl Judgement {
     ];
 
     /// Judgement of a trace of a ship with this missing physics.
-    pub fn of(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
+    pub fn of(answer: &TraceRow, physics: &MissingPhysics) -> Self {
         if answer.named.is_empty() && answer.located.is_empty() {
             return match answer.verdict {
                 Verdict::Unexplained => Self::Unexplained,
@@ -78,10 +78,10 @@ impl Judgement {
     }
 
     /// Judgement if listed effects are correct.
-    fn from_names(answer: &TraceAnswer, right: &[String]) -> Self {
+    fn from_names(answer: &TraceRow, right: &[String]) -> Self {
         let is_right = |id: &str| right.iter().any(|effect| effect == id);
-        let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.holds(id));
-        let TraceAnswer { named, located, .. } = answer;
+        let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.includes(id));
+        let TraceRow { named, located, .. } = answer;
         let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
         match named.is_empty() {
             true if is_alternative() => Self::Alias,
@@ -93,7 +93,7 @@ impl Judgement {
     }
 
     /// Judgement if a dependence is correct, with times if it has any.
-    fn from_moments(answer: &TraceAnswer, physics: &MissingPhysics) -> Self {
+    fn from_moments(answer: &TraceRow, physics: &MissingPhysics) -> Self {
         let mut of_ship = answer.named.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
         if of_ship.peek().is_some() {
             let is_alias = of_ship.all(|effect| effect.aliases.iter().any(|id| is_time_effect(id)));
@@ -172,7 +172,7 @@ mod tests {
             ..NamedEffect::default()
         };
         let (named, located) = (names.iter().map(effect).collect(), located.into_iter().collect());
-        Judgement::of(&TraceAnswer { verdict: Verdict::Traced, named, located, ..TraceAnswer::default() }, physics)
+        Judgement::of(&TraceRow { verdict: Verdict::Traced, named, located, ..TraceRow::default() }, physics)
     }
 
     fn timed(changes_s: &[f64], period_s: Option<[f64; 2]>) -> MissingPhysics {
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(judged(&[right, alias], None, &physics), Alias);
         assert_eq!(judged(&[right, wrong], None, &physics), Wrong);
         assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, Elsewhere]);
-        let silent = |verdict| Judgement::of(&TraceAnswer { verdict, ..TraceAnswer::default() }, &physics);
+        let silent = |verdict| Judgement::of(&TraceRow { verdict, ..TraceRow::default() }, &physics);
         let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
         assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
         let nothing = [true, false].map(|disturbed| MissingPhysics::Nothing { disturbed });

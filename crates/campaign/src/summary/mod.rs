@@ -7,20 +7,20 @@
 mod blind_spots;
 mod detail;
 mod judgement;
+mod performance;
 mod predictions;
-mod record;
 mod records;
 mod tally;
 mod tracing;
 
-pub use blind_spots::{BlindSpot, axis_of_sizes, blind_spots};
+pub use blind_spots::{BlindSpot, blind_spots, effect_size_axis};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use judgement::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S};
-pub use predictions::{CriterionTally, PredictionSummary};
-pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
+pub use performance::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
+pub use predictions::{ImoDecisionTally, PredictionSummary};
 pub use records::{RecordSummary, record_summaries};
 pub use tally::{Tally, summarise};
-pub use tracing::{CALIBRATION, CalibrationBin, MIN_CLEAR_MARGIN, TraceSummary, effect_ids};
+pub use tracing::{CALIBRATION_BIN_EDGES, CalibrationBin, MIN_CLEAR_MARGIN, TraceSummary, effect_ids};
 
 #[cfg(test)]
 mod tests;

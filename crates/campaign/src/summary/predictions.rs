@@ -3,8 +3,8 @@
 use predict::imo::limit_of;
 use serde::{Deserialize, Serialize};
 
-use crate::rows::{PredictedFigure, StudyRow};
-use crate::statistics::{Statistic, share};
+use crate::rows::{PredictedCharacteristic, StudyRow};
+use crate::statistics::{Statistic, wilson_share};
 
 /// Predictions of one characteristic of a manoeuvre by one method in one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -20,7 +20,7 @@ pub struct PredictionSummary {
     /// Number of trials whose 90 % interval contains the true value.
     pub inside: u64,
     /// IMO criterion of the characteristic, with the decisions on it.
-    pub criterion: Option<CriterionTally>,
+    pub criterion: Option<ImoDecisionTally>,
     /// Sums over trials: error of the median, its square, width of the interval, true value.
     sums: [f64; 4],
 }
@@ -28,7 +28,7 @@ pub struct PredictionSummary {
 /// Decisions on an IMO criterion: a 90 % interval on one side of the limit is a decision with a probability of at least
 /// 95 %.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct CriterionTally {
+pub struct ImoDecisionTally {
     /// Name of the criterion.
     pub name: Box<str>,
     /// Maximum allowed value.
@@ -41,8 +41,8 @@ pub struct CriterionTally {
     pub wrong: u64,
 }
 
-impl CriterionTally {
-    fn add(&mut self, figure: &PredictedFigure) {
+impl ImoDecisionTally {
+    fn add(&mut self, figure: &PredictedCharacteristic) {
         let is_kept = figure.truth <= self.limit;
         let [low, high] = figure.ci90;
         self.kept += u64::from(is_kept);
@@ -54,7 +54,7 @@ impl CriterionTally {
 impl PredictionSummary {
     /// Coverage of the 90 % intervals.
     pub fn coverage(&self) -> Option<Statistic> {
-        share(self.inside, self.trials)
+        wilson_share(self.inside, self.trials)
     }
 
     fn mean(&self, place: usize) -> f64 {
@@ -88,14 +88,17 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
         let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
             let (cell, method, name) = (row.cell as usize, row.method, figure.name.clone());
             let limited = length_over_speed.and_then(|scale| limit_of(&name, scale));
-            let criterion =
-                limited.map(|(name, limit)| CriterionTally { name: name.into(), limit, ..CriterionTally::default() });
+            let criterion = limited.map(|(name, limit)| ImoDecisionTally {
+                name: name.into(),
+                limit,
+                ..ImoDecisionTally::default()
+            });
             lines.push(PredictionSummary { cell, method, name, criterion, ..PredictionSummary::default() });
             lines.len() - 1
         });
         let line = &mut lines[at];
         line.trials += 1;
-        line.inside += u64::from(figure.holds());
+        line.inside += u64::from(figure.covers_truth());
         line.criterion.iter_mut().for_each(|tally| tally.add(figure));
         let error = figure.median - figure.truth;
         let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
@@ -110,8 +113,12 @@ mod tests {
     #[test]
     fn intervals_are_counted_where_they_hold() {
         let row = |truth: f64| {
-            let figure =
-                PredictedFigure { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
+            let figure = PredictedCharacteristic {
+                name: "zig-zag 10/10 period_s".into(),
+                truth,
+                median: 100.0,
+                ci90: [98.0, 103.0],
+            };
             StudyRow { predicted: Some([figure].into()), ..StudyRow::default() }
         };
         let mut lines = Vec::new();
@@ -130,7 +137,7 @@ mod tests {
         let mut lines = Vec::new();
         for (truth, low, high) in [(12.0, 10.0, 14.0), (12.0, 10.0, 16.0), (18.0, 10.0, 14.0), (18.0, 16.0, 20.0)] {
             let (name, ci90) = ("zig-zag 10/10 first_overshoot_deg".into(), [low, high]);
-            let figure = PredictedFigure { name, truth, median: 13.0, ci90 };
+            let figure = PredictedCharacteristic { name, truth, median: 13.0, ci90 };
             add_predictions(
                 &mut lines,
                 &StudyRow { predicted: Some([figure].into()), ..StudyRow::default() },

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::rows::StudyRow;
-use crate::statistics::{Statistic, interval, resampled};
+use crate::statistics::{Statistic, percentile_interval, resample_clusters};
 
 /// Replay errors of one method on the records of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -99,15 +99,15 @@ fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
         })
         .collect();
     let value = median_of(&clusters.concat())?;
-    let drawn = resampled(&clusters, median_of).into_iter().flatten().collect();
-    Some(Statistic { value, ci95: interval(groups.len(), drawn) })
+    let drawn = resample_clusters(&clusters, median_of).into_iter().flatten().collect();
+    Some(Statistic { value, ci95: percentile_interval(groups.len(), drawn) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::design::{CellFacts, JudgedRecord};
-    use crate::rows::{NamedEffect, TraceAnswer};
+    use crate::rows::{NamedEffect, TraceRow};
     use crate::scenario::MethodName;
 
     /// Seven records, each fitted alone and validated on the six others.
@@ -136,7 +136,7 @@ mod tests {
                 validation_rmse_deg: Some(error),
                 ..StudyRow::default()
             };
-            let traced = TraceAnswer { named: vec![named.clone()], ..TraceAnswer::default() };
+            let traced = TraceRow { named: vec![named.clone()], ..TraceRow::default() };
             [row(0, error), StudyRow { traced: Some(Box::new(traced)), ..row(1, 0.25 * error) }]
         });
         let rows: Vec<StudyRow> = rows.collect();

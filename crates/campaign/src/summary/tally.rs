@@ -5,13 +5,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::detail::{CellDetail, Cloud, ErrorDensity, MAX_PAIRS, MethodDetail};
+use super::performance::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::predictions::{PredictionSummary, add_predictions};
-use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::scenario::MethodName;
-use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
+use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, wilson_share};
 
 /// Reference method, if a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
@@ -49,7 +49,7 @@ impl<'a> Tally<'a> {
         let running = vec![MethodTally::default(); design.methods.len()];
         Self {
             design,
-            detailed: design.detail(),
+            detailed: design.detailed_cells(),
             cell: 0,
             replicate: 0,
             present: running.clone(),
@@ -173,8 +173,8 @@ fn most_batches(methods: &[MethodTally]) -> usize {
 
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
-        resamples.figures(pair.batches(), |total| [PairSums::difference(total), PairSums::ratio(total)]);
-    Comparison { rms_difference, rms_ratio, closer: share(pair.smaller.round() as u64, pair.trials()) }
+        resamples.bootstrap(pair.batches(), |total| [PairSums::difference(total), PairSums::ratio(total)]);
+    Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trials()) }
 }
 
 /// Running sums of one method.
@@ -259,13 +259,13 @@ impl MethodTally {
         Performance {
             trials: self.trials,
             failures: self.failures.clone(),
-            failure_rate: share(failed, self.trials),
+            failure_rate: wilson_share(failed, self.trials),
             k,
             t,
             k_over_t,
-            heading_rmse_deg: heading.figure(0.5),
-            validation_rmse_deg: validation.figure(0.5),
-            high_validation_rmse_deg: validation.figure(0.9),
+            heading_rmse_deg: heading.quantile_statistic(0.5),
+            validation_rmse_deg: validation.quantile_statistic(0.5),
+            high_validation_rmse_deg: validation.quantile_statistic(0.9),
             evaluations: (answered > 0).then(|| self.evaluations / answered as f64),
         }
     }
@@ -334,25 +334,25 @@ impl IndexSums {
 
     fn errors(&self, resamples: &Resamples) -> IndexErrors {
         let ordered = self.sample.ordered();
-        let sizes = ordered.distances(0.0);
+        let sizes = ordered.absolute_deviations(0.0);
         let sums = &self.sums;
         let [mean, sd, rms] =
-            resamples.figures(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
+            resamples.bootstrap(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
         let (squares, count) = self.bounds;
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
         IndexErrors {
             answer: self.answer(),
             mean,
-            median: ordered.figure(0.5),
+            median: ordered.quantile_statistic(0.5),
             sd,
             rms,
             mad: ordered.mad(),
-            quantiles: [0.025, 0.25, 0.75, 0.975].map(|p| ordered.figure(p)),
-            median_size: sizes.figure(0.5),
-            high_size: sizes.figure(0.9),
-            coverage: share(self.held, self.quoted),
-            width: self.widths.ordered().figure(0.5),
-            quoting: if self.quoted > 0 { share(self.quoted, self.answered) } else { None },
+            quantiles: [0.025, 0.25, 0.75, 0.975].map(|p| ordered.quantile_statistic(p)),
+            median_size: sizes.quantile_statistic(0.5),
+            high_size: sizes.quantile_statistic(0.9),
+            coverage: wilson_share(self.held, self.quoted),
+            width: self.widths.ordered().quantile_statistic(0.5),
+            quoting: if self.quoted > 0 { wilson_share(self.quoted, self.answered) } else { None },
             sd_over_bound: sd.zip(bound).map(|(sd, bound)| sd.times(1.0 / bound)),
         }
     }

@@ -54,7 +54,7 @@ fn ladder() -> Vec<StudyRow> {
 #[test]
 fn figures_are_those_of_the_errors() {
     let summary = summarise(&ladder(), &design(&["output-error"], 1));
-    let record = summary.record(0, 0).expect("one cell");
+    let record = summary.performance(0, 0).expect("one cell");
     let sd = (28.0_f64 / 6.0).sqrt();
     near(record.k.mean, 0.0);
     near(record.k.median, 0.0);
@@ -86,7 +86,7 @@ fn failures_count_and_do_not_spoil() {
         ..StudyRow::default()
     }));
     let summary = summarise(&rows, &design(&["output-error"], 1));
-    let record = summary.record(0, 0).expect("one cell");
+    let record = summary.performance(0, 0).expect("one cell");
     assert_eq!((record.failed(), record.failures.as_slice()), (3, [("not-excited".to_owned(), 3)].as_slice()));
     near(record.failure_rate, 0.3);
     near(record.k.rms, 2.0);
@@ -125,9 +125,9 @@ fn cells_are_told_apart_and_pooled() {
             .map(|row| StudyRow { k_per_s: row.k_per_s.map(|k| k + 0.01), ..row }),
     );
     let summary = summarise(&rows, &design(&["output-error"], 3));
-    near(summary.record(0, 0).expect("rows").k.median, 0.0);
-    near(summary.record(2, 0).expect("rows").k.median, 10.0);
-    assert!(summary.record(1, 0).is_none(), "a cell without rows");
+    near(summary.performance(0, 0).expect("rows").k.median, 0.0);
+    near(summary.performance(2, 0).expect("rows").k.median, 10.0);
+    assert!(summary.performance(1, 0).is_none(), "a cell without rows");
     near(summary.overall[0].k.mean, 5.0);
     assert_eq!(summary.details.len(), 1);
 }
@@ -135,7 +135,7 @@ fn cells_are_told_apart_and_pooled() {
 #[test]
 fn one_trial_has_no_interval() {
     let summary = summarise(&ladder()[..1], &design(&["output-error"], 1));
-    let record = summary.record(0, 0).expect("rows");
+    let record = summary.performance(0, 0).expect("rows");
     assert_eq!((record.k.sd, record.k.rms.expect("one").ci95), (None, None));
     assert_eq!(summarise(&[], &design(&["output-error"], 1)).methods, []);
 }

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::judgement::Judgement;
 use crate::design::CellFacts;
-use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{NamedEffect, StudyRow, TraceRow};
 use crate::scenario::{HULL, MissingPhysics};
-use crate::statistics::{Statistic, share};
+use crate::statistics::{Statistic, wilson_share};
 
 /// Minimum margin in log evidence of a missing effect that must be named; below it a rival explains the trial nearly as
 /// well.
@@ -53,11 +53,11 @@ pub struct TraceSummary {
     /// Mean coverage of the heading band: on the trial, and on the validation manoeuvre.
     pub band: [Option<f64>; 2],
     /// Calibration of the probabilities of effects; empty for a hull.
-    pub calibration: [CalibrationBin; CALIBRATION.len() - 1],
+    pub calibration: [CalibrationBin; CALIBRATION_BIN_EDGES.len() - 1],
 }
 
 /// Edges of the probability bins.
-pub const CALIBRATION: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+pub const CALIBRATION_BIN_EDGES: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
 /// Bin of a calibration table.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -97,23 +97,23 @@ impl TraceSummary {
     }
 
     /// Share of trials in which exactly the missing effects were named; `None` for a hull.
-    pub fn exact_share(&self) -> Option<Statistic> {
+    pub fn exactly_named_share(&self) -> Option<Statistic> {
         self.share_of(self.exact)
     }
 
     /// Share of trials with a wrongly named group.
     pub fn wrong_share(&self) -> Option<Statistic> {
-        share(self.wrong, self.trials)
+        wilson_share(self.wrong, self.trials)
     }
 
     /// Share of the trials; `None` for a hull.
     fn share_of(&self, count: u64) -> Option<Statistic> {
-        if self.is_hull() { None } else { share(count, self.trials) }
+        if self.is_hull() { None } else { wilson_share(count, self.trials) }
     }
 
     /// Share of trials with a clear margin in which the missing effect was named.
     pub fn clear_share(&self) -> Option<Statistic> {
-        share(self.clear[1], self.clear[0])
+        wilson_share(self.clear[1], self.clear[0])
     }
 
     /// `true` for a hull, whose missing effects are not defined.
@@ -152,7 +152,7 @@ impl TraceTally {
     }
 
     /// Adds the result of a trace.
-    pub(super) fn add(&mut self, answer: &TraceAnswer) {
+    pub(super) fn add(&mut self, answer: &TraceRow) {
         let Self { summary, physics, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
         let judgement = physics.as_ref().map(|physics| Judgement::of(answer, physics));
@@ -169,13 +169,13 @@ impl TraceTally {
             _ => missing,
         };
         let (right, wrong): (Vec<_>, Vec<_>) =
-            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.holds(id)));
+            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.includes(id)));
         let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
         let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
         aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
         let complete = match physics {
             Some(MissingPhysics::Listed { .. }) => !right.is_empty(),
-            _ => missing.iter().all(|id| right.iter().any(|effect| effect.holds(id))),
+            _ => missing.iter().all(|id| right.iter().any(|effect| effect.includes(id))),
         };
         let is_weather = |effect: &&NamedEffect| {
             let ids = std::iter::once(&effect.id).chain(&effect.aliases);
@@ -192,7 +192,7 @@ impl TraceTally {
         for id in effect_ids().filter(|_| has_truth) {
             let entry = answer.probabilities.iter().find(|(other, _)| **other == *id);
             let sum = entry.map_or(0.0, |(_, probability)| *probability);
-            let bin = CALIBRATION[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
+            let bin = CALIBRATION_BIN_EDGES[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
             summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
         }
@@ -220,14 +220,14 @@ mod tests {
             ..NamedEffect::default()
         };
         for groups in trials {
-            tally.add(&TraceAnswer {
+            tally.add(&TraceRow {
                 verdict: Verdict::Traced,
                 named: groups.iter().map(effect).collect(),
                 probabilities: vec![("wind_moment".into(), 0.97)],
                 margin: Some(30.0),
                 expected: Some(4.0),
                 band_fitted: Some(0.9),
-                ..TraceAnswer::default()
+                ..TraceRow::default()
             });
         }
         tally.summary()
@@ -260,7 +260,7 @@ mod tests {
         let trials: [&[&[&str]]; 4] =
             [&[&["speed_loss"]], &[&["wind_moment", "speed_loss"]], &[&["wind_moment"]], &[&["moment_drift"], &["a"]]];
         let summary = summary(&[HULL], &trials);
-        assert_eq!((summary.wrong, summary.exact_share()), (2, None));
+        assert_eq!((summary.wrong, summary.exactly_named_share()), (2, None));
         assert_eq!(summary.wrong_share().map(|share| share.value), Some(0.5));
     }
 

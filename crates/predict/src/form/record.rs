@@ -157,7 +157,7 @@ fn circle(trial: &Trial) -> Classified {
     }
     let names = ["advance_lengths", "tactical_diameter_lengths"].into_iter();
     let figures: Vec<(&'static str, Quantity)> =
-        names.filter_map(|name| Some((name, Quantity::bare(shown.get(name).copied()??)))).collect();
+        names.filter_map(|name| Some((name, Quantity::without_uncertainty(shown.get(name).copied()??)))).collect();
     let remark = figures
         .is_empty()
         .then(|| String::from("a turning circle without a track: it shows neither advance nor diameter"));

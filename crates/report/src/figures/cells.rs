@@ -8,16 +8,16 @@ use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
 use crate::axis::{self, Axis, Division};
-use crate::backend::{Plotted, SvgGroup};
+use crate::backend::{PlotResult, SvgGroup};
 use crate::canvas::{Rect, Stroke, TextLine};
 use crate::chart::Chart;
-use crate::figure::Drawing;
-use crate::fonts::{LINE, text_width};
-use crate::key::{KeyEntry, KeySample, outline_stroke};
+use crate::drawing::Drawing;
+use crate::fonts::{LINE_SPACING, text_width};
+use crate::legend::{LegendEntry, LegendSymbol, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
 use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
-use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
+use crate::sheet::{AxisSide, Grid, MAX_NAMES_SHARE, Sheet};
 use crate::theme::Theme;
 
 /// Content of a cell.
@@ -99,8 +99,9 @@ impl CellMap {
             (false, _, true) => 1.75 * theme.tick_font,
             (false, _, false) => 2.0 * theme.tick_font,
         };
-        let lines = self.rows.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len()).max();
-        let usual = usual.max((0.3 + LINE * lines.unwrap_or(1) as f64) * theme.tick_font);
+        let lines =
+            self.rows.iter().map(|name| wrap(name, theme.tick_font, false, MAX_NAMES_SHARE * theme.width).len()).max();
+        let usual = usual.max((0.3 + LINE_SPACING * lines.unwrap_or(1) as f64) * theme.tick_font);
         let higher = (SPREAD * usual).min(HEIGHT * theme.width / self.rows.len().max(1) as f64);
         if theme.is_narrow() { usual } else { usual.max(higher) }
     }
@@ -124,7 +125,7 @@ impl CellMap {
 }
 
 /// Drawing of the panels, in rows of as many as fit.
-pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     let outlines = [
         (Outline::Right, SOLID, "right"),
@@ -132,12 +133,15 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Dra
         (Outline::Finding, SOLID, "in the title"),
     ];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
-    sheet.legend(&shown.map(|(_, dash, name)| KeyEntry::new(KeySample::Outline(dash), *name)).collect::<Vec<_>>())?;
+    sheet.legend(
+        &shown.map(|(_, dash, name)| LegendEntry::new(LegendSymbol::Outline(dash), *name)).collect::<Vec<_>>(),
+    )?;
     // The frame is at the edges of the cells.
     let column = AxisSide::new(Axis::columns(&data.columns), data.titles[0].as_str());
     let row = AxisSide::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
     let height = data.rows.len().max(1) as f64 * data.pitch(theme);
-    let heads = data.panels.iter().map(|(head, _)| Some(KeyEntry::new(KeySample::Nothing, head.as_ref()?))).collect();
+    let heads =
+        data.panels.iter().map(|(head, _)| Some(LegendEntry::new(LegendSymbol::Nothing, head.as_ref()?))).collect();
     let shading = Shading::of(data);
     let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row, height) };
     for (chart, (_, rows)) in sheet.grid(grid)?.iter().zip(&data.panels) {
@@ -162,7 +166,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> Plotted<Dra
 const PIECES: usize = 64;
 
 /// Draws the colour bar with its values under the panels; no bar for one value or none.
-fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> Plotted {
+fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> PlotResult {
     if shading.high <= shading.low {
         return Ok(());
     }
@@ -244,7 +248,7 @@ impl PlacedCell<'_> {
     }
 
     /// Fills the cell, with thin lines to its neighbours if most cells are white.
-    fn shade(&self, chart: &Chart) -> Plotted {
+    fn shade(&self, chart: &Chart) -> PlotResult {
         let (colour, opacity) = self.colour();
         let [left, right, top, bottom] = [self.x - 0.5, self.x + 0.5, self.y - 0.5, self.y + 0.5];
         let cell = Rectangle::new([(left, top), (right, bottom)], colour.mix(opacity).filled());
@@ -255,9 +259,9 @@ impl PlacedCell<'_> {
     }
 
     /// Writes the numbers of the cell, and its outline over the thin lines of its neighbours.
-    fn label(&self, chart: &Chart) -> Plotted {
+    fn label(&self, chart: &Chart) -> PlotResult {
         let (theme, is_shares) = (self.theme, self.shading.is_shares);
-        let corner = |side: f64| chart.place(self.x + side, self.y + side);
+        let corner = |side: f64| chart.page_point(self.x + side, self.y + side);
         let (Some((left, top)), Some((right, bottom))) = (corner(-0.5), corner(0.5)) else { return Ok(()) };
         if let Some(outline) = self.cell.outline {
             let stroke = outline_stroke(if outline == Outline::Alias { DOTTED } else { SOLID }, theme);

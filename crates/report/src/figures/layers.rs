@@ -4,17 +4,17 @@ use plotters::element::ErrorBar;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
-use super::aside;
-use super::panels::{Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Ruler, Stack};
-use super::reach::{Extents, INTERVALS, robust};
-use super::shared::{ACROSS_PAD, BEYOND, Bars, PAD, asides, record, zero_stroke};
+use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
+use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
+use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, draw_record, spread_overlapping, zero_stroke};
+use super::side_labels;
 use crate::axis::{Axis, Division};
-use crate::backend::{Plotted, SvgGroup, UNITS, units};
-use crate::canvas::{PagePoint, Stroke, TextLine, at, hull, marker};
+use crate::backend::{PlotResult, SvgGroup, UNITS, units};
+use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::figure::Drawing;
-use crate::key::{KeyEntry, KeySample};
+use crate::drawing::Drawing;
+use crate::legend::{LegendEntry, LegendSymbol};
 use crate::palette::{DASHED, DOTTED, INK, RECORD, SHORT_DASH};
 use crate::sheet::{AxisSide, Grid, Sheet};
 use crate::theme::Theme;
@@ -75,7 +75,7 @@ fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a
 }
 
 /// Draws the stacks below each other.
-pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     annotated(data, finding, theme, &|_| Ok(None))
 }
 
@@ -84,8 +84,8 @@ pub(super) fn annotated(
     data: &Panels,
     finding: &str,
     theme: &Theme,
-    annotate: &dyn Fn(&Chart) -> Plotted<Option<String>>,
-) -> Plotted<Drawing> {
+    annotate: &dyn Fn(&Chart) -> PlotResult<Option<String>>,
+) -> PlotResult<Drawing> {
     let data = &fitted(data, theme);
     let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
@@ -97,7 +97,7 @@ pub(super) fn annotated(
     for stacks in side_by_side(data, theme) {
         let width = if stacks[0].is_half && !theme.is_narrow() { 2 } else { 1 };
         let gap = Sheet::gap(theme);
-        let part = (theme.width - aside::room(data, theme) - gap * (width - 1) as f64) / width as f64;
+        let part = (theme.width - side_labels::width(data, theme) - gap * (width - 1) as f64) / width as f64;
         let (top, mut lowest) = (sheet.y, sheet.y);
         for (column, stack) in stacks.iter().enumerate() {
             sheet.y = top;
@@ -117,7 +117,7 @@ pub(super) fn annotated(
             let drawn = sheet.grid_within(grid, column as f64 * (part + gap), part)?;
             draw(&drawn, stack, theme, &mut outside)?;
             if data.names_aside {
-                outside.names.extend(aside::of_stack(&drawn, stack, columns(stack, theme), theme)?);
+                outside.names.extend(side_labels::draw(&drawn, stack, columns(stack, theme), theme)?);
             }
             charts.extend(drawn);
             lowest = lowest.max(sheet.y);
@@ -136,14 +136,14 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
         count => Some(format!("{count} points lie beyond a panel, where an arrow is at its edge.")),
     };
     let apart = outside.apart.then(|| String::from("Records of one amplitude stand side by side."));
-    let marks = outside.marks.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND.to_owned()));
+    let marks = outside.marks.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
     let cut = data.cut.clone().filter(|_| outside.is_cut);
     let names = (!outside.names.is_empty()).then(|| format!("Outside the axes: {}.", outside.names.join(", ")));
     [data.note.clone(), outside.bars.remark(), cut, dots, names, apart, marks].into_iter().flatten().collect()
 }
 
-fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
-    let mut entries: Vec<KeyEntry> = Vec::new();
+fn entries(data: &Panels, theme: &Theme) -> Vec<LegendEntry> {
+    let mut entries: Vec<LegendEntry> = Vec::new();
     for panel in data.stacks.iter().flat_map(|stack| &stack.panels).filter(|_| !data.names_aside) {
         // If a band overlaps another one, its sample has the opacity of both.
         let mut light = 1.0;
@@ -152,12 +152,15 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<KeyEntry> {
                 light *= 1.0 - opacity;
             }
             let name = layer.name.as_ref().filter(|name| entries.iter().all(|entry| entry.label != **name));
-            entries.extend(name.and_then(|name| Some(KeyEntry::new(layer.sample(theme, 1.0 - light)?, name))));
+            entries
+                .extend(name.and_then(|name| Some(LegendEntry::new(layer.legend_symbol(theme, 1.0 - light)?, name))));
         }
     }
     let marks = data.stacks.iter().flat_map(|stack| &stack.marks).filter(|mark| !mark.label.is_empty());
-    entries.extend(marks.map(|mark| KeyEntry::new(KeySample::Upright(mark_stroke(&mark.label, theme)), &mark.label)));
-    entries.extend(data.said.iter().map(|text| KeyEntry::new(KeySample::Nothing, text)));
+    entries.extend(
+        marks.map(|mark| LegendEntry::new(LegendSymbol::Upright(mark_stroke(&mark.label, theme)), &mark.label)),
+    );
+    entries.extend(data.said.iter().map(|text| LegendEntry::new(LegendSymbol::Nothing, text)));
     entries
 }
 
@@ -174,7 +177,7 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
 }
 
 /// Extents of some layers along one axis; if the axis is cut for wild data, every value is a separate extent.
-fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &Ruler, is_vertical: bool) -> Extents {
+fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
         let pairs = layer.curves().flat_map(PlotCurve::finite);
@@ -182,11 +185,11 @@ fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &Ruler, is_vertic
         match (&layer.kind, layer.room) {
             (LayerKind::Cloud(_), _) => {}
             (_, Some(room)) => extents.soft.extend(values.into_iter().map(|value| (value, room))),
-            (LayerKind::Dots(_), None) if is_vertical => extents.add(robust(values)),
+            (LayerKind::Dots(_), None) if is_vertical => extents.add(robust_range(values)),
             (LayerKind::Marks(marks), None) => {
                 values.into_iter().for_each(|value| extents.add([value]));
                 let ends = marks.intervals.iter().flatten().flatten().filter(|_| is_vertical);
-                extents.soft.extend(ends.map(|end| (*end, INTERVALS)));
+                extents.soft.extend(ends.map(|end| (*end, MAX_INTERVAL_SHARE)));
             }
             (LayerKind::Line(_) | LayerKind::Band(..), None) if ruler.reach.is_some() => {
                 values.into_iter().for_each(|value| extents.add([value]));
@@ -228,17 +231,17 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let scale = (MAX_ROOM / taken).min(1.0);
         let [below, above] = row.room.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
         let axis = if row.room == [0.0; 2] { axis } else { axis.between(lo - below, hi + above) };
-        (AxisSide::new(axis, row.y.title.as_str()), theme.tall(row.height))
+        (AxisSide::new(axis, row.y.title.as_str()), theme.panel_height(row.height))
     };
     let rows: Vec<(AxisSide, f64)> = stack.rows.iter().enumerate().map(&mut row).collect();
     let head = |panel: &LayeredPanel| {
         // A layer with a name is in the key.
         let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
         let is_sample = |layer: &&Layer| stack.across.is_some() && is_nameless(layer);
-        let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.sample(theme, 1.0));
+        let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.legend_symbol(theme, 1.0));
         let head =
             [&panel.head, &panel.detail].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
-        (!head.is_empty()).then(|| KeyEntry::new(sample.unwrap_or(KeySample::Nothing), head))
+        (!head.is_empty()).then(|| LegendEntry::new(sample.unwrap_or(LegendSymbol::Nothing), head))
     };
     let heads = stack.panels.iter().map(head).collect();
     let grid = match (stack.across, rows.first(), columns.first()) {
@@ -274,7 +277,7 @@ fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
 }
 
 /// Draws the panels of a stack.
-fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -> Plotted {
+fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -> PlotResult {
     let count = columns(stack, theme);
     let mut dots = 0;
     for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
@@ -296,7 +299,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
 }
 
 /// Draws the background of the layers.
-fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Plotted {
+fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> PlotResult {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
     }
@@ -313,7 +316,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
 }
 
 /// Writes the number of dots outside a small multiple into its corner.
-fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
+fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> PlotResult {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
     let outside = layer.curve.finite().filter(|&(x, y)| chart.inside(x, y).is_none()).count();
@@ -327,12 +330,12 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> Plotted {
 }
 
 /// Draws a layer; returns the number of dots beyond the panel.
-fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> Plotted<usize> {
+fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> PlotResult<usize> {
     let name = layer.name.as_deref();
     match &layer.kind {
         LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
         LayerKind::Band(other, colour, opacity) => chart.band(name, [&layer.curve, other], colour.mix(*opacity))?,
-        LayerKind::Record => record(chart, theme, name, &layer.curve)?,
+        LayerKind::Record => draw_record(chart, theme, name, &layer.curve)?,
         LayerKind::Dots(colour) => {
             chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(1.0))?;
             return edges(chart, &layer.curve, 1.2 * theme.marker, *colour);
@@ -342,7 +345,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
         LayerKind::Ships(colour, headings) => {
             for ((x, y), heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
                 let (sine, cosine) = heading.to_radians().sin_cos();
-                let ship = |place| hull(at(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
+                let ship = |place| ship_outline(page_units(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.elements(ship))?;
             }
         }
@@ -352,7 +355,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
 }
 
 /// Writes the words of a layer next to its points.
-fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
+fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
     let LayerKind::Words(colour, corner, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
@@ -369,14 +372,14 @@ fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> Plotted {
 }
 
 /// Marks points above and below a panel by small arrows at its edge, and counts them.
-fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plotted<usize> {
+fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotResult<usize> {
     let rect = chart.rect;
     let mut count = 0;
-    for (x, y) in curve.finite().filter_map(|(x, y)| chart.place(x, y)) {
+    for (x, y) in curve.finite().filter_map(|(x, y)| chart.page_point(x, y)) {
         let edge = y.clamp(rect.y, rect.bottom());
         if edge != y {
             let x = x.clamp(rect.x, rect.right());
-            chart.canvas.head((x, edge), (0.0, (y - edge).signum()), size, colour)?;
+            chart.canvas.arrow_head((x, edge), (0.0, (y - edge).signum()), size, colour)?;
             count += 1;
         }
     }
@@ -384,14 +387,14 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> Plott
 }
 
 /// Draws marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
-fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> Plotted {
+fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> PlotResult {
     let Marks { look, intervals, joined, apart } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
-    let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.across(*x)).collect();
-    let across = if *apart { asides(&middles, 2.0 * theme.marker) } else { middles.clone() };
+    let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.page_x(*x)).collect();
+    let across = if *apart { spread_overlapping(&middles, 2.0 * theme.marker) } else { middles.clone() };
     outside.apart |= middles != across;
     // An infinite value has a place far beyond.
-    let up = |y: &f64| chart.up(y.clamp(-f64::MAX, f64::MAX));
+    let up = |y: &f64| chart.page_y(y.clamp(-f64::MAX, f64::MAX));
     let places: Vec<Option<PagePoint>> = across.iter().zip(&curve.y).map(|(x, y)| (*x).zip(up(y))).collect();
     let is_inside = |place: &Option<PagePoint>| place.is_some_and(|place| rect.contains(place));
     if let Some(pen) = joined {
@@ -420,13 +423,13 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     let size = theme.marker * if joined.is_some() { 0.9 } else { 1.0 };
     chart.canvas.svg.begin(SvgGroup::named(name));
     for place in places.iter().filter(|place| is_inside(place)).flatten() {
-        chart.canvas.elements(marker(at(*place), size, look))?;
+        chart.canvas.elements(marker(page_units(*place), size, look))?;
     }
     chart.canvas.svg.end();
     for (x, y) in places.iter().filter(|place| !is_inside(place)).flatten() {
         let edge = (x.clamp(rect.x, rect.right()), y.clamp(rect.y, rect.bottom()));
         let direction = if edge.1 == *y { ((x - edge.0).signum(), 0.0) } else { (0.0, (y - edge.1).signum()) };
-        chart.canvas.head(edge, direction, 0.7 * theme.small_font, look.colour)?;
+        chart.canvas.arrow_head(edge, direction, 0.7 * theme.small_font, look.colour)?;
         outside.marks = true;
     }
     Ok(())
@@ -434,11 +437,11 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
 
 /// Vertical interval with caps at a horizontal place; an end beyond the frame is cut, without cap. Returns its length
 /// in points.
-fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> Plotted<f64> {
+fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> PlotResult<f64> {
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;
     let place = |value: f64, beyond: i32| {
-        let y = chart.up(value.clamp(-f64::MAX, f64::MAX));
+        let y = chart.page_y(value.clamp(-f64::MAX, f64::MAX));
         y.map_or(beyond, |y| units(y).clamp(top - far, bottom + far))
     };
     let [low, high] = [place(ends[0].min(ends[1]), bottom + far), place(ends[0].max(ends[1]), top - far)];

@@ -1,7 +1,6 @@
 //! Kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure is
 //! a specification, plain data in display units; [`Plot::draw`] draws it.
 
-mod aside;
 mod cells;
 mod layers;
 mod panels;
@@ -9,18 +8,19 @@ mod reach;
 mod row_layers;
 mod rows;
 mod shared;
+mod side_labels;
 mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
 pub use panels::{
-    AxisLine, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack, WordsPlace,
+    AxisLine, AxisSpec, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, WordsPlace,
 };
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
 pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
 
-use crate::figure::Drawing;
+use crate::drawing::Drawing;
 use crate::markup::is_markup;
 use crate::theme::Theme;
 
@@ -51,7 +51,7 @@ impl Plot {
 
     /// Titles of the numeric axes, without italics: the keys of the limits in a style.
     pub fn axis_titles(&self) -> Vec<String> {
-        let rulers: Vec<Ruler> = match self {
+        let rulers: Vec<AxisSpec> = match self {
             Self::Panels(data) => {
                 let of =
                     |stack: &Stack| [stack.x.clone(), stack.rows.iter().map(|row| row.y.clone()).collect()].concat();
@@ -59,7 +59,7 @@ impl Plot {
             }
             Self::Rows(data) => data.columns.iter().map(|column| column.x.clone()).collect(),
             Self::Cells(_) => Vec::new(),
-            Self::ZigZag(_) => vec![Ruler::time(), Ruler::heading(), Ruler::rudder()],
+            Self::ZigZag(_) => vec![AxisSpec::time(), AxisSpec::heading(), AxisSpec::rudder()],
         };
         let titles = rulers.iter().map(|ruler| ruler.title.replace(is_markup, ""));
         titles.filter(|title| !title.is_empty()).collect()

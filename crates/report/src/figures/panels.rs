@@ -3,7 +3,7 @@
 //! [`super::layers`] draws it.
 
 use super::reach::{AxisReach, Extents};
-use super::shared::{Reference95, record_sample};
+use super::shared::{Reference95, record_symbol};
 pub use crate::axis::Division;
 
 use plotters::style::RGBColor;
@@ -11,14 +11,14 @@ use plotters::style::RGBColor;
 use crate::axis::Axis;
 use crate::canvas::Stroke;
 use crate::curve::PlotCurve;
-use crate::key::KeySample;
+use crate::legend::LegendSymbol;
 use crate::markup::symbol;
 use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
 use crate::theme::Theme;
 
 /// Specification of an axis: title with unit, tick division, and limits.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Ruler {
+pub struct AxisSpec {
     /// Title with the unit.
     pub title: String,
     /// Division of the axis.
@@ -27,7 +27,7 @@ pub struct Ruler {
     pub reach: Option<AxisReach>,
 }
 
-impl Ruler {
+impl AxisSpec {
     /// Axis over all data.
     pub fn new(title: impl Into<String>, division: Division) -> Self {
         Self { title: title.into(), division, reach: None }
@@ -240,22 +240,22 @@ impl Layer {
     }
 
     /// Sample in the key; for overlapping bands with the opacity `shade`.
-    pub(super) fn sample(&self, theme: &Theme, shade: f64) -> Option<KeySample> {
+    pub(super) fn legend_symbol(&self, theme: &Theme, shade: f64) -> Option<LegendSymbol> {
         Some(match &self.kind {
-            LayerKind::Line(pen) => KeySample::Line(pen.stroke(theme)),
+            LayerKind::Line(pen) => LegendSymbol::Line(pen.stroke(theme)),
             LayerKind::Band(_, colour, _) => {
-                KeySample::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
+                LegendSymbol::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
             }
             LayerKind::Record if self.curve.finite().next().is_none() => return None,
-            LayerKind::Record => record_sample(theme, &self.curve),
-            LayerKind::Dots(colour) | LayerKind::Cloud(colour) => KeySample::Dots(*colour),
+            LayerKind::Record => record_symbol(theme, &self.curve),
+            LayerKind::Dots(colour) | LayerKind::Cloud(colour) => LegendSymbol::Dots(*colour),
             LayerKind::Marks(Marks { look, joined: Some(pen), .. }) => {
-                KeySample::LineAndMarker(pen.stroke(theme), *look)
+                LegendSymbol::LineAndMarker(pen.stroke(theme), *look)
             }
-            LayerKind::Marks(Marks { look, .. }) => KeySample::Marker(*look),
+            LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
             LayerKind::Words(..) => return None,
             LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
-            LayerKind::Ships(colour, _) => KeySample::Hull(*colour),
+            LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })
     }
 }
@@ -264,7 +264,7 @@ impl Layer {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PanelRow {
     /// Vertical axis.
-    pub y: Ruler,
+    pub y: AxisSpec,
     /// Height, as a share of the width of the figure.
     pub height: f64,
     /// `true` if there is a line at zero.
@@ -279,12 +279,12 @@ pub struct PanelRow {
 
 impl PanelRow {
     /// Row of panels.
-    pub fn new(y: Ruler, height: f64) -> Self {
+    pub fn new(y: AxisSpec, height: f64) -> Self {
         Self { y, height, ..Self::default() }
     }
 
     /// Row of panels with a line at zero.
-    pub fn zeroed(y: Ruler, height: f64) -> Self {
+    pub fn zeroed(y: AxisSpec, height: f64) -> Self {
         Self { zero: true, ..Self::new(y, height) }
     }
 }
@@ -313,7 +313,7 @@ pub struct AxisLine {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stack {
     /// Horizontal axes, one per column.
-    pub x: Vec<Ruler>,
+    pub x: Vec<AxisSpec>,
     /// Rows of the stack.
     pub rows: Vec<PanelRow>,
     /// The panels, row by row.
@@ -334,14 +334,14 @@ pub struct Stack {
 
 impl Stack {
     /// Panels above each other over one horizontal axis.
-    pub fn over(x: Ruler, rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
+    pub fn over(x: AxisSpec, rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
         let (rows, layers): (Vec<PanelRow>, Vec<Vec<Layer>>) = rows.into_iter().unzip();
         let panels = layers.into_iter().map(|layers| LayeredPanel { layers, ..LayeredPanel::default() }).collect();
         Self { x: vec![x], rows, panels, ..Self::default() }
     }
 
     /// Panels with one pair of axes, `across` of them side by side.
-    pub fn multiples(across: usize, x: Ruler, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
+    pub fn multiples(across: usize, x: AxisSpec, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
         Self { x: vec![x], rows: vec![row], panels, across: Some(across), ..Self::default() }
     }
 }
@@ -371,6 +371,6 @@ impl Panels {
 
     /// Panels above each other over time.
     pub fn over_time(rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
-        Self::of(Stack::over(Ruler::time(), rows))
+        Self::of(Stack::over(AxisSpec::time(), rows))
     }
 }

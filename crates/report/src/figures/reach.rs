@@ -27,7 +27,7 @@ pub(super) struct Extents {
 }
 
 /// Maximum share of the range by which the ends of intervals may widen an axis.
-pub(super) const INTERVALS: f64 = 1.0;
+pub(super) const MAX_INTERVAL_SHARE: f64 = 1.0;
 
 /// Minimum usual extent, as a share of the centre: equal values differ by rounding alone.
 const LEAST_USUAL: f64 = 1e-3;
@@ -58,7 +58,7 @@ impl Extents {
         };
         let (mut ends, mut is_cut) = ((lo, hi), false);
         for (value, room) in self.soft.iter().filter(|(value, _)| value.is_finite()) {
-            let least = if *room == INTERVALS { LEAST_ROOM * lo.abs().max(hi.abs()) } else { 0.0 };
+            let least = if *room == MAX_INTERVAL_SHARE { LEAST_ROOM * lo.abs().max(hi.abs()) } else { 0.0 };
             let room = match hi > lo || least > 0.0 {
                 true => (room * (hi - lo)).max(least),
                 false => f64::INFINITY,
@@ -107,7 +107,7 @@ const FAR: f64 = 0.005;
 const ROOM: f64 = 0.5;
 
 /// Values that set the axis: minimum and maximum, after a few outliers are moved towards the rest.
-pub(super) fn robust(mut values: Vec<f64>) -> Vec<f64> {
+pub(super) fn robust_range(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let skipped = (FAR * values.len() as f64).ceil() as usize;
     let inner = values.get(skipped..values.len().saturating_sub(skipped)).filter(|inner| inner.len() > 10);

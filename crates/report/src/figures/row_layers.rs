@@ -3,31 +3,31 @@
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
-use super::reach::{Extents, INTERVALS};
+use super::reach::{Extents, MAX_INTERVAL_SHARE};
 use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-use super::shared::{BEYOND, Bars, Reference95, zero_stroke};
+use super::shared::{BEYOND_AXIS_REMARK, Bars, Reference95, zero_stroke};
 use crate::axis::{Axis, Division};
-use crate::backend::Plotted;
+use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::{Bar, Chart};
-use crate::figure::Drawing;
-use crate::fonts::{LINE, text_width};
-use crate::key::{KeyEntry, KeySample};
+use crate::drawing::Drawing;
+use crate::fonts::{LINE_SPACING, text_width};
+use crate::legend::{LegendEntry, LegendSymbol};
 use crate::lines::wrap;
 use crate::number::significant;
 use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, PAPER, RECORD};
-use crate::sheet::{AxisSide, Grid, NAMES, Sheet};
+use crate::sheet::{AxisSide, Grid, MAX_NAMES_SHARE, Sheet};
 use crate::theme::Theme;
 
 impl RowItem {
-    fn sample(&self, theme: &Theme) -> KeySample {
+    fn sample(&self, theme: &Theme) -> LegendSymbol {
         match &self.kind {
-            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => KeySample::Marker(*look),
-            RowKind::Bar(look, _) => KeySample::Line(bar_stroke(look, theme)),
-            RowKind::Thin(_) => KeySample::Line(Stroke::solid(HEADING, theme.line)),
-            RowKind::Range(colour, _) => KeySample::Line(range_stroke(*colour, theme)),
-            RowKind::Limit(_) => KeySample::Upright(limit_stroke(theme)),
-            RowKind::Heading => KeySample::Nothing,
+            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => LegendSymbol::Marker(*look),
+            RowKind::Bar(look, _) => LegendSymbol::Line(bar_stroke(look, theme)),
+            RowKind::Thin(_) => LegendSymbol::Line(Stroke::solid(HEADING, theme.line)),
+            RowKind::Range(colour, _) => LegendSymbol::Line(range_stroke(*colour, theme)),
+            RowKind::Limit(_) => LegendSymbol::Upright(limit_stroke(theme)),
+            RowKind::Heading => LegendSymbol::Nothing,
         }
     }
 
@@ -35,7 +35,7 @@ impl RowItem {
     fn enter(&self, data: &mut Extents) {
         let ends: Vec<f64> = match &self.kind {
             RowKind::Mark(_, value, interval) => {
-                data.soft.extend(interval.iter().flatten().map(|end| (*end, INTERVALS)));
+                data.soft.extend(interval.iter().flatten().map(|end| (*end, MAX_INTERVAL_SHARE)));
                 vec![*value]
             }
             RowKind::Thin(ends) | RowKind::Range(_, ends) => ends.to_vec(),
@@ -50,7 +50,7 @@ impl RowItem {
             }
         };
         match self.soft {
-            true => data.soft.extend(ends.into_iter().map(|end| (end, INTERVALS))),
+            true => data.soft.extend(ends.into_iter().map(|end| (end, MAX_INTERVAL_SHARE))),
             false => data.add(ends),
         }
     }
@@ -94,7 +94,7 @@ const SPREAD: f64 = 1.8;
 
 /// Drawing of the columns side by side; in a narrow figure above each other, or in pairs if they have many rows. Data
 /// beyond an axis are cut and marked.
-pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
@@ -106,7 +106,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Dr
         false => data.columns.len().max(1),
     };
     let widths = data.names.iter().map(|name| text_width(name, theme.tick_font, false));
-    let margin = widths.fold(0.0, f64::max).min(NAMES * theme.width) + MARGINS * theme.label_font;
+    let margin = widths.fold(0.0, f64::max).min(MAX_NAMES_SHARE * theme.width) + MARGINS * theme.label_font;
     let panel = (theme.width - margin) / across as f64 - MARGINS * theme.label_font;
     let (mut beyond, mut bars) = (false, Bars::default());
     for part in data.columns.chunks(across) {
@@ -127,7 +127,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Dr
                 .for_each(|bar| bars.add(bar, theme));
         }
     }
-    let arrows = beyond.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND.to_owned()));
+    let arrows = beyond.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
     sheet.note(&[data.note.clone(), bars.remark(), arrows].into_iter().flatten().collect::<Vec<_>>())?;
     Ok(sheet.finish())
 }
@@ -135,15 +135,15 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> Plotted<Dr
 /// Length in points of the interval of a mark; `None` if it has none.
 fn bar_length(chart: &Chart, item: &RowItem) -> Option<f64> {
     let RowKind::Mark(_, _, Some(ends)) = item.kind else { return None };
-    let [left, right] = ends.map(|end| chart.across(end.clamp(-f64::MAX, f64::MAX)));
+    let [left, right] = ends.map(|end| chart.page_x(end.clamp(-f64::MAX, f64::MAX)));
     Some(right? - left?)
 }
 
 /// Distance of the rows, points.
 fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     let items = || data.columns.iter().flat_map(|column| &column.rows);
-    let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
-    let lines = LINE * lines.max().unwrap_or(1).max(1) as f64;
+    let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, MAX_NAMES_SHARE * theme.width).len());
+    let lines = LINE_SPACING * lines.max().unwrap_or(1).max(1) as f64;
     let stacked = 0.62 * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
     let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
     let usual = (lines + 0.95).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
@@ -160,18 +160,18 @@ fn stacked(items: &[RowItem]) -> usize {
     items.iter().filter(|item| item.place == RowPlace::Below).count()
 }
 
-fn entries(data: &NamedRows, theme: &Theme) -> Vec<KeyEntry> {
+fn entries(data: &NamedRows, theme: &Theme) -> Vec<LegendEntry> {
     let lines = data.columns.iter().flat_map(|column| &column.lines);
-    let lines = lines.map(|(name, pen, _)| KeyEntry::new(KeySample::Line(pen.stroke(theme)), name));
+    let lines = lines.map(|(name, pen, _)| LegendEntry::new(LegendSymbol::Line(pen.stroke(theme)), name));
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
-    let items = items.filter_map(|item| Some(KeyEntry::new(item.sample(theme), item.name.as_ref()?)));
-    let mut entries: Vec<KeyEntry> = Vec::new();
+    let items = items.filter_map(|item| Some(LegendEntry::new(item.sample(theme), item.name.as_ref()?)));
+    let mut entries: Vec<LegendEntry> = Vec::new();
     let ground = Stroke { opacity: GROUND, ..Stroke::solid(HEADING, theme.tick_font) };
-    let shaded = data.shaded.iter().map(|(name, _)| KeyEntry::new(KeySample::Line(ground), name));
+    let shaded = data.shaded.iter().map(|(name, _)| LegendEntry::new(LegendSymbol::Line(ground), name));
     for entry in lines.chain(items).chain(shaded) {
         match entries.iter_mut().find(|listed| listed.label == entry.label) {
             // A range belongs to the mark with the same name.
-            Some(listed) if matches!(entry.sample, KeySample::Marker(_)) => *listed = entry,
+            Some(listed) if matches!(entry.sample, LegendSymbol::Marker(_)) => *listed = entry,
             Some(_) => {}
             None => entries.push(entry),
         }
@@ -202,7 +202,7 @@ fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
 }
 
 /// Draws the rows of a column; returns whether data are beyond its axis.
-fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotted<bool> {
+fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotResult<bool> {
     let (left, right) = chart.x.ends();
     // A ground under every second row groups the marks of a row.
     for (row, _) in column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && row % 2 == 1) {
@@ -238,7 +238,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
     }
     for (row, items) in column.rows.iter().enumerate() {
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
-        let y = chart.up(row as f64).unwrap_or(f64::NAN);
+        let y = chart.page_y(row as f64).unwrap_or(f64::NAN);
         for ((text, colour), width) in numbers(items, theme).into_iter().rev().zip(widths.iter().rev()) {
             chart.canvas.text_on_ground((right, y), &TextLine { colour, ..text })?;
             right -= width;
@@ -248,7 +248,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
     let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..) | RowKind::Heading);
     let is_estimated = column.rows.iter().flatten().all(is_estimate);
     for (row, items) in column.rows.iter().enumerate() {
-        let middle = chart.up(row as f64).unwrap_or(f64::NAN);
+        let middle = chart.page_y(row as f64).unwrap_or(f64::NAN);
         for words in items.iter().filter_map(|item| item.text.as_ref()) {
             let place = (chart.rect.right() - 0.4 * theme.small_font, middle);
             chart.canvas.text_on_ground(place, &TextLine::new(words, theme.small_font, HPos::Right))?;
@@ -262,7 +262,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> Plotte
 }
 
 /// Draws an item at its height, in rows; returns whether it is beyond the axis.
-fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> Plotted<bool> {
+fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> PlotResult<bool> {
     let name = item.name.as_deref();
     let bar =
         |ends: [f64; 2], is_capped: bool, stroke: Stroke| chart.bar(name, &Bar { y, ends, is_capped, stroke }, theme);
@@ -287,7 +287,7 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 }
 
 /// Draws a mark, or an arrow with its number if it is beyond the axis; returns whether it is beyond.
-fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> Plotted<bool> {
+fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> PlotResult<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
     let is_inside = |place: &PagePoint| chart.rect.contains(*place) && place.0 <= chart.data_right() + 0.1;
@@ -298,7 +298,7 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     let (edge, side) = if x > chart.rect.x { (chart.data_right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
     let tip = edge - side * 0.2 * theme.small_font;
-    chart.canvas.head((tip, height), (side, 0.0), size, look.colour)?;
+    chart.canvas.arrow_head((tip, height), (side, 0.0), size, look.colour)?;
     if is_alone && !item.soft && value.abs() < f64::MAX {
         let anchor = if side > 0.0 { HPos::Right } else { HPos::Left };
         let label = TextLine::new(significant(value, 3), theme.small_font, anchor);
@@ -330,7 +330,7 @@ fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
 }
 
 /// Writes a text to the right of two ends, or to the left if the frame is too near.
-fn beside(chart: &Chart, [left, right]: [f64; 2], height: f64, text: &TextLine) -> Plotted {
+fn beside(chart: &Chart, [left, right]: [f64; 2], height: f64, text: &TextLine) -> PlotResult {
     let last = chart.rect.right() - text.width();
     let to_left = left - text.width();
     let x = if right > last && to_left > chart.rect.x { to_left } else { right.min(last) };
@@ -342,7 +342,7 @@ const HALF: f64 = 0.42;
 
 /// Draws density, box of the quartiles and median, with the ends of the 95 % interval as numbers next to a violin that
 /// is too narrow to be seen.
-fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> Plotted {
+fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> PlotResult {
     let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
     let name = item.name.as_deref();
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
@@ -355,7 +355,7 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
     chart.rectangle([q[1], q[3]], [y - 0.13, y + 0.13], look.colour.mix(0.85))?;
     let Some((middle, height)) = chart.inside(q[2], y) else { return Ok(()) };
     let apart = 1.6 * theme.marker;
-    let is_narrow = chart.across(q[4]).zip(chart.across(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker);
+    let is_narrow = chart.page_x(q[4]).zip(chart.page_x(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker);
     if is_narrow && item.number.is_none() {
         let ends = format!("{} to {}", significant(q[0], 2), significant(q[4], 2));
         let text = TextLine::new(ends, theme.small_font, HPos::Left);

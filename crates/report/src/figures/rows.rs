@@ -3,7 +3,7 @@
 
 use plotters::style::RGBColor;
 
-use super::panels::{Pen, Ruler};
+use super::panels::{AxisSpec, Pen};
 use super::shared::Reference95;
 use crate::palette::Look;
 
@@ -72,7 +72,7 @@ impl RowItem {
     }
 
     /// Item that is cut where it is far from all other data, so that it cannot stretch the axis.
-    pub fn softly(self) -> Self {
+    pub fn clipped_if_far(self) -> Self {
         Self { soft: true, ..self }
     }
 
@@ -90,7 +90,7 @@ impl RowItem {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RowsColumn {
     /// The axis.
-    pub x: Ruler,
+    pub x: AxisSpec,
     /// Items of every row.
     pub rows: Vec<Vec<RowItem>>,
     /// `true` if the axis includes zero, with a line there.

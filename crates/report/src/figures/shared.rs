@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use plotters::style::Color as _;
 
-use crate::backend::Plotted;
+use crate::backend::PlotResult;
 use crate::canvas::Stroke;
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::key::KeySample;
+use crate::legend::LegendSymbol;
 use crate::palette::{INK, RECORD};
 use crate::theme::Theme;
 
@@ -25,7 +25,7 @@ const DENSE: usize = 400;
 const MANY: usize = 150;
 
 /// Remark on marks beyond an axis whose meaning needs no words.
-pub(super) const BEYOND: &str = "Arrows: beyond the axis.";
+pub(super) const BEYOND_AXIS_REMARK: &str = "Arrows: beyond the axis.";
 
 /// Bars of the marks of a figure: always 95 % intervals.
 #[derive(Debug, Default)]
@@ -61,7 +61,7 @@ fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
 }
 
 /// Draws a recorded heading: dots, or a wide line under the fits if there are too many points for dots.
-pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> Plotted {
+pub(super) fn draw_record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: &PlotCurve) -> PlotResult {
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
         None => {
@@ -71,14 +71,14 @@ pub(super) fn record(chart: &Chart, theme: &Theme, name: Option<&str>, heading: 
     }
 }
 
-/// Sample of [`record`] in a legend.
-pub(super) fn record_sample(theme: &Theme, heading: &PlotCurve) -> KeySample {
-    dense(heading, theme).map_or(KeySample::Dots(RECORD), KeySample::Line)
+/// Symbol of [`draw_record`] in a legend.
+pub(super) fn record_symbol(theme: &Theme, heading: &PlotCurve) -> LegendSymbol {
+    dense(heading, theme).map_or(LegendSymbol::Dots(RECORD), LegendSymbol::Line)
 }
 
 /// Positions of marks, where those nearer than `gap` are spread about their mean: zig-zags of one rudder angle would
 /// otherwise overlap.
-pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
+pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     let mut order: Vec<(usize, f64)> =
         places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -113,14 +113,14 @@ impl Reference95 {
     }
 
     /// Draws the reference across a panel, at values of the horizontal axis.
-    pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> Plotted {
+    pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> PlotResult {
         let (low, high) = chart.y.ends();
         chart.rectangle(self.band, [low, high], RECORD.mix(BAND))?;
         chart.vertical(None, self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 
     /// Draws the reference across a panel, at values of the vertical axis.
-    pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> Plotted {
+    pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> PlotResult {
         let (left, right) = chart.x.ends();
         chart.rectangle([left, right], self.band, RECORD.mix(BAND))?;
         chart.horizontal(self.value, Stroke::solid(INK, 0.8 * theme.line))
@@ -141,9 +141,9 @@ mod tests {
 
     #[test]
     fn records_of_one_rudder_stand_side_by_side() {
-        let of = |places: &[f64]| asides(&places.iter().map(|x| Some(*x)).collect::<Vec<_>>(), 4.0);
+        let of = |places: &[f64]| spread_overlapping(&places.iter().map(|x| Some(*x)).collect::<Vec<_>>(), 4.0);
         assert_eq!(of(&[10.0, 50.0, 10.2]), [Some(8.1), Some(50.0), Some(12.1)]);
         assert_eq!(of(&[1.0, 9.0]), [Some(1.0), Some(9.0)]);
-        assert_eq!(asides(&[None], 4.0), [None]);
+        assert_eq!(spread_overlapping(&[None], 4.0), [None]);
     }
 }

@@ -57,10 +57,10 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let row = |division| PanelRow {
         levels: vec![-0.1, 0.1],
         reference: Some(Reference95 { value: 0.5, band: [0.4, 0.6] }),
-        ..PanelRow::zeroed(Ruler::new("moment [° rudder]", division), 0.2)
+        ..PanelRow::zeroed(AxisSpec::new("moment [° rudder]", division), 0.2)
     };
     let stack = |division, is_half| {
-        let mut stack = Stack::over(Ruler::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
+        let mut stack = Stack::over(AxisSpec::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
         stack.panels[0].head = Some("explains 93 %".into());
         let marks = vec![AxisLine { at: 0.5, label: "period".into() }];
         Stack { marks, is_half, zero: true, ..stack }
@@ -88,7 +88,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ];
         LayeredPanel { head: Some(origin.label().into()), layers, ..LayeredPanel::default() }
     };
-    let ruler = |title: &str| Ruler::decimal(title).about_zero(2.2);
+    let ruler = |title: &str| AxisSpec::decimal(title).about_zero(2.2);
     let clouds = methods().enumerate().map(cloud).collect();
     let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
     let named = |(number, origin): (usize, CurveOrigin)| {
@@ -105,7 +105,8 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         Layer::line("most probable ship", wave(n, 3.0, 250.0), Pen::new(INK)),
         Layer::new("its heading", wave(n.min(2), wild, 250.0), ships),
     ];
-    let track = Stack::over(Ruler::decimal("east [m]"), vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), track)]);
+    let track =
+        Stack::over(AxisSpec::decimal("east [m]"), vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), track)]);
     vec![
         ("layers", layered.into()),
         ("clouds", Panels::of(clouds).into()),
@@ -122,7 +123,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             methods().map(|own| RowItem::below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
         let look = Look { hollow: row.is_multiple_of(2), ..CurveOrigin::After.look() };
         let others = [
-            RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).softly(),
+            RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).clipped_if_far(),
             RowItem::new("50 %", RowKind::Range(HEADING, [0.1, size(row)])),
             RowItem { text: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
             RowItem::new("limit", RowKind::Limit(size(row))),
@@ -137,7 +138,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ];
         marks.take(if row == 3 { 0 } else { 8 }).chain(others).collect::<Vec<RowItem>>()
     };
-    let column = |x: Ruler, zero| RowsColumn {
+    let column = |x: AxisSpec, zero| RowsColumn {
         x,
         rows: (0..n.min(5)).map(items).collect(),
         zero,
@@ -152,8 +153,8 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         of: "rates [°/s]".into(),
         names: names.clone(),
         columns: vec![
-            column(Ruler::new("rms error [%]", Division::Factors), false),
-            column(Ruler::decimal("coverage [%]").within(4.0, Some(0.0)), true),
+            column(AxisSpec::new("rms error [%]", Division::Factors), false),
+            column(AxisSpec::decimal("coverage [%]").within(4.0, Some(0.0)), true),
         ],
         shaded: Some(("as fitted".into(), vec![0])),
         note: Some("Rates are those of the gear.".into()),
@@ -312,8 +313,10 @@ fn labels_carry_symbol_and_unit() {
 #[test]
 fn what_runs_off_is_cut_and_says_so() {
     let drawn = |layers: Vec<Layer>, cut: &str| {
-        let data =
-            Panels { cut: Some(cut.into()), ..Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), layers)]) };
+        let data = Panels {
+            cut: Some(cut.into()),
+            ..Panels::over_time(vec![(PanelRow::new(AxisSpec::heading(), 0.2), layers)])
+        };
         Plot::from(data).draw("", &Theme::screen()).svg().to_owned()
     };
     let band = |high: f64| {
@@ -332,7 +335,7 @@ fn what_runs_off_is_cut_and_says_so() {
 #[test]
 fn large_type_leaves_a_heading_upright() {
     let style = crate::Style { font_size_pt: Some(16.0), ..Default::default() };
-    let theme = style.on(Theme::paper(60.0, 300.0).unwrap()).unwrap();
+    let theme = style.apply_to(Theme::paper(60.0, 300.0).unwrap()).unwrap();
     let figure = Plot::from(zigzag(40, 0.3)).draw("", &theme);
     let ends: Vec<f64> =
         numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|end| end.parse().unwrap()).collect();
@@ -359,10 +362,10 @@ fn names_that_cannot_stand_side_by_side_are_turned() {
 #[test]
 fn limits_make_room_for_their_labels() {
     let limits = [(String::from("heading ψ [°]"), [0.0, 1e-4])].into();
-    let theme = crate::Style { limits, ..Default::default() }.on(Theme::screen()).unwrap();
+    let theme = crate::Style { limits, ..Default::default() }.apply_to(Theme::screen()).unwrap();
     let heading = vec![Layer::line("", wave(40, 0.3, 25.0), Pen::new(INK))];
     let draw = |theme: &Theme| {
-        let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), heading.clone())]))
+        let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(AxisSpec::heading(), 0.2), heading.clone())]))
             .draw("", theme);
         numbers(figure.svg(), "data-panel")[0].split(' ').next().unwrap().parse::<f64>().unwrap()
     };
@@ -373,7 +376,7 @@ fn limits_make_room_for_their_labels() {
 fn a_line_leaves_its_panel_where_it_does() {
     let line = |end: f64, pen| Layer::line("", PlotCurve::new([0.0, 1.0], [0.0, end]), pen);
     let layers = vec![line(1.0, Pen::new(INK)), line(10.0, Pen::new(palette::RUDDER)).within(0.0)];
-    let data = Panels::over_time(vec![(PanelRow::new(Ruler::decimal("y"), 0.2), layers)]);
+    let data = Panels::over_time(vec![(PanelRow::new(AxisSpec::decimal("y"), 0.2), layers)]);
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();
     let rise = |colour: &str| -> f64 {
         let path = svg.split(&format!("stroke=\"{colour}\" stroke-width=\"27\" d=\"")).nth(1).expect("a line");
@@ -392,14 +395,14 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];
         Layer::marks(name, CurveOrigin::After.look(), points).joined(Pen::new(INK))
     };
-    let row = PanelRow::new(Ruler::new("rms error of T [%]", Division::Factors), 0.3);
+    let row = PanelRow::new(AxisSpec::new("rms error of T [%]", Division::Factors), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
-    let data = Panels::of(Stack::over(Ruler::decimal("noise [°]"), vec![(row, layers)]));
+    let data = Panels::of(Stack::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();
     assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
     let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
-    let axis = |title: &str| Ruler::decimal(title).within(4.0, None);
+    let axis = |title: &str| AxisSpec::decimal(title).within(4.0, None);
     let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
     let figure = Plot::from(Panels { names_aside: true, ..Panels::of(stack) }).draw("", &Theme::screen());
     assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
@@ -413,8 +416,8 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let x: Vec<f64> = angles().map(|a| east * (1.0 - a.cos())).collect();
             let curve = PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>());
             let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
-            let rows = vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), layers)];
-            let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [m]"), rows) };
+            let rows = vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), layers)];
+            let stack = Stack { equal: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
             let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::of(stack) }).draw("", &theme);
             let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
             let sides: Vec<f64> = panel.skip(2).collect();

@@ -6,12 +6,12 @@ use plotters::style::text_anchor::HPos;
 use serde::{Deserialize, Serialize};
 
 use super::layers;
-use super::panels::{AxisLine, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
-use crate::backend::Plotted;
+use super::panels::{AxisLine, AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
+use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
-use crate::figure::Drawing;
+use crate::drawing::Drawing;
 use crate::markup::symbol;
 use crate::number;
 use crate::palette::{CurveOrigin, DIMENSION, HEADING, INK, Look, Marker, RUDDER, SOLID};
@@ -86,7 +86,7 @@ const HEIGHT: f64 = 0.36;
 
 /// Drawing of a zig-zag trial: heading with its dimension lines above, rudder below. A trial with too many executes is
 /// drawn without its characteristic quantities, and a note states it.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> Plotted<Drawing> {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let count = data.executes.len();
     if count <= MAX_MARKED {
         return layers::annotated(&data.panels(theme), finding, theme, &|chart| data.annotate(chart, theme));
@@ -125,18 +125,18 @@ impl ZigzagTrial {
         let label = if self.overshoots.is_empty() { 0.0 } else { 1.4 };
         let strip = |is_drawn: bool| (label + if is_drawn { STRIP } else { 0.0 }) * theme.small_font;
         let has_times = self.initial_turning.is_some() || !self.check_yaw.is_empty();
-        let room = [strip(has_times), strip(self.period.is_some())].map(|points| points / theme.tall(HEIGHT));
+        let room = [strip(has_times), strip(self.period.is_some())].map(|points| points / theme.panel_height(HEIGHT));
         let rows = vec![
-            (PanelRow { room, ..PanelRow::new(Ruler::heading(), HEIGHT) }, heading),
-            (PanelRow::new(Ruler::rudder(), 0.13), vec![rudder]),
+            (PanelRow { room, ..PanelRow::new(AxisSpec::heading(), HEIGHT) }, heading),
+            (PanelRow::new(AxisSpec::rudder(), 0.13), vec![rudder]),
         ];
         let at = |mark: &ZigZagMark| AxisLine { at: mark.t_s, label: String::new() };
         let marks = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
-        Panels::of(Stack { marks, ..Stack::over(Ruler::time(), rows) })
+        Panels::of(Stack { marks, ..Stack::over(AxisSpec::time(), rows) })
     }
 
     /// Draws overshoots, times and period; returns their meaning, with the times if they do not fit at their lines.
-    fn annotate(&self, chart: &Chart, theme: &Theme) -> Plotted<Option<String>> {
+    fn annotate(&self, chart: &Chart, theme: &Theme) -> PlotResult<Option<String>> {
         let size = theme.small_font;
         let draw = Dimensions { chart, theme };
         for (i, overshoot) in self.overshoots.iter().enumerate() {
@@ -183,7 +183,7 @@ struct Dimensions<'a> {
 
 impl Dimensions<'_> {
     /// Draws the line between two places; if they are too close for two heads, the heads point at them from outside.
-    fn between(&self, from: PagePoint, to: PagePoint) -> Plotted {
+    fn between(&self, from: PagePoint, to: PagePoint) -> PlotResult {
         let length = (to.0 - from.0).hypot(to.1 - from.1);
         if length == 0.0 || !length.is_finite() {
             return Ok(());
@@ -194,25 +194,25 @@ impl Dimensions<'_> {
         let end = |(x, y): PagePoint, by: f64| (x + by * along.0, y + by * along.1);
         let canvas = &self.chart.canvas;
         canvas.line(&[end(from, -beyond), end(to, beyond)], Stroke::solid(DIMENSION, self.theme.thin))?;
-        canvas.head(from, (-side * along.0, -side * along.1), size, DIMENSION)?;
-        canvas.head(to, (side * along.0, side * along.1), size, DIMENSION)
+        canvas.arrow_head(from, (-side * along.0, -side * along.1), size, DIMENSION)?;
+        canvas.arrow_head(to, (side * along.0, side * along.1), size, DIMENSION)
     }
 
     /// Draws a thin line from a point of the data to its dimension line.
-    fn extension(&self, from: PagePoint, to: PagePoint) -> Plotted {
+    fn extension(&self, from: PagePoint, to: PagePoint) -> PlotResult {
         let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION, 0.8 * self.theme.thin) };
         self.chart.canvas.line(&[from, to], stroke)
     }
 
     /// Writes the quantity at a dimension line.
-    fn label(&self, place: PagePoint, text: &str) -> Plotted {
+    fn label(&self, place: PagePoint, text: &str) -> PlotResult {
         let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
         self.chart.canvas.text_on_ground(place, &text)
     }
 
     /// Draws the vertical dimension line from the heading of the execute to the extremum, with its angle beyond the
     /// curve.
-    fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> Plotted {
+    fn overshoot(&self, number: usize, overshoot: &OvershootMark) -> PlotResult {
         let place = |mark: &ZigZagMark| self.chart.inside(mark.t_s, mark.heading_deg);
         let (Some(peak), Some(start)) = (place(&overshoot.extremum), place(&overshoot.execute)) else { return Ok(()) };
         let size = self.theme.small_font;
@@ -230,13 +230,13 @@ impl Dimensions<'_> {
 
     /// Draws the horizontal dimension line of a span, with lines to the curve if a marked point is at its end; returns
     /// its middle if that is in the frame.
-    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> Plotted<Option<f64>> {
-        let inside = |t: f64| self.chart.across(t).filter(|x| self.chart.rect.contains((*x, y)));
+    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> PlotResult<Option<f64>> {
+        let inside = |t: f64| self.chart.page_x(t).filter(|x| self.chart.rect.contains((*x, y)));
         let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
         let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
         for (t, x) in [(span.from_s, from), (span.to_s, to)] {
             let at_mark = marks.clone().find(|mark| (mark.t_s - t).abs() < 1e-9 * t.abs().max(1.0));
-            self.extension((x, at_mark.and_then(|mark| self.chart.up(mark.heading_deg)).unwrap_or(y)), (x, y))?;
+            self.extension((x, at_mark.and_then(|mark| self.chart.page_y(mark.heading_deg)).unwrap_or(y)), (x, y))?;
         }
         self.between((from, y), (to, y))?;
         Ok(Some(0.5 * (from + to)))

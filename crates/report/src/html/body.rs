@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use pulldown_cmark::{Alignment, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 
 use super::escape::escaped;
-use super::figures::{Images, Room};
+use super::figures::{FigureFiles, SizeBudget};
 
 /// Heading that can be linked to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,12 +27,12 @@ const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
 
 /// State while a page is read from top to bottom.
 struct BodyReader<'a, 'm> {
-    images: &'a dyn Fn(&str) -> Images,
+    images: &'a dyn Fn(&str) -> FigureFiles,
     /// Titles of the parts that are closed at first.
     folded: &'a [&'a str],
     /// `true` if such a part is being read; `true` if its headline is being read.
     fold: (bool, bool),
-    room: Room,
+    room: SizeBudget,
     out: Vec<Event<'m>>,
     headings: Vec<PageHeading>,
     ids: HashSet<String>,
@@ -46,14 +46,14 @@ struct BodyReader<'a, 'm> {
 }
 
 /// Body of a page.
-pub(super) fn of(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Body {
+pub(super) fn from_markdown(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
     let mut reader = BodyReader {
         images,
         folded,
         fold: (false, false),
-        room: Room::new(),
+        room: SizeBudget::new(),
         out: Vec::with_capacity(events.len()),
         headings: Vec::new(),
         ids: HashSet::from(["report".to_owned(), "contents".to_owned()]),

@@ -19,14 +19,14 @@ const ROOM: usize = 1_850_000;
 
 /// Files of a written figure.
 #[derive(Debug, Clone, Default)]
-pub struct Images {
+pub struct FigureFiles {
     /// SVG document, if there is one.
     pub svg: Option<String>,
     /// PNG file, if there is one.
     pub png: Option<Vec<u8>>,
 }
 
-impl Images {
+impl FigureFiles {
     /// Files that [`crate::Drawing::write`] wrote into a folder under a stem; `None` for a file that cannot be read,
     /// because a page can do without a figure.
     pub fn written(folder: &Path, stem: &str) -> Self {
@@ -41,18 +41,18 @@ impl Images {
 }
 
 /// Remaining size for figures, bytes, and the number of placed figures.
-pub(super) struct Room {
+pub(super) struct SizeBudget {
     bytes: usize,
     figures: usize,
 }
 
-impl Room {
+impl SizeBudget {
     pub(super) fn new() -> Self {
         Self { bytes: ROOM, figures: 0 }
     }
 
     /// Figure with its name and its caption, which is in the page once; `file` is the path of its PNG.
-    pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &Images) -> String {
+    pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &FigureFiles) -> String {
         let id = format!("caption-{}", self.figures + 1);
         let drawn = images.svg.as_deref().and_then(|svg| inline(svg, &id));
         let drawn = drawn.filter(|drawn| drawn.len() <= MAX_DRAWING_BYTES);

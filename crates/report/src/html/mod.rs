@@ -11,7 +11,7 @@ use crate::error::ReportError;
 use body::PageHeading;
 
 pub(crate) use escape::escaped;
-pub use figures::Images;
+pub use figures::FigureFiles;
 
 /// Style sheet of the page, including the interaction of tables and figures.
 const STYLE: &str = include_str!("../../templates/report.css");
@@ -35,8 +35,8 @@ struct Page<'a> {
 /// not interpreted.
 ///
 /// Fails with [`ReportError::Page`] if the page cannot be filled in.
-pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
-    let body = body::of(markdown, folded, images);
+pub fn page(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Result<String, ReportError> {
+    let body = body::from_markdown(markdown, folded, images);
     let contents: Vec<PageHeading> =
         body.headings.iter().filter(|heading| matches!(heading.level, 2 | 3)).cloned().collect();
     let title = body.headings.first().map_or("Report", |first| &first.text);

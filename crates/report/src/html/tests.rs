@@ -6,17 +6,17 @@ const PAGE: &str = "# A study\n\n**What?** See <b>x</b> and [other](other.md), [
                     | method | error |\n|---|---:|\n| `a` | 0.12 ± 0.03 |\n| <script>b</script> | – |\n\n## First & last\n\n\
                     ![A curve of ψ](curve.png)\n\n*A curve of ψ*\n\n![A cloud](cloud.png)\n\nWords.\n\n![Gone](gone.png)\n";
 
-fn images(stem: &str) -> Images {
+fn images(stem: &str) -> FigureFiles {
     let svg = |shapes: &str| {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"72.000pt\" height=\"36.000pt\" viewBox=\"0 0 9 9\">{shapes}</svg>\n"
         )
     };
     match stem {
-        "curve" => Images { svg: Some(svg("<path/>")), png: None },
-        "cloud" => Images { svg: Some(svg(&"<circle/>".repeat(40_000))), png: Some(b"pixels".to_vec()) },
-        "huge" => Images { svg: None, png: Some(vec![0; 1_000_000]) },
-        _ => Images::default(),
+        "curve" => FigureFiles { svg: Some(svg("<path/>")), png: None },
+        "cloud" => FigureFiles { svg: Some(svg(&"<circle/>".repeat(40_000))), png: Some(b"pixels".to_vec()) },
+        "huge" => FigureFiles { svg: None, png: Some(vec![0; 1_000_000]) },
+        _ => FigureFiles::default(),
     }
 }
 

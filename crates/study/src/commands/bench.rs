@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use campaign::Observer;
 use campaign::benchmark::cases::Skipped;
-use campaign::benchmark::{BenchDocument, BenchTask, shipped};
+use campaign::benchmark::{BenchDocument, BenchTask, embedded};
 use campaign::collect::collect;
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
@@ -22,7 +22,7 @@ use report::number::counted;
 
 use crate::completed::{self, completed};
 use crate::documents::{BENCH, folder_for};
-use crate::options::{Common, FigureOptions};
+use crate::options::{CommonOptions, FigureOptions};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
@@ -45,7 +45,7 @@ pub struct BenchRequest {
     pub scenarios: Vec<PathBuf>,
     /// Methods to compare [default: all]
     #[arg(long = "method", value_name = "LABEL", hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::entrants))]
+        value_parser = completed(StringValueParser::new(), completed::scenario_methods))]
     pub methods: Vec<String>,
     /// Tasks to score [default: all]
     #[arg(long = "task", value_name = "ID", hide_possible_values = true,
@@ -76,7 +76,7 @@ pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
 /// addition to the methods of the scenarios.
 ///
 /// Fails if a scenario is invalid, or if no task remains to be scored.
-pub fn measure(
+pub fn run_benchmark(
     request: &BenchRequest,
     seed: Option<u64>,
     entrants: &Entrants,
@@ -85,7 +85,7 @@ pub fn measure(
 ) -> Result<BenchDocument, Failure> {
     let desk = tempfile::tempdir().map_err(|error| Failure::work(format!("failed to make a folder: {error}")))?;
     let paths = match &request.scenarios[..] {
-        [] => shipped::unpack(desk.path())?,
+        [] => embedded::unpack(desk.path())?,
         paths => paths.to_vec(),
     };
     let scenarios = paths.iter().map(|path| Scenario::read(path, seed)).collect::<Result<Vec<Scenario>, _>>()?;
@@ -97,7 +97,7 @@ pub fn measure(
         for (label, identifier) in entrants {
             scenario = scenario.with_identifier(label, Arc::clone(identifier))?;
         }
-        if scenario.trials() == 0 {
+        if scenario.max_trials() == 0 {
             absent.push((scenario, Vec::new()));
             continue;
         }
@@ -106,7 +106,7 @@ pub fn measure(
             None => ResultFolder::make(&desk.path().join("rows").join(&scenario.name))?,
         };
         let mut rows: Vec<StudyRow> = Vec::new();
-        collect(&scenario, &folder, request.restart, observer)?.rows(|row| {
+        collect(&scenario, &folder, request.restart, observer)?.for_each_row(|row| {
             rows.push(row);
             Ok(())
         })?;
@@ -140,20 +140,26 @@ fn are_known<'a>(
 
 /// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
 ///
-/// Fails as [`measure`] does, or if the results cannot be written.
-pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
+/// Fails as [`run_benchmark`] does, or if the results cannot be written.
+pub fn run(request: &BenchRequest, common: &CommonOptions) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| PathBuf::from("results/bench"));
     let folder = ResultFolder::make(&folder_for(BENCH, &place)?)?;
-    let results = measure(request, common.seed, &Vec::new(), Some(&folder), &Terminal::new("trials", common.quiet))?;
-    show(&results, &folder, &theme, common)
+    let results =
+        run_benchmark(request, common.seed, &Vec::new(), Some(&folder), &Terminal::new("trials", common.quiet))?;
+    publish(&results, &folder, &theme, common)
 }
 
 /// Writes the tables, pages and figures of a benchmark and prints the leaderboards.
 ///
 /// Fails if they cannot be written.
-pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
-    let text = publish(results, folder, theme)?;
+pub fn publish(
+    results: &BenchDocument,
+    folder: &ResultFolder,
+    theme: &Theme,
+    common: &CommonOptions,
+) -> Result<(), Failure> {
+    let text = write_files(results, folder, theme)?;
     let notes: String = results.skipped.iter().map(|record| format!("skipped: {}\n", skipped(record))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
     let naming = match results.naming.is_empty() {
@@ -163,7 +169,7 @@ pub fn show(results: &BenchDocument, folder: &ResultFolder, theme: &Theme, commo
     let head = format!("{}\n", counted(results.cases.len() as u64, "question"));
     let table = bench_tables::leaderboard(results);
     let output = CommandOutput { frame: [&head, &naming], table: &table, notes: &notes, document: &text };
-    screen::tell(common, &output, &[] as &[&str])
+    screen::print_output(common, &output, &[] as &[&str])
 }
 
 /// One line on a record that was not used.
@@ -173,15 +179,15 @@ pub fn skipped(record: &Skipped) -> String {
 
 /// Writes all files, removes files of an earlier run that this one does not write, and returns the text of the
 /// document.
-fn publish(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
+fn write_files(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
     let text = results.json().on("describe", &folder.path().join(BENCH))?;
     folder.write_synced(BENCH, &text)?;
-    folder.write(ROWS, bench_tables::rows(results).to_csv())?;
+    folder.write(ROWS, bench_tables::answer_rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     let pages = folder.subfolder(METHODS)?;
     pages.remove_all(|name| name.ends_with(".md"))?;
     for method in &results.methods {
-        pages.write(&format!("{}.md", slug(method)), bench_page::of_method(results, method).to_markdown())?;
+        pages.write(&format!("{}.md", slug(method)), bench_page::method_page(results, method).to_markdown())?;
     }
     write_page(folder, bench_page::page(results), Some(theme)).map(|()| text)
 }

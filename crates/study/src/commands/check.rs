@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::documents;
 use crate::documents::answers::{CheckAnswer, CheckedScenario};
-use crate::options::{Common, Format};
+use crate::options::{CommonOptions, Format};
 use crate::screen;
 use campaign::failure::Failure;
 use campaign::scenario::Scenario;
@@ -26,7 +26,7 @@ pub struct CheckRequest {
 
 /// Resolves every file and prints one line for each valid one, with a note if its rudder moves instantly; with
 /// `resolved` the whole scenario below it. Fails with a message that lists all invalid files.
-pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &CheckRequest, common: &CommonOptions) -> Result<(), Failure> {
     let resolved = request.resolved;
     let (mut wrong, mut right) = (Vec::new(), Vec::new());
     for path in &request.scenarios {
@@ -35,14 +35,14 @@ pub fn run(request: &CheckRequest, common: &Common) -> Result<(), Failure> {
             Ok(scenario) if common.format == Format::Json => right.push(entry(path, &scenario, resolved)),
             Ok(scenario) if resolved => {
                 let summary: String = summary(path, &scenario).lines().map(|line| format!("# {line}\n")).collect();
-                screen::say(&format!("{summary}\n{}", scenario.resolved()))?;
+                screen::print_lines(&format!("{summary}\n{}", scenario.resolved()))?;
             }
-            Ok(scenario) => screen::say(&summary(path, &scenario))?,
+            Ok(scenario) => screen::print_lines(&summary(path, &scenario))?,
             Err(failure) => wrong.push(failure),
         }
     }
     if common.format == Format::Json {
-        documents::say(&CheckAnswer { scenarios: right, wrong: wrong.len() })?;
+        documents::print_document(&CheckAnswer { scenarios: right, wrong: wrong.len() })?;
     }
     let mut wrong = wrong.into_iter();
     let Some(first) = wrong.next() else { return Ok(()) };

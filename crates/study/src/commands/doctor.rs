@@ -10,7 +10,7 @@ use report::{Table, TableHead};
 
 use super::reply;
 use crate::documents::answers::DoctorAnswer;
-use crate::options::Common;
+use crate::options::CommonOptions;
 use crate::{screen, threads};
 
 /// Name of a test file that is written and removed again.
@@ -19,7 +19,7 @@ const PROBE: &str = ".study-doctor";
 /// Prints the properties of the machine.
 ///
 /// Fails if no file can be written to the folder of results.
-pub fn run(common: &Common) -> Result<(), Failure> {
+pub fn run(common: &CommonOptions) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(Path::new("."));
     let written = probe(folder);
     let terminal = |is: bool, coloured: bool| match (is, coloured) {

@@ -10,7 +10,7 @@ use trial::file::display_path;
 use crate::documents;
 use crate::documents::find::{FindAnswer, ManoeuvreEntry, SearchedLog};
 use crate::documents::log::LogEntry;
-use crate::options::{Common, FindRequest, Format};
+use crate::options::{CommonOptions, FindRequest, Format};
 use crate::records::{expand, open};
 use crate::screen;
 use campaign::failure::Failure;
@@ -43,10 +43,10 @@ fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<
 /// Prints the manoeuvres of every log.
 ///
 /// Fails if a log cannot be read.
-pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &FindRequest, common: &CommonOptions) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     if common.format == Format::Json {
-        documents::say(&find_answer(request, &mut warnings)?)?;
+        documents::print_document(&find_answer(request, &mut warnings)?)?;
         screen::warn_of(common, &warnings.ranked());
         return Ok(());
     }
@@ -58,18 +58,18 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         }
         let table = common.format.render(&table(&manoeuvres));
         if common.format != Format::Text {
-            screen::say(table.trim_end())?;
+            screen::print_lines(table.trim_end())?;
             continue;
         }
         let day = date.map_or_else(String::new, |day| format!(", {day}"));
         let head = format!("{file}: {rows} rows, {} s{day}", fixed(duration_s, 1));
         if manoeuvres.is_empty() {
-            screen::say(&format!("{head}\nno manoeuvre found\n"))?;
+            screen::print_lines(&format!("{head}\nno manoeuvre found\n"))?;
             continue;
         }
         let remarked = manoeuvres.iter().filter(|entry| !entry.remarks.is_empty());
         let remarks: String = remarked.map(|entry| format!("{}: {}\n", entry.trial, entry.remarks.join(" "))).collect();
-        screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
+        screen::print_lines(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
     screen::warn_of(common, &warnings.ranked());
     Ok(())

@@ -10,51 +10,51 @@ use report::Theme;
 use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::{self, FIT, draws, folder_for_records};
-use crate::options::{Common, FitRequest};
-use crate::records::{default_folder, read_all, read_for_replay, repetitions};
+use crate::options::{CommonOptions, FitRequest};
+use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
-use crate::work::earlier::EarlierModel;
+use crate::work::earlier_trials::EarlierModel;
 use crate::work::fit::{fit, methods};
 
 /// Identifies the records, prints the table, writes `fit.json`, the curves, figures, `report.md` and `report.html`.
 ///
 /// Fails if a record cannot be read, or if no method identifies the records.
-pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> {
     if request.each {
         return fit_each::run(request, common);
     }
     let methods = methods(&request.methods, common.seed)?;
-    let priors = EarlierModel::of_files(&request.priors)?;
+    let priors = EarlierModel::from_files(&request.priors)?;
     let mut warnings = Warnings::default();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
     let validation = read_for_replay(&request.validate, &request.reading, &mut warnings)?;
-    warnings.extend(repetitions(&trials, &validation));
+    warnings.extend(repetition_warnings(&trials, &validation));
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit"));
     let place = folder_for_records(FIT, &place, &trials)?;
     let fit = fit([&trials, &validation], &methods, &priors, common.quiet, warnings)?.with_predicted_circle();
     let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();
-    let text = documents::keep_with_curves(&folder, FIT, &fit.document, &curves)?;
+    let text = documents::write_with_curves(&folder, FIT, &fit.document, &curves)?;
     if request.draws.draws_file {
         let answers = fit.document.ships.iter().map(|(method, ship)| (method.as_str(), ship));
-        draws::keep_estimates(&folder, answers, request.draws.draws, common.seed.unwrap_or_default())?;
+        draws::write_estimates(&folder, answers, request.draws.draws, common.seed.unwrap_or_default())?;
     }
-    show(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
+    publish(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
 }
 
 /// Writes the figures and the page of a fit into a folder and prints its table; `text` is that of `fit.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn show(
+pub fn publish(
     folder: &ResultFolder,
     document: &FitDocument,
     curves: &FitCurves,
     text: &str,
     theme: Option<&Theme>,
-    common: &Common,
+    common: &CommonOptions,
 ) -> Result<(), Failure> {
     curve_tables::write_replays(curves, folder)?;
     write_page(folder, fit_page::page(document, curves), theme)?;
@@ -63,7 +63,7 @@ pub fn show(
     let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
     let table = fit_page::answers(document, curves);
     let output = CommandOutput { frame: [&head, ""], table: &table, notes: &notes, document: text };
-    screen::tell(common, &output, &shortened(document.answer_warnings()))
+    screen::print_output(common, &output, &shortened(document.answer_warnings()))
 }
 
 /// Maximum number of warnings on the screen.

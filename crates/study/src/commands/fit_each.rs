@@ -3,13 +3,13 @@
 use campaign::failure::Failure;
 use rayon::prelude::*;
 
-use crate::documents::each::LogFitEntry;
 use crate::documents::error::ErrorEntry;
-use crate::options::{Common, FitRequest, Format};
+use crate::documents::fit_each::LogFitEntry;
+use crate::options::{CommonOptions, FitRequest, Format};
 use crate::records::expand;
-use crate::views::each_table;
-use crate::work::each::LogFit;
+use crate::views::fit_each_table;
 use crate::work::fit::methods;
+use crate::work::fit_each::LogFit;
 use crate::{progress, screen};
 
 /// Number of logs that are fitted before their lines of JSON are written.
@@ -18,7 +18,7 @@ const CHUNK_LOGS: usize = 64;
 /// Identifies every log alone and prints a row for it, in the order in which they were named.
 ///
 /// Fails if no log can be read; a single log that cannot be read is a row.
-pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let files = expand(&request.trials)?;
     let bar = progress::bar("logs", files.len() as u64, common.quiet);
@@ -31,13 +31,13 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     for part in files.chunks(CHUNK_LOGS) {
         let done: Vec<LogFit> = part.par_iter().map(|file| fit_of(file)).collect();
         if common.format == Format::Json {
-            bar.suspend(|| done.iter().try_for_each(|fit| screen::say_document(&line(fit)?)))?;
+            bar.suspend(|| done.iter().try_for_each(|fit| screen::print_unescaped(&line(fit)?)))?;
         }
         fits.extend(done);
     }
     bar.finish_and_clear();
     if common.format != Format::Json && !common.is_silent() {
-        screen::say(common.format.render(&each_table::table(&fits)).trim_end())?;
+        screen::print_lines(common.format.render(&fit_each_table::table(&fits)).trim_end())?;
     }
     match fits.iter().find_map(|fit| fit.error.as_ref()).filter(|_| !fits.iter().any(|fit| fit.is_read)) {
         Some(first) => Err(Failure::input(format!("none of {} logs could be read; {}", fits.len(), first.message))),

@@ -12,7 +12,7 @@ use trial::{Log, ReadError};
 use crate::documents;
 use crate::documents::inspect::{ChannelEntry, InspectAnswer};
 use crate::documents::log::LogEntry;
-use crate::options::Common;
+use crate::options::CommonOptions;
 use crate::records::{open, source};
 use crate::screen::{self, CommandOutput};
 use campaign::failure::Failure;
@@ -34,7 +34,7 @@ pub struct InspectRequest {
 /// Prints every channel of the log and the warnings of the reader. A log that contradicts itself is still shown.
 ///
 /// Fails if the log cannot be read.
-pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
     let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
     let file = display_path(&request.log);
@@ -44,7 +44,7 @@ pub fn run(request: &InspectRequest, common: &Common) -> Result<(), Failure> {
     let before = format!("{file}: {rows} rows, {} s\n", fixed(*duration_s, 1));
     let text = documents::answer_text(&answer)?;
     let output = CommandOutput { frame: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
-    screen::tell(common, &output, &answer.warnings)
+    screen::print_output(common, &output, &answer.warnings)
 }
 
 /// Warnings of the log read as one record; the reason if it cannot be read so.

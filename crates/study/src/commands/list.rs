@@ -11,7 +11,7 @@ use ship::vessel::prior::{self, AssumedParticular, CoefficientFormula, Particula
 use ship::{effects, ships};
 
 use crate::documents::{self, answers::ListAnswer};
-use crate::options::{Common, Format, Listed, ShipOptions};
+use crate::options::{CommonOptions, Format, Listed, ShipOptions};
 use crate::screen;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
@@ -34,7 +34,7 @@ pub struct ListRequest {
 }
 
 /// Prints the list.
-pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure> {
     let what = request.what;
     if what != Listed::Priors && !(request.columns.is_none() && request.ship.is_empty()) {
         return Err(Failure::input("particulars of a ship apply to `study list priors` only; leave them out"));
@@ -52,7 +52,7 @@ pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
-        return documents::say(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
+        return documents::print_document(&ListAnswer { what: name.unwrap_or_default(), entries: table.to_records() });
     }
     // Head of a list in Markdown, which is a page of the documentation.
     let head = match what {
@@ -65,7 +65,7 @@ pub fn run(request: &ListRequest, common: &Common) -> Result<(), Failure> {
         Listed::Sidecar => include_str!("../../templates/list-sidecar.md"),
         Listed::Manoeuvres | Listed::Sensors | Listed::Priors => "",
     };
-    screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
+    screen::print_lines(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
 
 fn identifiers() -> Result<Table, Failure> {

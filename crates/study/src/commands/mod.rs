@@ -22,17 +22,17 @@ pub mod trace;
 use campaign::failure::Failure;
 
 use crate::documents::answers::CommandAnswer;
-use crate::options::{Common, Format};
+use crate::options::{CommonOptions, Format};
 use crate::{documents, screen};
 
 /// Prints a reply as a line of text, or as a JSON document with `--format json`; prints nothing if the output is
 /// silent.
 ///
-/// Fails as [`screen::say`] does.
-fn reply(common: &Common, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {
+/// Fails as [`screen::print_lines`] does.
+fn reply(common: &CommonOptions, answer: &impl CommandAnswer, line: &str) -> Result<(), Failure> {
     match common.format {
-        Format::Json => documents::say(answer),
+        Format::Json => documents::print_document(answer),
         _ if common.quiet => Ok(()),
-        _ => screen::say(line),
+        _ => screen::print_lines(line),
     }
 }

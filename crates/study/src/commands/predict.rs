@@ -11,12 +11,12 @@ use trial::file::display_path;
 use trial::{Sidecar, Trial};
 
 use crate::documents::{self, PREDICT, draws, folder_for};
-use crate::options::{Common, PredictRequest};
+use crate::options::{CommonOptions, PredictRequest};
 use crate::records::read_for_replay;
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
-use crate::work::earlier::EarlierModel;
+use crate::work::earlier_trials::EarlierModel;
 use crate::work::predict::{PredictInput, StoredModel, predict};
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -27,7 +27,7 @@ const FORM: &str = "trial-form.md";
 /// Predicts, prints the results, writes `predict.json`, `report.md`, `report.html`, tables and figures.
 ///
 /// Fails if a model or a record cannot be read, or if hardly any sampled ship completes a manoeuvre.
-pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     if !request.ballast.is_empty() && request.replays.is_empty() {
         return Err(Failure::input(
@@ -38,7 +38,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let mut warnings = Warnings::default();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
-        paths.iter().map(|path| StoredModel::of_file(path, request, &mut warnings)).collect()
+        paths.iter().map(|path| StoredModel::from_file(path, request, &mut warnings)).collect()
     };
     let (models, ballast) = (read(&request.models)?, read(&request.ballast)?);
     let current = request.current_from.as_ref();
@@ -48,26 +48,26 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let declared = columns.map(Sidecar::load).transpose().map_err(Failure::input)?;
     let file = columns.map(|path| path.display().to_string());
     let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
-    let earlier = EarlierModel::of_files(&request.priors)?;
+    let earlier = EarlierModel::from_files(&request.priors)?;
     let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
-    let text = documents::keep_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
+    let text = documents::write_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
     if request.draws_file {
-        draws::keep(&folder, &predicted)?;
+        draws::write_ships(&folder, &predicted)?;
     }
-    show(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
+    publish(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 
 /// Writes the figures and the page of a prediction into a folder and prints it; `text` is that of `predict.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn show(
+pub fn publish(
     folder: &ResultFolder,
     predicted: &PredictDocument,
     text: &str,
     theme: Option<&Theme>,
-    common: &Common,
+    common: &CommonOptions,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
     for (stem, table) in predict_curves::curves(predicted) {
@@ -82,7 +82,7 @@ pub fn show(
     let [before, behind] = [predict_page::summary(predicted), predict_page::below_table(predicted)];
     let table = predict_tables::characteristics_table(predicted);
     let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
-    screen::tell(common, &output, warnings)
+    screen::print_output(common, &output, warnings)
 }
 
 /// Default folder of the results, named after the folder of the model, which has the name of its record.

@@ -14,7 +14,7 @@ use clap::Args;
 use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;
 use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
-use crate::options::{Common, Format, StudyFigureOptions};
+use crate::options::{CommonOptions, Format, StudyFigureOptions};
 use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::page_files::BROWSER;
@@ -39,7 +39,7 @@ pub struct ReportRequest {
 /// Makes tables, figures and pages of a finished study, a fit, a trace, a prediction or a benchmark in its folder, or
 /// in `--out`; with `open` shows the page in a browser. Several studies are each made in their own folders, and the
 /// page over them in the folder that holds them all, or in `--out`.
-pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &ReportRequest, common: &CommonOptions) -> Result<(), Failure> {
     let folders = &request.folders[..];
     if let [folder] = folders {
         return report(folder, request, common);
@@ -48,11 +48,15 @@ pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
         return Err(Failure::input("--format applies to one study; give one folder, or leave --format out"));
     }
     let place = common.out.clone().map_or_else(|| shared_folder(folders), Ok)?;
-    studies_page::is_possible(folders, &place)?;
-    let in_place = Common { out: None, ..common.clone() };
+    studies_page::check_folders(folders, &place)?;
+    let in_place = CommonOptions { out: None, ..common.clone() };
     folders.iter().try_for_each(|folder| report(folder, request, &in_place))?;
     let page = studies_page::write(folders, &ResultFolder::make(&place)?)?;
-    if common.quiet { Ok(()) } else { screen::say(&format!("page over {} studies: {}", folders.len(), page.display())) }
+    if common.quiet {
+        Ok(())
+    } else {
+        screen::print_lines(&format!("page over {} studies: {}", folders.len(), page.display()))
+    }
 }
 
 /// Common parent folder of some folders. Fails if they lie in different ones.
@@ -68,7 +72,7 @@ fn shared_folder(folders: &[PathBuf]) -> Result<PathBuf, Failure> {
 }
 
 /// Makes all output of one folder.
-fn report(stored: &Path, request: &ReportRequest, common: &Common) -> Result<(), Failure> {
+fn report(stored: &Path, request: &ReportRequest, common: &CommonOptions) -> Result<(), Failure> {
     let ReportRequest { open, style, .. } = request;
     let folder = common.out.as_deref().unwrap_or(stored);
     let held = || ResultFolder::make(folder);
@@ -78,29 +82,29 @@ fn report(stored: &Path, request: &ReportRequest, common: &Common) -> Result<(),
         () if has(TRACE) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
-            trace::show(&folder, &document, &TraceCurves::of(&document, stored)?, &text, Some(&theme), common, &[])?
+            trace::publish(&folder, &document, &TraceCurves::of(&document, stored)?, &text, Some(&theme), common, &[])?
         }
         () if has(FIT) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
             let (curves, _) = read_json(&stored.join(CURVES), "fit")?;
-            fit::show(&folder, &document, &curves, &text, Some(&theme), common)?
+            fit::publish(&folder, &document, &curves, &text, Some(&theme), common)?
         }
         () if has(PREDICT) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
             let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
-            predict::show(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
+            predict::publish(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
         }
-        () if has(BENCH) => bench::show(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
+        () if has(BENCH) => bench::publish(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
         () => rebuild(stored, style, common)?,
     }
     if *open { show(&folder.join(BROWSER)) } else { Ok(()) }
 }
 
-fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(), Failure> {
+fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &CommonOptions) -> Result<(), Failure> {
     let theme = style.style.theme()?;
-    store::expected_in(rows)?;
+    store::required_manifest(rows)?;
     let stored = complete(&ResultFolder::make(rows)?, &Terminal::new("trials", common.quiet))?;
     let folder = ResultFolder::make(common.out.as_deref().unwrap_or(rows))?;
     publish(&stored, &folder, &theme, style.figures, common)

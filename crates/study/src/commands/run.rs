@@ -7,18 +7,18 @@ use campaign::failure::Failure;
 use campaign::files::MANIFEST;
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
-use campaign::task::default_folder;
+use campaign::shard::default_folder;
 
 use super::reply;
 use crate::documents::answers::ShardAnswer;
 use crate::documents::folder_for;
-use crate::options::{Common, RunRequest};
+use crate::options::{CommonOptions, RunRequest};
 use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
 /// Runs a scenario, or one shard of it, and publishes it as `study report` does.
-pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
     if !scenario.unknown_output.is_empty() && !common.quiet {
         let keys = scenario.unknown_output.join(", ");

@@ -1,10 +1,10 @@
 //! `study schema`: the JSON schema of a file that people or programs write or read.
 
-use campaign::answers::Trials;
 use campaign::benchmark::BenchDocument;
 use campaign::design::Design;
 use campaign::failure::{Failure, OnPath};
 use campaign::manifest::Manifest;
+use campaign::outside_estimates::Trials;
 use campaign::showcase::Showcase;
 use clap::Args;
 use document::fit::FitDocument;
@@ -20,13 +20,13 @@ use crate::documents;
 use crate::documents::answers::{
     CheckAnswer, CommandAnswer, ListAnswer, ShardAnswer, SidecarAnswer, SimulateAnswer, StudyAnswer, Versioned,
 };
-use crate::documents::each::LogFitEntry;
 use crate::documents::error::ErrorDocument;
 use crate::documents::find::FindAnswer;
 use crate::documents::fit_curves::FitCurves;
+use crate::documents::fit_each::LogFitEntry;
 use crate::documents::inspect::InspectAnswer;
 use crate::documents::truth::TruthDocument;
-use crate::options::{Common, Described};
+use crate::options::{CommonOptions, Described};
 use crate::screen;
 
 /// Arguments of `study schema`.
@@ -37,9 +37,9 @@ pub struct SchemaRequest {
 }
 
 /// Prints the schema.
-pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &Common) -> Result<(), Failure> {
+pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &CommonOptions) -> Result<(), Failure> {
     let text = documents::text(&schema(what)).on("describe", Path::new("a schema"))?;
-    screen::say_document(&text)
+    screen::print_unescaped(&text)
 }
 
 /// JSON schema of a file, in draft 7, which editors of TOML understand as well.

@@ -2,17 +2,17 @@
 
 use std::path::PathBuf;
 
-use campaign::answers::{self, TRIALS, Trials};
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
+use campaign::outside_estimates::{self, TRIALS, Trials};
 use campaign::scenario::Scenario;
 use campaign::scenario::name;
-use campaign::task::default_folder;
+use campaign::shard::default_folder;
 use clap::Args;
 use trial::file::{self, Kind};
 
-use crate::options::{Common, StudyFigureOptions};
+use crate::options::{CommonOptions, StudyFigureOptions};
 use crate::terminal::Terminal;
 use crate::views::publish::publish;
 
@@ -43,15 +43,15 @@ const LIST: Kind = Kind { name: "a description of trials", max_bytes: 1 << 22 };
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` does.
 ///
 /// Fails if the answers belong to trials other than those of the scenario.
-pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &ScoreRequest, common: &CommonOptions) -> Result<(), Failure> {
     let scenario = scenario_of(request, common)?;
     let theme = request.style.style.theme()?;
     let terminal = Terminal::new("trials", common.quiet);
-    let label = request.label.clone().map_or_else(|| name::of_file(&request.answers), Ok)?;
+    let label = request.label.clone().map_or_else(|| name::study_name(&request.answers), Ok)?;
     let place = default_folder(&format!("{}-score", scenario.name));
-    let answers = answers::read(&request.answers, &scenario, &terminal)?.into_iter();
+    let answers = outside_estimates::read(&request.answers, &scenario, &terminal)?.into_iter();
     let add = |scenario: Scenario, (method, answers): (Option<String>, _)| {
-        scenario.with_answers(method.as_deref().unwrap_or(&label), answers)
+        scenario.with_outside_estimates(method.as_deref().unwrap_or(&label), answers)
     };
     let scenario = answers.into_iter().try_fold(scenario, add)?;
     let folder = ResultFolder::make(common.out.as_deref().unwrap_or(&place))?;
@@ -60,7 +60,7 @@ pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
 }
 
 /// Scenario of the answers, with the seed of their trials.
-fn scenario_of(request: &ScoreRequest, common: &Common) -> Result<Scenario, Failure> {
+fn scenario_of(request: &ScoreRequest, common: &CommonOptions) -> Result<Scenario, Failure> {
     let beside = request.answers.with_file_name(TRIALS);
     let scenario = match &request.scenario {
         Some(named) => named,

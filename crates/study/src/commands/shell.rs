@@ -9,7 +9,7 @@ use clap_complete::Shell;
 
 use super::reply;
 use crate::documents::answers::{CompletionsAnswer, ManAnswer};
-use crate::options::{Common, Format};
+use crate::options::{CommonOptions, Format};
 use crate::screen;
 
 /// Arguments of `study completions`.
@@ -31,7 +31,7 @@ pub struct ManRequest {
 pub fn completions(
     &CompletionsRequest { shell }: &CompletionsRequest,
     mut command: Command,
-    common: &Common,
+    common: &CommonOptions,
 ) -> Result<(), Failure> {
     let name = command.get_name().to_owned();
     let mut script = Vec::new();
@@ -39,7 +39,7 @@ pub fn completions(
     let script = String::from_utf8_lossy(&script).into_owned();
     if common.format != Format::Json {
         // A script is read by a shell, not shown to a person.
-        return screen::say_document(&script);
+        return screen::print_unescaped(&script);
     }
     reply(common, &CompletionsAnswer { shell: shell.to_string(), script }, "")
 }
@@ -47,7 +47,7 @@ pub fn completions(
 /// Writes a page for the program and one for each of its commands.
 ///
 /// Fails if the folder cannot be written.
-pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &Common) -> Result<(), Failure> {
+pub fn man(ManRequest { folder }: &ManRequest, mut command: Command, common: &CommonOptions) -> Result<(), Failure> {
     command.build();
     let pages = ResultFolder::make(folder)?;
     let mut files = Vec::new();

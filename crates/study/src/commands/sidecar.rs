@@ -10,7 +10,7 @@ use trial::{Sidecar, reader};
 
 use super::reply;
 use crate::documents::answers::SidecarAnswer;
-use crate::options::Common;
+use crate::options::CommonOptions;
 use campaign::failure::{Failure, OnPath};
 
 /// Arguments of `study sidecar`.
@@ -24,7 +24,7 @@ pub struct SidecarRequest {
 /// Writes the description next to the table; for a table on standard input, to standard output.
 ///
 /// Fails if the table cannot be read, or if it already has a description.
-pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(SidecarRequest { log }: &SidecarRequest, common: &CommonOptions) -> Result<(), Failure> {
     if log == Path::new(STDIN) {
         // Standard input has no folder for the description.
         return tell(&reader::draft_sidecar(log).map_err(Failure::input)?, None, common);
@@ -46,7 +46,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &Common) -> Result<(
 }
 
 /// Prints the path of the description; prints the description itself if it is in no file or JSON is requested.
-fn tell(text: &str, written: Option<(&Path, &Path)>, common: &Common) -> Result<(), Failure> {
+fn tell(text: &str, written: Option<(&Path, &Path)>, common: &CommonOptions) -> Result<(), Failure> {
     let described: toml::Table = text.parse().map_err(Failure::work)?;
     let file = written.map(|(path, _)| path.display().to_string());
     let line = match written {

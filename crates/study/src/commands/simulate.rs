@@ -3,18 +3,18 @@
 
 use std::path::Path;
 
-use campaign::answers::{TRIALS, Trials, part_name, record_name};
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
+use campaign::outside_estimates::{TRIALS, Trials, part_name, record_name};
 use campaign::scenario::Scenario;
-use campaign::task::Task;
+use campaign::shard::TrialId;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::{Table, TableHead};
 
 use super::reply;
 use crate::documents::answers::SimulateAnswer;
-use crate::options::{Common, SimulateRequest};
+use crate::options::{CommonOptions, SimulateRequest};
 use crate::progress;
 use crate::views::page_files::run_all;
 use crate::work::simulate::{RecordFiles, records, tasks};
@@ -23,18 +23,18 @@ use crate::work::simulate::{RecordFiles, records, tasks};
 ///
 /// Fails if no such cell or trial exists, if several records are to become one file, or at the first trial that cannot
 /// be simulated.
-pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &SimulateRequest, common: &CommonOptions) -> Result<(), Failure> {
     let scenario = Scenario::read(&request.scenario, common.seed)?;
     let Some(out) = &common.out else {
         return Err(Failure::input("no output is given; add --out FILE.csv or --out DIR"));
     };
     let tasks = tasks(&scenario, request)?;
-    let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
+    let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].record_count() as u64).sum();
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let (folder, names) = match (is_file, count) {
         (true, 1) => {
             let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            (ResultFolder::make(parent)?, vec![campaign::scenario::name::of_file(out)?])
+            (ResultFolder::make(parent)?, vec![campaign::scenario::name::study_name(out)?])
         }
         (true, several) => {
             let cure = if tasks.len() == 1 { "" } else { ", or one trial with --cell and --replicate" };
@@ -59,12 +59,12 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
 }
 
 /// Writes the list that assigns records to trials, with all data needed to simulate the trials again.
-fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
+fn list(scenario: &Scenario, tasks: &[TrialId], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
     let mut table = Table::new(TableHead::default().texts(["record", "cell", "label", "replicate", "also"]));
     for (task, name) in tasks.iter().zip(names) {
         let file = |number: usize| format!("{}.csv", part_name(name, number));
         let cell = &scenario.cells[task.cell];
-        let also: Vec<String> = (1..cell.records()).map(file).collect();
+        let also: Vec<String> = (1..cell.record_count()).map(file).collect();
         let (number, replicate) = (task.cell.to_string(), task.replicate.to_string());
         table.push([file(0), number, cell.title(), replicate, also.join(" ")]);
     }
@@ -77,7 +77,7 @@ fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFo
 const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials that lie beside this file.\n";
 
 /// Writes the records of a trial, the sidecar of each record that needs one, and the true values.
-fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
+fn write(scenario: &Scenario, task: TrialId, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
     for RecordFiles { name, table, sidecar, truth } in records(scenario, task, name)? {
         folder.write(&format!("{name}.csv"), table)?;
         if let Some(sidecar) = sidecar {

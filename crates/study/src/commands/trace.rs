@@ -10,25 +10,25 @@ use report::Theme;
 use crate::documents::curves::TraceCurves;
 use crate::documents::{TRACE, draws, folder_for_records};
 use crate::interrupt;
-use crate::options::{Common, TraceRequest};
-use crate::records::{default_folder, read_all, read_for_replay, repetitions};
+use crate::options::{CommonOptions, TraceRequest};
+use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
-use crate::work::earlier::EarlierModel;
+use crate::work::earlier_trials::EarlierModel;
 use crate::work::steady;
-use crate::work::trace::{STOPPED, settings, trace, without};
+use crate::work::trace::{STOPPED, settings, trace, withhold_channels};
 
 /// Analyses the records, prints the results, writes `trace.json`, the curves, `report.md`, `report.html` and figures.
 ///
 /// Fails if a record cannot be read, or if the base cannot be fitted.
-pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
+pub fn run(request: &TraceRequest, common: &CommonOptions) -> Result<(), Failure> {
     let (theme, settings) = (request.style.theme()?, settings(request)?);
-    let priors = EarlierModel::of_files(&request.priors)?;
+    let priors = EarlierModel::from_files(&request.priors)?;
     let mut warnings = Warnings::default();
-    let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
-    let validation = without(request, read_for_replay(&request.validate, &request.reading, &mut warnings)?);
-    warnings.extend(repetitions(&trials, &validation));
+    let trials = withhold_channels(request, read_all(&request.trials, &request.reading, &mut warnings)?);
+    let validation = withhold_channels(request, read_for_replay(&request.validate, &request.reading, &mut warnings)?);
+    warnings.extend(repetition_warnings(&trials, &validation));
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace"));
     let place = folder_for_records(TRACE, &place, &trials)?;
     let traced = trace([&trials, &validation], &settings, &priors, common.quiet, &mut warnings)?;
@@ -36,22 +36,22 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let text = traced.write(&folder)?;
     if request.draws.draws_file {
         let answer = std::iter::once(("trace", &traced.document.ship));
-        draws::keep_estimates(&folder, answer, request.draws.draws, common.seed.unwrap_or_default())?;
+        draws::write_estimates(&folder, answer, request.draws.draws, common.seed.unwrap_or_default())?;
     }
-    show(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
-    if interrupt::is_asked() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
+    publish(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
+    if interrupt::is_stop_requested() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
 }
 
 /// Writes the figures and the page of a trace into a folder and prints its results; `text` is that of `trace.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn show(
+pub fn publish(
     folder: &ResultFolder,
     document: &TraceDocument,
     curves: &TraceCurves,
     text: &str,
     theme: Option<&Theme>,
-    common: &Common,
+    common: &CommonOptions,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
     write_page(folder, trace_page::page(document, curves, steady::of_ship(&document.ship).as_ref()), theme)?;
@@ -59,5 +59,5 @@ pub fn show(
     let [before, behind] = trace_page::around_table(document);
     let table = trace_page::all_errors(document);
     let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
-    screen::tell(common, &output, warnings)
+    screen::print_output(common, &output, warnings)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Columns of equal length, each with a name that includes the unit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct CurveTable(Vec<(String, Vec<f64>)>);
+pub struct CsvColumns(Vec<(String, Vec<f64>)>);
 
 /// Number with up to seven significant digits, without trailing zeros; empty if it is not finite.
 fn digits(value: f64) -> String {
@@ -12,14 +12,14 @@ fn digits(value: f64) -> String {
     shown.map_or_else(String::new, |value| value.to_string())
 }
 
-impl CurveTable {
+impl CsvColumns {
     /// Adds a column on the right.
     pub fn push(&mut self, name: impl Into<String>, values: Vec<f64>) {
         self.0.push((name.into(), values));
     }
 
     /// CSV text of the table. The first column has all digits, the others seven significant ones.
-    pub fn text(&self) -> String {
+    pub fn to_csv(&self) -> String {
         let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
         let rows = self.0.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
         let cell = |place: usize, row: usize| match self.0[place].1.get(row) {
@@ -31,7 +31,7 @@ impl CurveTable {
     }
 
     /// Columns of a table by name; an empty cell is NaN. `None` if a cell is not a number or a row is short.
-    pub fn read(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
+    pub fn from_csv(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next()?.split(',').collect();
         let mut columns = vec![Vec::new(); names.len()];
@@ -52,15 +52,15 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let mut columns = CurveTable::default();
+        let mut columns = CsvColumns::default();
         columns.push("t_s", vec![0.0, 0.1 + 0.2]);
         columns.push("heading_deg", vec![f64::NAN, -1.0 / 3.0]);
-        let text = columns.text();
+        let text = columns.to_csv();
         assert_eq!(text, "t_s,heading_deg\n0,\n0.30000000000000004,-0.3333333\n");
-        let read = CurveTable::read(&text).expect("it was written so");
+        let read = CsvColumns::from_csv(&text).expect("it was written so");
         assert_eq!(read["t_s"], [0.0, 0.1 + 0.2]);
         assert!(read["heading_deg"][0].is_nan() && read["heading_deg"][1] == -0.333_333_3);
-        assert_eq!(CurveTable::read("a,b\n1\n"), None);
-        assert_eq!(CurveTable::read("a,b\n1,x\n"), None);
+        assert_eq!(CsvColumns::from_csv("a,b\n1\n"), None);
+        assert_eq!(CsvColumns::from_csv("a,b\n1,x\n"), None);
     }
 }

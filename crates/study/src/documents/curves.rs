@@ -15,8 +15,8 @@ use identify::replay::Replay;
 use ship::angle::{from_deg, to_deg};
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
-use super::columns::CurveTable;
-use crate::records::names;
+use super::columns::CsvColumns;
+use crate::records::unique_names;
 
 /// Record with its replays by both models.
 pub struct TracedRecord {
@@ -43,7 +43,7 @@ pub struct TraceCurves {
 
 /// Unique slugs of record names for file names; equal slugs are numbered.
 pub fn slugs(record_names: &[String]) -> Vec<String> {
-    names(record_names.iter().map(|name| slug(name)))
+    unique_names(record_names.iter().map(|name| slug(name)))
 }
 
 /// File name suffix of a record: empty for the first.
@@ -56,7 +56,7 @@ const MODELS: [&str; 2] = ["before", "after"];
 
 /// CSV table of a record and its replays.
 pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
-    let mut columns = CurveTable::default();
+    let mut columns = CsvColumns::default();
     columns.push("t_s", trial.time().to_vec());
     columns.push("heading_deg", degrees(trial.heading()));
     columns.push("rudder_deg", degrees(trial.rudder()));
@@ -76,7 +76,7 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     if let Some(band) = &comparison.after.band {
         columns.push("after_half_width95_deg", rows(band));
     }
-    columns.text()
+    columns.to_csv()
 }
 
 /// Name of the table of the staircase.
@@ -90,7 +90,7 @@ fn column_of(step: usize) -> String {
 /// Entries of a staircase, and the named table of the residuals of the first record after each step.
 pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
     let Some(staircase) = staircase else { return (Vec::new(), None) };
-    let mut columns = CurveTable::default();
+    let mut columns = CsvColumns::default();
     columns.push("t_s", staircase.time);
     for (number, step) in staircase.steps.iter().enumerate() {
         columns.push(column_of(number), degrees(&step.residual));
@@ -100,7 +100,7 @@ pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(Stri
         form: step.term.map(|(_, form, _)| form.to_owned()),
         heading_rmse_deg: to_deg(step.rmse),
     };
-    (staircase.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.text())))
+    (staircase.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.to_csv())))
 }
 
 /// Names of the columns of [`innovations`].
@@ -108,16 +108,16 @@ const INNOVATIONS: [&str; 2] = ["t_s", "innovation_sd"];
 
 /// CSV table of the innovations of a record.
 pub fn innovations(series: &Innovations) -> String {
-    let mut columns = CurveTable::default();
+    let mut columns = CsvColumns::default();
     for (name, values) in INNOVATIONS.into_iter().zip([&series.time, &series.values]) {
         columns.push(name, values.clone());
     }
-    columns.text()
+    columns.to_csv()
 }
 
 /// Record read from a table; `None` if the table does not have the form of [`table`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
-    let columns = CurveTable::read(text)?;
+    let columns = CsvColumns::from_csv(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
     let time = columns.get("t_s")?.clone();
     let channels = [
@@ -167,7 +167,7 @@ impl TraceCurves {
         document: &TraceDocument,
         table: impl Fn(&str) -> Result<(String, String), Failure>,
     ) -> Result<Self, Failure> {
-        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CurveTable::read));
+        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, CsvColumns::from_csv));
         let records = document.records.iter().map(|entry| {
             let (text, place) = table(&entry.curves)?;
             let record = read(&text, &place, |text| record(entry, text))?;

@@ -87,7 +87,7 @@ fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
 /// Writes the given number of samples of every estimate, under the name of its method, with this seed.
 ///
 /// Fails if an estimate cannot be sampled, or if the file cannot be written.
-pub fn keep_estimates<'a>(
+pub fn write_estimates<'a>(
     folder: &ResultFolder,
     answers: impl Iterator<Item = (&'a str, &'a IdentifiedShip)>,
     draws: u32,
@@ -102,7 +102,7 @@ pub fn keep_estimates<'a>(
 }
 
 /// Writes the sampled ships of a prediction. Fails if the file cannot be written.
-pub fn keep(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
+pub fn write_ships(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
     keep_columns(folder, columns(predicted))
 }
 

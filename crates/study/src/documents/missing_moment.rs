@@ -9,7 +9,7 @@ use document::names;
 use document::trace::{MissingMomentEntry, PanelEntry, Verdict};
 use ship::angle::to_deg;
 
-use super::columns::CurveTable;
+use super::columns::CsvColumns;
 
 /// Missing moment of one record, read from its tables; an absent column is empty.
 pub struct MissingMomentCurves {
@@ -87,7 +87,7 @@ fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
 
 /// Table over time: the moment with its band, the explanation, and every recorded channel.
 pub fn over_time(missing: &MissingMoment) -> String {
-    let mut columns = CurveTable::default();
+    let mut columns = CsvColumns::default();
     columns.push(TIME, missing.time.clone());
     columns.push(MOMENT, degrees(&missing.moment));
     columns.push("sd_rudder_deg", degrees(&missing.sd));
@@ -100,7 +100,7 @@ pub fn over_time(missing: &MissingMoment) -> String {
     for (over, values) in &missing.channels {
         columns.push(column(*over).0, shown(*over, values));
     }
-    columns.text()
+    columns.to_csv()
 }
 
 /// Table over the channels: the values of each channel, the moment, the half width of its band, and the explanation.
@@ -108,7 +108,7 @@ pub fn over_time(missing: &MissingMoment) -> String {
 /// A fitted curve has mean zero over the rows; here the mean of the moment is added.
 pub fn over_channels(missing: &MissingMoment) -> String {
     let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
-    let mut columns = CurveTable::default();
+    let mut columns = CsvColumns::default();
     for panel in &missing.panels {
         let (name, curve) = (column(panel.over).0, &panel.curve);
         columns.push(name, shown(panel.over, &curve.x));
@@ -119,7 +119,7 @@ pub fn over_channels(missing: &MissingMoment) -> String {
             columns.push(format!("{name}_{EXPLAINED}"), about(other));
         }
     }
-    columns.text()
+    columns.to_csv()
 }
 
 /// Effects of some explanations, without repetition.

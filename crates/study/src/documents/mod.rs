@@ -5,10 +5,10 @@ pub mod answers;
 pub mod columns;
 pub mod curves;
 pub mod draws;
-pub mod each;
 pub mod error;
 pub mod find;
 pub mod fit_curves;
+pub mod fit_each;
 pub mod inspect;
 pub mod log;
 pub mod missing_moment;
@@ -109,19 +109,19 @@ fn few(files: &[String]) -> String {
 }
 
 /// Writes the document of a command to a folder and returns its text. Fails if the file cannot be written.
-pub fn keep(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
+pub fn write_document(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
     let text = text(document).on("describe", &folder.path().join(name))?;
     folder.write_synced(name, &text).map(|_| text)
 }
 
 /// Writes the document of a command and the curves of its figures to a folder.
-pub fn keep_with_curves(
+pub fn write_with_curves(
     folder: &ResultFolder,
     name: &str,
     document: &impl Serialize,
     curves: &impl Serialize,
 ) -> Result<String, Failure> {
-    let text = keep(folder, name, document)?;
+    let text = write_document(folder, name, document)?;
     folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)?;
     Ok(text)
 }
@@ -178,7 +178,7 @@ pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
 
 /// Writes a document to standard output.
 ///
-/// Fails as [`answer_text`] and [`screen::say`] do.
-pub fn say(body: &impl CommandAnswer) -> Result<(), Failure> {
-    screen::say_document(&answer_text(body)?)
+/// Fails as [`answer_text`] and [`screen::print_lines`] do.
+pub fn print_document(body: &impl CommandAnswer) -> Result<(), Failure> {
+    screen::print_unescaped(&answer_text(body)?)
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use campaign::curves::degrees;
-use campaign::engine::{self, Truths};
+use campaign::engine::{self, TrueResponses};
 use campaign::scenario::Scenario;
-use campaign::task::Task;
+use campaign::shard::TrialId;
 use schemars::JsonSchema;
 use serde::Serialize;
 use ship::FirstOrder;
@@ -76,9 +76,14 @@ impl TrueIndices {
 /// True values of one record of a trial.
 ///
 /// Fails if the sampled values of the trial make no ship.
-pub fn truth(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths) -> Result<TruthDocument, String> {
+pub fn truth(
+    scenario: &Scenario,
+    task: TrialId,
+    simulated: &Simulated,
+    truths: TrueResponses,
+) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
-    let trial_spec = cell.trial_spec(&engine::key(scenario, task)).map_err(|refusal| refusal.to_string())?;
+    let trial_spec = cell.trial_spec(&engine::stream_key(scenario, task)).map_err(|refusal| refusal.to_string())?;
     let truth = &simulated.truth;
     Ok(TruthDocument {
         schema: "truth/1",

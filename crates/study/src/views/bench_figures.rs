@@ -5,7 +5,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
 use campaign::statistics::MIN_SUMMARISED;
-use report::figures::{Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn, Ruler};
+use report::figures::{AxisSpec, Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
 
@@ -40,7 +40,7 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
         let finding = format!("{}: {}", capital(field), finding(&boards, &results.reference));
         Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), finding, caption, ratios(results, field)?))
     };
-    results.fields().into_iter().filter_map(figure).collect()
+    results.study_names().into_iter().filter_map(figure).collect()
 }
 
 fn origin(method: &str) -> CurveOrigin {
@@ -109,7 +109,10 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
-            x: Ruler::new(format!("score ratio, {} (n = {})", axis_title(board.task), board.cases), Division::Factors),
+            x: AxisSpec::new(
+                format!("score ratio, {} (n = {})", axis_title(board.task), board.cases),
+                Division::Factors,
+            ),
             reference: Some(Reference95::line(1.0)),
             rows: rivals.iter().map(row).collect(),
             ..RowsColumn::default()

@@ -65,7 +65,7 @@ fn counted(board: &Board) -> String {
 }
 
 /// Content of `methods/ID.md`.
-pub fn of_method(results: &BenchDocument, method: &str) -> Page {
+pub fn method_page(results: &BenchDocument, method: &str) -> Page {
     let line = |((reason, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
         format!("{set}, {task}: {count} × {reason}; the first: {first}")
     };

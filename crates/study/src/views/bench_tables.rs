@@ -134,7 +134,7 @@ pub fn sets(results: &BenchDocument) -> Table {
 }
 
 /// Medians of one method on every set, next to those of the reference.
-pub fn of_method(results: &BenchDocument, method: &str) -> Table {
+pub fn method_medians(results: &BenchDocument, method: &str) -> Table {
     let head = TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(["median"]).counts(["failed"]);
     let place = |label: &str| results.methods.iter().position(|name| name == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
@@ -198,7 +198,7 @@ pub fn overall(results: &BenchDocument) -> Table {
 }
 
 /// Sets of a benchmark and the numbers of their records.
-pub fn present(results: &BenchDocument) -> Table {
+pub fn record_sets(results: &BenchDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts(["record", "manoeuvre", "SHA-256"]));
     for set in &results.sets {
@@ -213,7 +213,7 @@ pub fn present(results: &BenchDocument) -> Table {
 }
 
 /// Table with one row for every answer.
-pub fn rows(results: &BenchDocument) -> Table {
+pub fn answer_rows(results: &BenchDocument) -> Table {
     let head = TableHead::default();
     let head = head.texts(["task", "records", "set", "trial", "fitted", "scored", "method", "score"]);
     let head = head.texts(["K error", "T error"]).unit("%");

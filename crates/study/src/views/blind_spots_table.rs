@@ -3,27 +3,27 @@
 use report::number::{fixed, significant};
 use report::{Table, TableHead};
 
-use super::tracing_table::has_several;
+use super::tracing_table::has_several_traces;
 use campaign::design::Design;
-use campaign::summary::{BlindSpot, axis_of_sizes};
+use campaign::summary::{BlindSpot, effect_size_axis};
 
 /// Legend above the table in the report.
-pub const READING: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
+pub const LEGEND: &str = "The size of an effect at which the trace names it (itself or its group) in 90 % of the trials, by a \
                            logistic regression on the logarithm of the size, with its 95 % interval by profile likelihood. \
                            A size outside the tested range is given as more or less than its end; *at the largest*: \
                            share named at the largest size.";
 
 /// One row for every effect with sizes, called by its `name`, at every point of the other axes.
 pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
-    let of_sizes = axis_of_sizes(design);
+    let of_sizes = effect_size_axis(design);
     let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);
-    let several = has_several(design);
+    let several = has_several_traces(design);
     let head = TableHead::default().texts(["effect"]).texts(other_axes.map(|(_, name)| name));
     let head = head.texts(several.then_some("method")).texts(["unit"]).counts(["smallest", "largest", "trials"]);
     let head = head.counts(["at the largest"]).unit("%").counts(["named in 90 % from", "low", "high"]);
     let mut table = Table::new(head);
     for spot in spots {
-        let [smallest, largest] = spot.ends();
+        let [smallest, largest] = spot.tried_range();
         let within = |size: f64| match size {
             size if size > largest => format!("more than {largest}"),
             size if size < smallest => format!("less than {smallest}"),

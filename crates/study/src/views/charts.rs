@@ -2,8 +2,8 @@
 
 use campaign::scenario::TRACE;
 use report::figures::{
-    AxisLine, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind,
-    RowsColumn, Ruler, Stack,
+    AxisLine, AxisSpec, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem,
+    RowKind, RowsColumn, Stack,
 };
 use report::{CurveOrigin, PlotCurve};
 
@@ -50,10 +50,10 @@ impl ErrorMeasure {
         }
     }
 
-    fn ruler(self, panel: usize, title: String) -> Ruler {
+    fn ruler(self, panel: usize, title: String) -> AxisSpec {
         let is_log =
             matches!(self, Self::Rms | Self::OverBound | Self::Validation) || self == Self::Coverage && panel > 1;
-        Ruler::new(title, if is_log { Division::Factors } else { Division::Decimal })
+        AxisSpec::new(title, if is_log { Division::Factors } else { Division::Decimal })
     }
 
     /// Statistic of one panel.
@@ -202,7 +202,7 @@ impl<'a> ComparedMethods<'a> {
 
     /// Statistic of a panel, and whether it is too large to set an axis.
     fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
-        let figure = self.measure.of(self.summary.record(cell, method)?, panel)?;
+        let figure = self.measure.of(self.summary.performance(cell, method)?, panel)?;
         let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
         let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
         let figure = figure.times(1.0 / unit);
@@ -281,7 +281,8 @@ pub fn over_axes(
         return Vec::new();
     }
     let is_worth_it = |group: &ChartGroup| {
-        let records = |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.record(cell, method));
+        let records =
+            |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.performance(cell, method));
         group.cells.iter().flat_map(records).any(says_something)
     };
     let parts: Vec<&[ChartGroup]> = match number {
@@ -337,7 +338,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let positive = || values.iter().copied().filter(|value| *value > 0.0);
     let (least, most) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let is_wide = values.iter().all(|value| *value >= 0.0) && most > MIN_LOG_AXIS_RATIO * least;
-    let across = Ruler::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
+    let across = AxisSpec::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
     let height = if groups.len() == 1 && titles.len() < 3 { 0.3 } else { 0.24 };
     let row = |(panel, title): (usize, &String)| PanelRow {
         reference: measure.reference(panel),

@@ -2,7 +2,7 @@
 
 use document::fit::{CircleEntry, FitDocument, PredictedCircleEntry, TrialEntry};
 use document::names;
-use report::figures::{Layer, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack};
 use report::number::{fixed, significant};
 use report::palette::{DASHED, DOTTED, HEADING, INK};
 use report::{CurveOrigin, PageFigure, PlotCurve};
@@ -108,10 +108,10 @@ impl CircleTrack {
 const NEARLY: f64 = 0.999;
 
 /// Circles from above, to scale, each with its dimension lines.
-pub fn from_above(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
+pub fn plan_view(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
     let layers = further.into_iter().chain(circles.iter().flat_map(CircleTrack::layers)).collect();
-    let row = PanelRow::new(Ruler::decimal("along the approach [L]"), 0.62);
-    Stack { equal: true, ..Stack::over(Ruler::decimal("across, to starboard [L]"), vec![(row, layers)]) }
+    let row = PanelRow::new(AxisSpec::decimal("along the approach [L]"), 0.62);
+    Stack { equal: true, ..Stack::over(AxisSpec::decimal("across, to starboard [L]"), vec![(row, layers)]) }
 }
 
 /// Note on the dimension lines of a circle.
@@ -150,5 +150,5 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
     let caption = format!(
         "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {DIMENSION_LINES_NOTE}"
     );
-    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(from_above(&circles, Vec::new()))))
+    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(plan_view(&circles, Vec::new()))))
 }

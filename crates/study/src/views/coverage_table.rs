@@ -4,10 +4,10 @@ use document::names;
 use report::number::{fixed, optional, significant};
 use report::{Table, TableHead};
 
-use super::tables::{head, place};
+use super::tables::{head, row_labels};
 use campaign::design::Design;
-use campaign::statistics::{Statistic, grouped, share};
-use campaign::summary::{CriterionTally, PredictionSummary};
+use campaign::statistics::{Statistic, grouped, wilson_share};
+use campaign::summary::{ImoDecisionTally, PredictionSummary};
 
 /// Coverage of every characteristic of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
@@ -15,8 +15,8 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let head = head.numbers(["inside 90 %", "lower 95", "upper 95"]).unit("%");
     let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width"]));
     for line in lines {
-        let mut cells = place(design, line.cell, line.method);
-        let (name, unit) = names::figure(&line.name);
+        let mut cells = row_labels(design, line.cell, line.method);
+        let (name, unit) = names::figure_of_merit(&line.name);
         cells.extend([name, unit.to_owned(), line.trials.to_string()]);
         cells.extend(percent(line.coverage()));
         cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
@@ -31,7 +31,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut table = Table::new(head.texts(["lowest of", "highest of"]));
     for group in lines.chunk_by(|a, b| (a.cell, a.method) == (b.cell, b.method)) {
         let [first, ..] = group else { continue };
-        let mut cells = place(design, first.cell, first.method);
+        let mut cells = row_labels(design, first.cell, first.method);
         cells.push(group.len().to_string());
         cells.push(group.iter().map(|line| line.trials).max().unwrap_or(0).to_string());
         let inside_percent = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
@@ -40,7 +40,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let ends = [sorted[0], sorted[sorted.len() - 1]];
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
-        cells.extend(ends.map(|line| names::figure(&line.name).0));
+        cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));
         table.push(cells);
     }
     table
@@ -58,11 +58,11 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let mut table = Table::new(head.numbers(columns).unit("%"));
     for ((name, method), lines) in limited {
         let trials: u64 = lines.iter().map(|(line, _)| line.trials).sum();
-        let count = |pick: fn(&CriterionTally) -> u64| lines.iter().map(|(_, tally)| pick(tally)).sum::<u64>();
+        let count = |pick: fn(&ImoDecisionTally) -> u64| lines.iter().map(|(_, tally)| pick(tally)).sum::<u64>();
         let mut cells = vec![name.to_string(), design.methods[method].label.clone(), trials.to_string()];
         cells.push(count(|tally| tally.kept).to_string());
-        cells.extend(percent(share(count(|tally| tally.right), trials)));
-        cells.extend(percent(share(count(|tally| tally.wrong), trials)));
+        cells.extend(percent(wilson_share(count(|tally| tally.right), trials)));
+        cells.extend(percent(wilson_share(count(|tally| tally.wrong), trials)));
         table.push(cells);
     }
     Some(table)
@@ -70,5 +70,5 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
 
 /// Share of trials with its 95 % interval.
 fn percent(share: Option<Statistic>) -> [String; 3] {
-    Statistic::flat(share).map(|value| optional(value.map(|value| 100.0 * value), 1))
+    Statistic::value_and_ends(share).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

@@ -9,7 +9,7 @@ use campaign::stored_figures::Replays;
 use report::{CurveOrigin, PlotCurve};
 
 use super::study_figures::{FigurePlace, StudyFigure};
-use crate::documents::columns::CurveTable;
+use crate::documents::columns::CsvColumns;
 use crate::documents::fit_curves::FitCurves;
 
 /// Column: its name with its unit, and its values over those of the first column.
@@ -29,14 +29,14 @@ fn table(columns: Vec<NamedCurve>) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let mut table = CurveTable::default();
+    let mut table = CsvColumns::default();
     table.push("t_s", places.clone());
     for (name, curve) in columns {
         let mut points = finite(curve).peekable();
         let value = |place: &f64| points.next_if(|(x, _)| x == place).map_or(f64::NAN, |(_, y)| y);
         table.push(name, places.iter().map(value).collect());
     }
-    table.text()
+    table.to_csv()
 }
 
 /// Record and replays: `t_s`, `heading_deg`, the rudder and the noise-free heading if there are any, and heading and

@@ -143,7 +143,7 @@ pub fn of_trial(data: &ZigzagTrial) -> String {
 #[cfg(test)]
 mod tests {
     use report::CurveOrigin;
-    use report::figures::{Layer, PanelRow, Ruler, Stack};
+    use report::figures::{AxisSpec, Layer, PanelRow, Stack};
 
     use super::*;
 
@@ -174,10 +174,10 @@ mod tests {
                 .into()
         };
         let rows = vec![
-            (PanelRow::new(Ruler::decimal("rms error of K [%]"), 0.2), layers(1.0)),
-            (PanelRow::new(Ruler::decimal("rms error of T [%]"), 0.2), layers(10.0)),
+            (PanelRow::new(AxisSpec::decimal("rms error of K [%]"), 0.2), layers(1.0)),
+            (PanelRow::new(AxisSpec::decimal("rms error of T [%]"), 0.2), layers(10.0)),
         ];
-        let data = Panels::of(Stack::over(Ruler::decimal("heading noise [°]"), rows));
+        let data = Panels::of(Stack::over(AxisSpec::decimal("heading noise [°]"), rows));
         assert_eq!(of_chart(&data.into()), "At heading noise 1.0°, rms error of T from 20 % (a) to 40 % (b)");
     }
 }

@@ -6,7 +6,7 @@ use document::method::MethodEntry;
 use document::names;
 use document::single_records::{SingleRecord, SingleRecords};
 use report::figures::{
-    Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Ruler, Stack,
+    AxisSpec, Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Stack,
 };
 use report::number::{counted, fixed, significant};
 use report::palette::{BEFORE, Look, Marker, SOLID};
@@ -36,7 +36,7 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
         let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(gain)));
         PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
-    let shown = document.drawn_method();
+    let shown = document.plotted_method();
     for (number, record) in curves.records.iter().enumerate() {
         figures.extend(of_record(record, if number == 0 { "" } else { &record.name }, shown));
     }
@@ -49,7 +49,7 @@ const TOLERANCE: f64 = 0.1;
 /// Finding: K and T of the shown method, and how many other methods agree.
 fn agreement(document: &FitDocument) -> String {
     let answer = |entry: &MethodEntry| Some([entry.parameters?.k_per_s.value, entry.parameters?.t_s.value]);
-    let shown = document.drawn_method();
+    let shown = document.plotted_method();
     let (of_shown, other_answers): (Vec<_>, Vec<_>) =
         document.methods.iter().partition(|entry| Some(entry.method.as_str()) == shown);
     let Some([k, t]) = of_shown.first().and_then(|entry| answer(entry)) else {
@@ -88,7 +88,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
         figure("raw", finding, description, raw(record, marks).into())
     }));
     let description = "the recorded rudder replayed with the answer of every method, and the heading errors.";
-    figures.push(figure("replays", study_figures::left(replays), description, replays.panels().into()));
+    figures.push(figure("replays", study_figures::replay_error_finding(replays), description, replays.panels().into()));
     let replay = replays.replays.iter().find(|replay| shown == Some(replay.origin.label()));
     let replay = replay.or_else(|| replays.replays.first());
     let extent = replays
@@ -122,7 +122,7 @@ fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
     let heading = Layer::new("recorded heading", record.replays.record.clone(), LayerKind::Record);
     let mut lower = rudder("recorded rudder", record.rudder.clone(), 0.16);
     lower.1.push(of_rudder);
-    let rows = vec![(PanelRow::new(Ruler::heading(), 0.3), vec![heading, of_heading]), lower];
+    let rows = vec![(PanelRow::new(AxisSpec::heading(), 0.3), vec![heading, of_heading]), lower];
     Panels::over_time(rows)
 }
 
@@ -158,7 +158,7 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
         let (k, t) = scaled(estimates.k_per_s.value, estimates.t_s.value);
         Some([region, Some(Layer::marks(entry.method.as_str(), look, vec![(k, t, None)]))])
     };
-    let [k, t] = titles(ship).map(|title| Ruler::decimal(title).within(PLANE_REACH, None));
+    let [k, t] = titles(ship).map(|title| AxisSpec::decimal(title).within(PLANE_REACH, None));
     let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
     let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
     Panels {
@@ -191,7 +191,7 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
         let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());
         PanelRow {
             reference: joint.map(|all| Reference95 { value: all.value, band: all.ci95.unwrap_or([all.value; 2]) }),
-            ..PanelRow::new(Ruler::decimal(title).within(AMPLITUDE_REACH, Some(0.0)), 0.3)
+            ..PanelRow::new(AxisSpec::decimal(title).within(AMPLITUDE_REACH, Some(0.0)), 0.3)
         }
     };
     let ([by_k, by_t], [k, t]) = (factors(ship), titles(ship));
@@ -200,7 +200,8 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let mut panels: Vec<LayeredPanel> = amplitudes.map(|of_axis| panel(|fit| fit.k_per_s, by_k, of_axis)).into();
     panels.extend(amplitudes.map(|of_axis| panel(|fit| fit.t_s, by_t, of_axis)));
     let rows = vec![row(k, joint.map(|fit| fit.k_per_s), by_k), row(t, joint.map(|fit| fit.t_s), by_t)];
-    let stack = Stack { x: x.map(|title| Ruler::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
+    let stack =
+        Stack { x: x.map(|title| AxisSpec::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
     Panels { note, ..Panels::of(stack) }
 }

@@ -78,7 +78,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         form_remarks: &document.form_remarks,
         mark: "###",
         answers: answers(document, curves),
-        records: document.single_records.as_ref().map(indices::records),
+        records: document.single_records.as_ref().map(indices::single_record_table),
         warnings: document.answer_warnings().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
         scales: scales(document),
@@ -130,7 +130,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             Some(all) if all.agree == Some(false) => {
                 format!(
                     "{} Use K and T of each record, or fit the records together with `study trace`.",
-                    indices::of_records(all)
+                    indices::range_sentence(all)
                 )
             }
             _ if !document.methods.iter().any(|entry| identify::verdict::REFERENCE_METHODS.contains(&entry.id())) => {
@@ -151,10 +151,11 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
         VerdictReason::HeadingJumps => "the recorded heading jumps, and this method estimates the jumps",
     };
     let mut text = format!("Take K = {k} 1/s, T = {t} s, δ_r = {bias}° from {}, because {because}.", verdict.method);
-    let amplitude = indices::of_amplitude(document.amplitude.as_ref());
+    let amplitude = indices::amplitude_sentence(document.amplitude.as_ref());
     text += &if amplitude.is_empty() { String::new() } else { format!("\n{amplitude}") };
     text += &residual(document, verdict);
-    text += &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::of_records(all)));
+    text +=
+        &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::range_sentence(all)));
     text += &contradiction(document, verdict);
     if !verdict.set_apart.is_empty() {
         text += &format!("\nReplay error more than ten times larger: {}.", verdict.set_apart.join(", "));
@@ -264,7 +265,8 @@ fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
     let Some(scales) = &document.scales else { return parts };
     let speaker = PREFERRED_METHODS.iter().find_map(|id| scales.comparisons.iter().find(|model| model.model == *id));
     if let Some(model) = speaker.or(scales.comparisons.first()) {
-        let sentence = format!("each scale fitted alone ({}): {}", model.model, scale_tables::sentence(model));
+        let sentence =
+            format!("each scale fitted alone ({}): {}", model.model, scale_tables::scaling_terms_sentence(model));
         parts.push((sentence, Some(scale_tables::table(scales, model))));
         let sentence = "K and T of a first-order response also differ between manoeuvres where it lacks an effect; \
             `study trace` separates the \

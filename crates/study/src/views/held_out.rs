@@ -1,11 +1,11 @@
 //! Held-out records: residuals and errors of the models before and after.
 
 use ::trace::replay_errors::HORIZONS;
-use campaign::curves::curve;
+use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
 use report::figures::{
-    Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Ruler, Stack,
+    AxisSpec, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack,
 };
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
@@ -18,7 +18,7 @@ use crate::documents::curves::{TraceCurves, TracedRecord};
 const ACROSS: usize = 3;
 
 /// Figure of the residuals of both models on every held-out record, the worst first; `None` without held-out records.
-pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
+pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
     let mut all: Vec<(&RecordEntry, &TracedRecord, &BeforeAfter)> =
         all.zip(&document.trace.error.validation).map(|((entry, record), errors)| (entry, record, errors)).collect();
@@ -36,21 +36,22 @@ pub fn residuals(document: &TraceDocument, curves: &TraceCurves) -> Option<PageF
     let panel = |(entry, record, errors): &(&RecordEntry, &TracedRecord, &BeforeAfter)| {
         let line = |(origin, replay): (CurveOrigin, &identify::replay::Replay)| {
             let pen = Pen::new(origin.look().colour).width(0.9);
-            Layer::line(origin.label(), curve(&replay.time, &replay.residual), pen)
+            Layer::line(origin.label(), angle_curve_deg(&replay.time, &replay.residual), pen)
         };
         let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
         let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
         LayeredPanel { head: Some(head), layers: models(record).map(line).into(), ..LayeredPanel::default() }
     };
-    let row = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.13);
-    let plot = Panels::of(Stack::multiples(ACROSS.min(all.len()), Ruler::time(), row, all.iter().map(panel).collect()));
+    let row = PanelRow::zeroed(AxisSpec::new("residual [°]", Division::Angle), 0.13);
+    let plot =
+        Panels::of(Stack::multiples(ACROSS.min(all.len()), AxisSpec::time(), row, all.iter().map(panel).collect()));
     let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
                    not fitted; degrees are root mean squares. The worst predicted record comes first.";
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
 }
 
 /// Figure of the errors on held-out records, from zero, so that ratios are visible; `None` if there are none.
-pub fn errors(document: &TraceDocument) -> Option<PageFigure> {
+pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
         let row = |errors: &BeforeAfter| -> Vec<RowItem> {
@@ -60,7 +61,7 @@ pub fn errors(document: &TraceDocument) -> Option<PageFigure> {
             pairs.into_iter().filter_map(mark).collect()
         };
         let rows = judged.iter().map(|record| row(record.errors)).collect();
-        RowsColumn { x: Ruler::decimal(title), rows, zero: true, ..RowsColumn::default() }
+        RowsColumn { x: AxisSpec::decimal(title), rows, zero: true, ..RowsColumn::default() }
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|error| Some(error.heading_rmse_deg))];
     columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |all| horizon(all, length))));

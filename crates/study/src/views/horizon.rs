@@ -2,7 +2,7 @@
 
 use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
-use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Division, Layer, PanelRow, Panels, Pen, Stack};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
@@ -87,8 +87,8 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let used = judged.iter().find(|record| !record.errors.horizons.is_empty())?.used;
     let horizons = common(&records);
     let layers = (0..MODELS.len()).flat_map(|number| layers(&records, &horizons, number)).collect();
-    let x = Ruler::new("horizon [s]", Division::Factors);
-    let row = PanelRow::new(Ruler::new("heading error, rms [°]", Division::Factors), 0.36);
+    let x = AxisSpec::new("horizon [s]", Division::Factors);
+    let row = PanelRow::new(AxisSpec::new("heading error, rms [°]", Division::Factors), 0.36);
     let each = match records.len() {
         1 => "",
         2..MIN_SUMMARISED => " Thin: every record.",

@@ -9,7 +9,7 @@ use report::{Table, TableHead};
 use super::method_table::estimate;
 
 /// Sentence on the amplitude at which K and T are valid; empty if the records are not zig-zags.
-pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
+pub fn amplitude_sentence(amplitude: Option<&Amplitude>) -> String {
     amplitude.map_or_else(String::new, |Amplitude { rudder_deg, heading_deg }| {
         let [rudder, heading] = [rudder_deg, heading_deg].map(|angle| fixed(*angle, 0));
         format!("They are valid at this amplitude: rudder {rudder}°, heading to {heading}°.")
@@ -17,7 +17,7 @@ pub fn of_amplitude(amplitude: Option<&Amplitude>) -> String {
 }
 
 /// Sentence on the range of K and T over the records, and whether they agree.
-pub fn of_records(all: &SingleRecords) -> String {
+pub fn range_sentence(all: &SingleRecords) -> String {
     let range = |value_of: fn(&SingleRecord) -> f64, unit: &str| {
         let values = || all.records.iter().map(value_of);
         let ends = [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)];
@@ -34,7 +34,7 @@ pub fn of_records(all: &SingleRecords) -> String {
 }
 
 /// Table of K and T of every record alone.
-pub fn records(all: &SingleRecords) -> Table {
+pub fn single_record_table(all: &SingleRecords) -> Table {
     let head = TableHead::default().texts(["record"]).numbers(["rudder", "heading"]).unit("deg");
     let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
     let mut table = Table::new(head);
@@ -47,7 +47,7 @@ pub fn records(all: &SingleRecords) -> Table {
 }
 
 /// Table of K and T of the first-order response and of the model of a trace, with the use of each pair.
-pub fn of_trace(document: &TraceDocument) -> Table {
+pub fn trace_table(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["K and T of"]).numbers(["K"]).unit("1/s").interval();
     let mut table = Table::new(head.numbers(["T"]).unit("s").interval().texts(["for"]));
     let amplitude = document.amplitude.as_ref().map_or_else(

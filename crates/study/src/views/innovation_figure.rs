@@ -4,7 +4,7 @@
 use ::trace::SIGNIFICANCE_LEVEL;
 use estimation::residuals::{GappedSeries, autocorrelation, whiteness_lags, whiteness_test};
 use estimation::statistics::upper_median;
-use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
 use report::number::significant;
 use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
 use report::{PageFigure, PlotCurve};
@@ -80,8 +80,8 @@ fn quantiles(sorted: &[f64]) -> Stack {
         Layer::line("normal, as large as the noise", over(across.clone()), Pen { dash: DASHED, ..Pen::new(INK) }),
         Layer::new("innovations", over(ranks.iter().map(|&rank| sorted[rank - 1]).collect()), dots),
     ];
-    let row = PanelRow::zeroed(Ruler::decimal("innovation [sd]"), 0.32);
-    let mut stack = Stack::over(Ruler::decimal("normal quantile [sd]"), vec![(row, layers)]);
+    let row = PanelRow::zeroed(AxisSpec::decimal("innovation [sd]"), 0.32);
+    let mut stack = Stack::over(AxisSpec::decimal("normal quantile [sd]"), vec![(row, layers)]);
     (stack.is_half, stack.zero) = (true, true);
     stack.panels[0].head = Some(format!("{outside} of {count} outside the band"));
     stack
@@ -95,10 +95,10 @@ fn correlation(series: &GappedSeries) -> Stack {
     let outside = points.iter().filter(|lag| lag.value.abs() > bound).count();
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
     let places = points.iter().map(|lag| (lag.lag as f64 * series.spacing, lag.value, None)).collect();
-    let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(Ruler::decimal("autocorrelation"), 0.32) };
+    let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(AxisSpec::decimal("autocorrelation"), 0.32) };
     let thin = Pen::new(HEADING).width(0.6);
     let mut stack =
-        Stack::over(Ruler::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).joined(thin)])]);
+        Stack::over(AxisSpec::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).joined(thin)])]);
     stack.is_half = true;
     stack.panels[0].head = Some(format!("{outside} of {} lags outside ±1.96/√n", points.len()));
     stack

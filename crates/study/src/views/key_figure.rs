@@ -239,7 +239,7 @@ fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
 
 #[cfg(test)]
 mod tests {
-    use report::figures::{NamedRows, PanelRow, RowItem, RowKind, RowsColumn, Ruler};
+    use report::figures::{AxisSpec, NamedRows, PanelRow, RowItem, RowKind, RowsColumn};
     use report::palette::Look;
 
     use super::super::key_rows::tint;
@@ -264,8 +264,8 @@ mod tests {
         };
         let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
         let stack = Stack {
-            x: vec![Ruler::decimal("x"); 2],
-            rows: titles.iter().map(|title| PanelRow::new(Ruler::decimal(*title), 0.2)).collect(),
+            x: vec![AxisSpec::decimal("x"); 2],
+            rows: titles.iter().map(|title| PanelRow::new(AxisSpec::decimal(*title), 0.2)).collect(),
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..Stack::default()
         };
@@ -287,7 +287,7 @@ mod tests {
         let item = |id: &str, value: f64| RowItem::below(method(id).0, method(id).1, value, None);
         let items = [("srivc", 2.0), ("output-error", 1.0), ("least-squares", 3.0), ("maximum-likelihood", 1.0)];
         let column = |title: &str| RowsColumn {
-            x: Ruler::decimal(title),
+            x: AxisSpec::decimal(title),
             rows: vec![items.map(|(id, value)| item(id, value)).into()],
             ..RowsColumn::default()
         };
@@ -309,7 +309,7 @@ mod tests {
         let (name, look) = method("output-error");
         let row = |value: f64| vec![RowItem::below(name.as_str(), look, value, None)];
         let column = RowsColumn {
-            x: Ruler::decimal("error of T [%]"),
+            x: AxisSpec::decimal("error of T [%]"),
             rows: vec![row(1.25), row(2.0)],
             ..RowsColumn::default()
         };
@@ -341,7 +341,7 @@ mod tests {
             Layer::line(CurveOrigin::Bound.label(), PlotCurve::new(vec![2.0, 5.0], vec![0.1, 0.15]), Pen::new(QUIET)),
         ];
         let stack =
-            Stack::over(Ruler::decimal("executes"), vec![(PanelRow::new(Ruler::decimal("T [%]"), 0.2), layers)]);
+            Stack::over(AxisSpec::decimal("executes"), vec![(PanelRow::new(AxisSpec::decimal("T [%]"), 0.2), layers)]);
         let highlight = Highlight {
             series: vec!["output-error".into(), "maximum-likelihood".into()],
             rows: vec!["2".into()],

@@ -95,7 +95,7 @@ fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
         [name] => RowItem::new(name, RowKind::Mark(OTHER, ends[0], None)),
         _ => RowItem::new(format!("{}, range", counted(names.len() as u64, "other")), RowKind::Range(RECORD, ends)),
     };
-    Some(RowItem { place: RowPlace::Below, ..item.softly() })
+    Some(RowItem { place: RowPlace::Below, ..item.clipped_if_far() })
 }
 
 /// Pales the rows that are not highlighted, and writes the values of all highlighted methods.

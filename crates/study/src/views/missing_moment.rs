@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use document::names;
 use document::trace::{MissingMomentEntry, PanelEntry};
-use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
@@ -54,14 +54,14 @@ fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], 
 /// Figure of one record.
 pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
     let cause = entry.explanation.as_ref();
-    let over = |x: Ruler, height: f64, reach: f64, layers: Vec<Layer>| {
-        let moment = Ruler::decimal("moment [° rudder]").within(reach, Some(0.0));
+    let over = |x: AxisSpec, height: f64, reach: f64, layers: Vec<Layer>| {
+        let moment = AxisSpec::decimal("moment [° rudder]").within(reach, Some(0.0));
         Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |values: &Vec<f64>| PlotCurve::new(curves.time.clone(), values.clone());
     let [lower, upper] = &curves.band;
     let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
-    let mut stacks = vec![over(Ruler::time(), 0.24, REACHES[0], moment)];
+    let mut stacks = vec![over(AxisSpec::time(), 0.24, REACHES[0], moment)];
     let panels = entry.over.iter().zip(&curves.over);
     let (shown, undrawn): (Vec<_>, Vec<_>) = panels.partition(|(panel, _)| panel.shows);
     stacks.extend(shown.into_iter().take(MAX_PANELS).map(|(panel, channel): (&PanelEntry, &ChannelCurve)| {
@@ -71,8 +71,12 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
         let rows = PlotCurve::new(channel.rows.clone(), curves.moment.clone());
         let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
         layers.extend(banded(cause, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(channel.explained.clone())));
-        let mut stack =
-            over(Ruler::decimal(channel.over.map_or_else(|| panel.channel.clone(), title_of)), 0.2, REACHES[1], layers);
+        let mut stack = over(
+            AxisSpec::decimal(channel.over.map_or_else(|| panel.channel.clone(), title_of)),
+            0.2,
+            REACHES[1],
+            layers,
+        );
         (stack.panels[0].head, stack.is_half) = (Some(percent(panel.variance_share)), true);
         stack
     }));

@@ -2,14 +2,14 @@
 
 use campaign::design::Design;
 use campaign::scenario::MissingPhysics;
-use campaign::statistics::{Statistic, grouped, share};
+use campaign::statistics::{Statistic, grouped, wilson_share};
 use campaign::summary::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S, Summary, TraceSummary};
 use report::Table;
 use report::figures::{CellMap, MapCell, Outline, Shades};
 use report::number;
 
 use super::tables::head_of_cells;
-use super::tracing_table::has_several;
+use super::tracing_table::has_several_traces;
 
 /// Kind of a ship, for figures and files.
 fn kind(physics: &MissingPhysics) -> &'static str {
@@ -48,7 +48,8 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
     });
     let trials = |lines: &[JudgedLine]| count(lines, |_, _| true);
     let cell = |lines: &[JudgedLine], judgement: Judgement| {
-        let share = share(count(lines, |other, _| other == judgement), trials(lines)).map(|share| share.times(100.0));
+        let share =
+            wilson_share(count(lines, |other, _| other == judgement), trials(lines)).map(|share| share.times(100.0));
         MapCell {
             value: share.map(|share| share.value),
             interval: share.and_then(|share| share.ci95),
@@ -77,7 +78,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
 }
 
 /// Legend of the judgements.
-pub fn reading() -> String {
+pub fn legend() -> String {
     format!(
         "*named right*: an effect that the ship has or stands for, and no other; *located right*: a moment with the \
          dependence of the truth and, where this has times, within {MAX_TIME_ERROR_S:.0} s of a change (its beginning, end or \
@@ -91,15 +92,15 @@ pub fn reading() -> String {
 
 /// Counts of every cell: `outcomes.csv`; `None` for a study that states no outcome.
 pub fn table(design: &Design, summary: &Summary) -> Option<Table> {
-    let several = has_several(design);
+    let several = has_several_traces(design);
     let head = head_of_cells(design).texts(several.then_some("method")).texts(["kind"]).counts(["trials", "failed"]);
     let head = head.numbers(["right", "right lower 95", "right upper 95"]).unit("%");
     let mut table = Table::new(head.counts(Judgement::ALL.map(|judgement| judgement.to_string())));
     let judged = judged(design, &summary.tracing);
     for (line, physics) in &judged {
         let line_alone = [(*line, *physics)];
-        let failed = summary.record(line.cell, line.method).map_or(0, |record| record.failed());
-        let right = Statistic::flat(share(count(&line_alone, Judgement::is_right), line.trials));
+        let failed = summary.performance(line.cell, line.method).map_or(0, |record| record.failed());
+        let right = Statistic::value_and_ends(wilson_share(count(&line_alone, Judgement::is_right), line.trials));
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
         cells.extend(several.then(|| design.methods[line.method].label.clone()));
         cells.extend([kind(physics).to_owned(), line.trials.to_string(), failed.to_string()]);

@@ -4,7 +4,7 @@ use ::trace::replay_errors::replayed_zigzag;
 use document::names;
 use document::trace::{RecordEntry, TraceDocument};
 use estimation::statistics::median;
-use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
+use report::figures::{AxisSpec, NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{MISSING, counted, significant};
 use report::palette::{Look, Marker};
 use report::{CurveOrigin, PageFigure};
@@ -26,7 +26,7 @@ pub struct ReplayedOvershoot<'a> {
 }
 
 /// Overshoots of all records, in ascending order of the rudder.
-pub fn all<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
+pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
     let mut all = Vec::new();
     for (record, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(zigzag) = ZigZag::of(trial) else { continue };
@@ -76,7 +76,7 @@ pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] 
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     // One mark above the other, so that both are visible.
     let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
-        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).softly();
+        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
         Some(RowItem { place: RowPlace::Aside(aside), ..item })
     };
     let row = |overshoot: &ReplayedOvershoot| -> Vec<RowItem> {
@@ -90,7 +90,7 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         items.into_iter().flatten().collect()
     };
     let rows = all.iter().map(row).collect();
-    let column = RowsColumn { x: Ruler::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
+    let column = RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
     let name = |overshoot: &ReplayedOvershoot| {
         let used = if overshoot.record.held_out { "" } else { " (fitted)" };
         format!("{}, {}{used}", names::record(&overshoot.record.name), overshoot.word)

@@ -4,7 +4,7 @@ use campaign::disk;
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use rayon::prelude::*;
-use report::html::{self, Images};
+use report::html::{self, FigureFiles};
 use report::{Page, PageFigure, Theme};
 
 use crate::documents;
@@ -29,7 +29,7 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
         draw(folder, &page, theme)?;
     }
     let markdown = page.to_markdown();
-    let browser = html::page(&markdown, &page.folded(), &|stem| Images::written(folder.path(), stem));
+    let browser = html::page(&markdown, &page.folded(), &|stem| FigureFiles::written(folder.path(), stem));
     folder.write(REPORT, markdown)?;
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
 }

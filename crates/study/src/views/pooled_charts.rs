@@ -6,8 +6,8 @@ use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
 use report::figures::{
-    CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
-    RowPlace, RowsColumn, Ruler, Shades, Stack,
+    AxisSpec, CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem,
+    RowKind, RowPlace, RowsColumn, Shades, Stack,
 };
 use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
@@ -36,7 +36,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         };
         // Cells are the product of the axes, the first axis slowest.
         let cell = |x: usize, y: usize, method: usize| {
-            let record = summary.record(y * columns.len() + x, method);
+            let record = summary.performance(y * columns.len() + x, method);
             let value = record.and_then(|record| measure.of(record, panel)).map(|figure| figure.value);
             MapCell { value, ..MapCell::default() }
         };
@@ -68,7 +68,7 @@ const MAX_SPREADS: f64 = 4.0;
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
-        x: Ruler::decimal(title).within(MAX_SPREADS, Some(0.0)),
+        x: AxisSpec::decimal(title).within(MAX_SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
                 let look = origin(design, method).look();
@@ -85,7 +85,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
             column(detail, "error of K [%]", |detail| &detail.violin_k),
             column(detail, "error of T [%]", |detail| &detail.violin_t),
         ];
-        let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
+        let trials = summary.performance(detail.cell, 0).map_or(0, |record| record.trials);
         let is_drawn = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note =
@@ -132,13 +132,13 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
         let (near, far): (Vec<_>, Vec<_>) = detail.methods.iter().enumerate().partition(is_near);
         let far: Vec<&str> = far.iter().map(|(method, _)| design.methods[*method].label.as_str()).collect();
         let count = near.len();
-        let axis = |index: &str| Ruler::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
+        let axis = |index: &str| AxisSpec::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
         let panels = near.into_iter().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
         let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
         let points =
             detail.methods.iter().flat_map(|fit| &fit.cloud).map(|cloud| cloud.points.len()).max().unwrap_or(0);
-        let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
+        let trials = summary.performance(detail.cell, 0).map_or(0, |record| record.trials);
         let mut note = format!(
             "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}."
         );
@@ -167,7 +167,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
         return None;
     }
     let answer = |cell: usize, panel: usize| {
-        let record = summary.record(cell, summary.reference)?;
+        let record = summary.performance(cell, summary.reference)?;
         [&record.k, &record.t][panel].answer
     };
     let column = |panel: usize, symbol: &str| {
@@ -180,7 +180,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
             };
             series.iter().enumerate().filter_map(dot).collect()
         };
-        let x = Ruler::decimal(format!("{symbol} / {symbol} of the {}", names[0]));
+        let x = AxisSpec::decimal(format!("{symbol} / {symbol} of the {}", names[0]));
         RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
     let rows = NamedRows {
@@ -235,7 +235,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let rows = prediction_rows(design);
     let several = rows.len() > 1;
-    let column = |x: Ruler, pick: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
+    let column = |x: AxisSpec, pick: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
         let of_method = |method: usize| -> Vec<Vec<RowItem>> {
             let origin = origin(design, method);
             let items = |(value, ends): (f64, [f64; 2])| prediction_items(&origin, value, ends);
@@ -264,12 +264,12 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         names,
         columns: vec![
             column(
-                Ruler::new("90 % intervals that hold [%]", Division::Percent),
+                AxisSpec::new("90 % intervals that hold [%]", Division::Percent),
                 inside,
                 0,
                 vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],
             ),
-            column(Ruler::new("width [% of value]", Division::Factors), width, 25, Vec::new()),
+            column(AxisSpec::new("width [% of value]", Division::Factors), width, 25, Vec::new()),
         ],
         note: Some(String::from(
             "Over the predicted overshoots, times and turns. Marks: mean share, median width. Pale: from the worst to the \

@@ -7,8 +7,8 @@ use predict::steady::SteadyCurve;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
-use crate::documents::columns::CurveTable;
-use crate::records::names;
+use crate::documents::columns::CsvColumns;
+use crate::records::unique_names;
 use campaign::scenario::name::slug;
 
 /// Unique file stem for every manoeuvre and record.
@@ -18,7 +18,7 @@ pub fn stems(document: &PredictDocument) -> Vec<String> {
         // A slug has no minus sign.
         slug(&kind.replace(" -", " port "))
     });
-    names(kinds.chain(document.replays.iter().map(|kinds| format!("replay-{}", slug(&kinds.name)))))
+    unique_names(kinds.chain(document.replays.iter().map(|kinds| format!("replay-{}", slug(&kinds.name)))))
 }
 
 /// Curves of every manoeuvre and replay: stem and table, angles in degrees.
@@ -40,20 +40,20 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
 
 fn steady_turns(ships: &[SteadyCurve]) -> String {
     let number = |(ship, curve): (usize, &SteadyCurve)| vec![ship as f64; curve.rudder.len()];
-    let mut table = CurveTable::default();
+    let mut table = CsvColumns::default();
     table.push("ship", ships.iter().enumerate().flat_map(number).collect());
     table.push("rudder_deg", ships.iter().flat_map(|ship| degrees(&ship.rudder)).collect());
     table.push("yaw_rate_deg_s", ships.iter().flat_map(|ship| degrees(&ship.yaw_rate)).collect());
-    table.text()
+    table.to_csv()
 }
 
 fn bands(bands: &BandedCurve, measured: Option<&[f64]>) -> String {
-    let mut table = CurveTable::default();
+    let mut table = CsvColumns::default();
     table.push("t_s", bands.time.clone());
     table.push("heading_deg", degrees(&bands.most_probable));
     for (place, percent) in ["05", "25", "50", "75", "95"].into_iter().enumerate() {
         table.push(format!("q{percent}_deg"), bands.quantiles.iter().map(|row| to_deg(row[place])).collect());
     }
     measured.into_iter().for_each(|heading| table.push("measured_deg", degrees(heading)));
-    table.text()
+    table.to_csv()
 }

@@ -10,7 +10,7 @@ use predict::replay::{Compared, RecordReplay};
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
-    Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Ruler, Stack,
+    AxisSpec, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Stack,
 };
 use report::number::{counted, fixed, significant};
 use report::palette::{BEFORE, HEADING, INK, Look, Marker, SOLID};
@@ -114,7 +114,7 @@ const MAX_NAMED_FIGURES: usize = 2;
 fn first_figures(prediction: &Prediction) -> String {
     let figure_words = |(name, figure): (&String, &Predicted)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
-        let (quantity, unit) = names::figure(name);
+        let (quantity, unit) = names::figure_of_merit(name);
         format!("{quantity} {}{unit} [{low}, {high}]", significant(figure.interval.median, 3))
     };
     let shown: Vec<String> = prediction.figures.iter().take(MAX_NAMED_FIGURES).map(figure_words).collect();
@@ -151,7 +151,7 @@ fn bands(heading: &BandedCurve, recorded: Option<PlotCurve>, rudder_deg: PlotCur
     layers.extend(recorded.map(|heading| Layer::new("recorded heading", heading, LayerKind::Record)));
     let pen = Pen::new(HEADING).width(1.2);
     layers.push(Layer::line("most probable ship", curve(degrees(&heading.most_probable)), pen));
-    let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
+    let rows = vec![(PanelRow::new(AxisSpec::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
     let cut = Some(String::from("The band of 90 % is cut at the frame."));
     Panels { cut, ..Panels::over_time(rows) }
 }
@@ -186,7 +186,7 @@ fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
         circle("median of the drawn ships", &tracks.median, figures(|figure| figure.interval.median), predicted_pen()),
     ];
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::of(circle::from_above(&circles, tracks.drawn.iter().map(drawn).collect())) }
+    Panels { cut, ..Panels::of(circle::plan_view(&circles, tracks.drawn.iter().map(drawn).collect())) }
 }
 
 fn track(prediction: &Prediction) -> Panels {
@@ -208,8 +208,8 @@ fn track(prediction: &Prediction) -> Panels {
         Layer::line("most probable ship", from_above(places_m), Pen::new(HEADING).width(1.2)),
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
     ]);
-    let row = PanelRow::new(Ruler::decimal("north [m]"), 0.7);
-    let stack = Stack::over(Ruler::decimal("east [m]"), vec![(row, layers.collect())]);
+    let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
+    let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
     Panels { cut, ..Panels::of(Stack { equal: true, ..stack }) }
 }
@@ -217,7 +217,7 @@ fn track(prediction: &Prediction) -> Panels {
 /// Prediction intervals of characteristics, with measured values and limits.
 fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     let (names, rows) = rows.into_iter().unzip();
-    let x = Ruler::decimal(format!("predicted value [{unit}]"));
+    let x = AxisSpec::decimal(format!("predicted value [{unit}]"));
     NamedRows {
         names,
         columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],
@@ -229,7 +229,7 @@ fn interval(predicted: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> 
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
-        RowItem::new("90 %", RowKind::Thin(predicted.ci90)).softly(),
+        RowItem::new("90 %", RowKind::Thin(predicted.ci90)).clipped_if_far(),
         RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, predicted.ci50)),
         RowItem::new(name, RowKind::Mark(look, predicted.median, None)),
     ]
@@ -255,7 +255,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
             // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
-            rows.push((format!("{} {}", names::record(&replayed.name), names::figure(name).0), items));
+            rows.push((format!("{} {}", names::record(&replayed.name), names::figure_of_merit(name).0), items));
         }
     }
     rows

@@ -24,7 +24,7 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
     let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
-        let ((name, unit), [median, half, most]) = (names::figure(name), cells(interval));
+        let ((name, unit), [median, half, most]) = (names::figure_of_merit(name), cells(interval));
         table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
     };
     for Prediction { kind, figures, .. } in &document.manoeuvres {
@@ -89,7 +89,7 @@ pub fn corrected(document: &PredictDocument) -> Table {
                 None => fixed(*measured, result.decimals()),
             };
             let doubts: Vec<&str> = warnings.iter().map(|doubt| doubt.text.as_str()).collect();
-            let ((name, unit), remark) = (names::figure(name), doubts.join("; "));
+            let ((name, unit), remark) = (names::figure_of_merit(name), doubts.join("; "));
             let record = correction.name.clone();
             table.push([record, name, unit.to_owned(), measured, factor, of_factor, median, half, most, remark]);
         }

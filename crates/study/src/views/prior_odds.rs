@@ -3,7 +3,7 @@
 use document::names;
 use document::trace::{Outcome, TraceDocument};
 use report::PageFigure;
-use report::figures::{Division, Layer, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Division, Layer, PanelRow, Panels, Pen, Stack};
 use report::number::{fixed, significant};
 use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
 
@@ -122,8 +122,8 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
         Layer::marks(line.name.as_str(), look, points).joined(Pen { dash, ..Pen::new(colour) })
     };
     let layers = lines.iter().enumerate().map(layer).collect();
-    let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(Ruler::decimal("probability"), 0.32) };
-    let x = Ruler::new("prior odds of every effect, times", Division::Factors);
+    let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32) };
+    let x = AxisSpec::new("prior odds of every effect, times", Division::Factors);
     let [least, most] = [least, most].map(|factor| significant(factor, 1));
     let caption = format!(
         "Probability of every effect with the prior odds of all of them together {least} to {most} times the usual; solid: \

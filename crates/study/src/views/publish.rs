@@ -17,7 +17,7 @@ use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
 use super::{blind_spots_table, coverage_table, curve_tables, outcomes, tables, tracing_table};
 use crate::documents::{self, answers::StudyAnswer};
-use crate::options::{Common, FigureChoice, Format};
+use crate::options::{CommonOptions, FigureChoice, Format};
 use crate::screen;
 
 /// Writes the tables, the figures, `report.md` and `report.html` to a folder, and prints the tables.
@@ -26,10 +26,10 @@ pub fn publish(
     folder: &ResultFolder,
     theme: &Theme,
     figures: FigureChoice,
-    common: &Common,
+    common: &CommonOptions,
 ) -> Result<(), Failure> {
     let design = &stored.design;
-    let summary = put(stored, folder, theme, figures)?;
+    let summary = write_files(stored, folder, theme, figures)?;
     match common.format {
         _ if common.is_silent() => Ok(()),
         Format::Text => {
@@ -37,17 +37,17 @@ pub fn publish(
                 true => record_study::on_screen(stored, &summary),
                 false => on_screen(stored, &summary),
             };
-            screen::say(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
+            screen::print_lines(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
         }
         // Another program reads the table: standard output has no other text.
-        Format::Csv => screen::say(table(&summary, design).to_csv().trim_end()),
-        Format::Json => screen::say_document(&document(stored, &summary, folder)?),
+        Format::Csv => screen::print_lines(table(&summary, design).to_csv().trim_end()),
+        Format::Json => screen::print_unescaped(&document(stored, &summary, folder)?),
         format => {
             let brief = match design.is_measured() {
                 true => record_study::brief(&summary.records, design),
                 false => tables::summary_in_brief(&summary, design),
             };
-            screen::say(format.render(&brief).trim_end())
+            screen::print_lines(format.render(&brief).trim_end())
         }
     }
 }
@@ -71,7 +71,7 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
 }
 
 /// Writes the tables, the figures, `report.md` and `report.html` to a folder; returns the data of the page.
-pub fn put(
+pub fn write_files(
     stored: &StoredStudy,
     folder: &ResultFolder,
     theme: &Theme,
@@ -79,10 +79,10 @@ pub fn put(
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
     if design.is_measured() {
-        return record_study::put(stored, folder, theme, figures);
+        return record_study::write_files(stored, folder, theme, figures);
     }
     let mut tally = Tally::new(design);
-    stored.rows(|row| {
+    stored.for_each_row(|row| {
         tally.add(&row);
         Ok(())
     })?;
@@ -98,7 +98,7 @@ pub fn put(
         })?;
         folder.write(
             "reliability.csv",
-            tracing_table::reliability(&study_figures::one_trace(design, &summary)).to_csv(),
+            tracing_table::reliability(&study_figures::highlighted_trace(design, &summary)).to_csv(),
         )?;
         if let Some(outcomes) = outcomes::table(design, &summary) {
             folder.write("outcomes.csv", outcomes.to_csv())?;
@@ -167,5 +167,5 @@ fn write_csv<T: Sync>(
         let texts: Vec<String> = pieces.par_chunks(CHUNK_LINES).map(|piece| table(piece).to_csv()).collect();
         texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", &path)?;
     }
-    file.put()
+    file.persist()
 }

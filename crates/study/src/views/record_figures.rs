@@ -3,7 +3,7 @@
 
 use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
-use report::figures::{Division, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Division, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
 use report::number::significant;
 use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
@@ -29,7 +29,7 @@ const OPACITY: f64 = 0.2;
 
 /// Panel of a rudder.
 pub fn rudder(name: &str, curve: PlotCurve, height: f64) -> (PanelRow, Vec<Layer>) {
-    (PanelRow::zeroed(Ruler::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
+    (PanelRow::zeroed(AxisSpec::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
 }
 
 /// Layers of two panels: the heading of a record with its models, and their residuals.
@@ -58,9 +58,9 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
 /// Heading with models, residuals and rudder over one time axis.
 pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
     let [upper, middle] = heading_and_residual(heading, models);
-    let residual = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.14);
+    let residual = PanelRow::zeroed(AxisSpec::new("residual [°]", Division::Angle), 0.14);
     let rows = vec![
-        (PanelRow::new(Ruler::heading(), 0.28), upper),
+        (PanelRow::new(AxisSpec::heading(), 0.28), upper),
         (residual, middle),
         rudder("recorded rudder", rudder_deg, 0.13),
     ];
@@ -114,7 +114,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     }
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    let stack = Stack::over(Ruler::rudder(), vec![(PanelRow::zeroed(Ruler::yaw_rate(), 0.42), layers)]);
+    let stack = Stack::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
     Panels { note, cut, ..Panels::of(Stack { zero: true, ..stack }) }
 }
 

@@ -13,7 +13,7 @@ use campaign::statistics::{MIN_SUMMARISED, Statistic, distinct};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
-use report::figures::{Division, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, Ruler};
+use report::figures::{AxisSpec, Division, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn};
 use report::markdown::text;
 use report::number::{self, MISSING, significant};
 use report::palette::Look;
@@ -45,10 +45,13 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     let head = head.texts(["named"]);
     let mut table = Table::new(head);
     for line in lines {
-        let mut cells = tables::place(design, line.cell, line.method);
+        let mut cells = tables::row_labels(design, line.cell, line.method);
         cells.push(format!("{}/{}", line.failed, line.fits));
         for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
-            cells.push(figure.map_or_else(|| MISSING.into(), |figure| number::supported(figure.value, figure.ci95)));
+            cells.push(
+                figure
+                    .map_or_else(|| MISSING.into(), |figure| number::with_supported_digits(figure.value, figure.ci95)),
+            );
             cells.push(number::interval(figure.and_then(|figure| figure.ci95)));
         }
         let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect(id)));
@@ -66,10 +69,10 @@ pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     }
     let mut table = Table::new(head.texts(["named"]));
     for line in lines {
-        let mut cells = tables::place(design, line.cell, line.method);
+        let mut cells = tables::row_labels(design, line.cell, line.method);
         cells.extend([line.fits.to_string(), line.failed.to_string()]);
         for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
-            let ends = Statistic::flat(figure);
+            let ends = Statistic::value_and_ends(figure);
             cells.extend(ends.map(|value| value.map_or_else(String::new, |value| significant(value, 6))));
         }
         cells.push(line.named.iter().map(|(id, count)| format!("{id}={count}")).collect::<Vec<_>>().join("+"));
@@ -87,7 +90,7 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
     for row in rows {
         let cell = &design.cells[row.cell as usize];
         let Some(record) = cell.records.get(row.replicate as usize) else { continue };
-        let mut cells = tables::place(design, row.cell as usize, row.method);
+        let mut cells = tables::row_labels(design, row.cell as usize, row.method);
         cells.extend([record.fitted.clone(), record.judge.clone().unwrap_or_default()]);
         cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
         let traced = row.traced.as_ref();
@@ -115,7 +118,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
         }
         for effect in named {
             for size in &effect.sizes {
-                let mut cells = tables::place(design, row.cell as usize, row.method);
+                let mut cells = tables::row_labels(design, row.cell as usize, row.method);
                 cells.extend([record.fitted.clone(), effect.id.to_string(), size.symbol.to_string()]);
                 cells
                     .extend([Some(size.value), size.sd].map(|end| end.map_or_else(String::new, |x| significant(x, 6))));
@@ -137,7 +140,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem {
                 place: RowPlace::Beside,
-                ..RowItem::new("", RowKind::Mark(pale, error, None)).softly()
+                ..RowItem::new("", RowKind::Mark(pale, error, None)).clipped_if_far()
             })
             .collect();
         let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
@@ -153,7 +156,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let names: Vec<String> = cells.iter().map(|&cell| design.cells[cell].labels.join(", ")).collect();
     let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
-        x: Ruler::new("heading error on records that were not fitted [°]", Division::Factors),
+        x: AxisSpec::new("heading error on records that were not fitted [°]", Division::Factors),
         rows: cells.iter().map(row).collect(),
         ..RowsColumn::default()
     };
@@ -249,7 +252,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
 /// Writes the tables, the figure and the page to a folder; returns the data of the page.
 ///
 /// Fails if rows are missing, or if a file cannot be written.
-pub fn put(
+pub fn write_files(
     stored: &StoredStudy,
     folder: &ResultFolder,
     theme: &Theme,
@@ -257,7 +260,7 @@ pub fn put(
 ) -> Result<Summary, Failure> {
     let design = &stored.design;
     let (mut rows, mut tally) = (Vec::new(), Tally::new(design));
-    stored.rows(|row| {
+    stored.for_each_row(|row| {
         tally.add(&row);
         rows.push(row);
         Ok(())

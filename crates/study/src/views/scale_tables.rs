@@ -10,7 +10,7 @@ use super::method_table::estimate;
 use crate::scales::scale_name;
 
 /// Sentence on the terms of a model that scale.
-pub fn sentence(model: &ComparedModel) -> String {
+pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
     let symbols_of = |verdict: Scaling| -> Vec<&str> {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
@@ -82,7 +82,7 @@ mod tests {
             term(["δ_r", "deg"], joint, vec![quantity(1.0, 0.5), None]),
         ];
         let model = ComparedModel { model: "traced".into(), terms };
-        assert_eq!(sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r is undecided");
+        assert_eq!(scaling_terms_sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r is undecided");
         let groups = [
             (Particulars { length: 7.0, speed: 1.18 }, vec![0, 2]),
             (Particulars { length: 320.0, speed: 7.97 }, vec![1]),

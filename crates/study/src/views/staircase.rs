@@ -3,7 +3,7 @@
 
 use document::names;
 use document::trace::{StairEntry, TraceDocument};
-use report::figures::{Division, Layer, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
+use report::figures::{AxisSpec, Division, Layer, LayeredPanel, PanelRow, Panels, Pen, Stack};
 use report::number::significant;
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
@@ -46,8 +46,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("{name} explains"), carried, &CurveOrigin::Record));
         panels.push(panel(format!("error {}°", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
-    let row = PanelRow::zeroed(Ruler::new("heading [°]", Division::Angle), 0.085);
-    let stack = Stack { unbroken: true, ..Stack::multiples(3, Ruler::time(), row, panels) };
+    let row = PanelRow::zeroed(AxisSpec::new("heading [°]", Division::Angle), 0.085);
+    let stack = Stack { unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
     let plot = Panels::of(stack);
     let caption = format!(
         "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \

@@ -44,7 +44,7 @@ struct StudiesPage {
 }
 
 /// Checks that all folders are those of studies, and that the page replaces no file of another program.
-pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
+pub fn check_folders(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
         let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
         return Err(Failure::about(folder, format!("{problem}; give folders of studies, or this folder alone")));
@@ -59,9 +59,9 @@ pub fn is_possible(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
 
 /// Writes the page over studies into a folder; returns its path.
 ///
-/// Fails if [`is_possible`] does, if a figure named by a scenario is missing, or if the page cannot be written.
+/// Fails if [`check_folders`] does, if a figure named by a scenario is missing, or if the page cannot be written.
 pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Failure> {
-    is_possible(studies, target.path())?;
+    check_folders(studies, target.path())?;
     let place = target.path().canonicalize().on("find", target.path())?;
     let sections = studies.iter().map(|folder| section(folder, &place)).collect::<Result<Vec<_>, _>>()?;
     let page = Page::new(StudiesPage { sections }.render(), PlacedFigures::<()>::default());
@@ -76,7 +76,9 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
     let words = manifest.prose();
     let unfit = |stem: &str, unfit| Failure::about(&path, format!("`output.figure` is {}; {unfit}", name::shown(stem)));
     let figure = match &words.output.figure {
-        Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
+        Some(stem) => {
+            Some(name::check_file_name(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?)
+        }
         None => None,
     };
     let whole = folder.canonicalize().on("find", folder)?;

@@ -16,14 +16,14 @@ use super::outcomes;
 use super::page_files::KEY_FIGURE;
 use super::pooled_charts;
 use super::trace_charts as traces;
-use super::tracing_table::has_several;
+use super::tracing_table::has_several_traces;
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
 
 use crate::options::FigureChoice;
-use crate::records::names;
+use crate::records::unique_names;
 use crate::screen;
 
 /// Place of a figure in the page.
@@ -57,7 +57,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
     }
     let (output, mut figures) = (&design.prose.output, all());
     // Two titles may give the same slug.
-    let stems = names(figures.iter().map(|(_, figure)| &figure.stem));
+    let stems = unique_names(figures.iter().map(|(_, figure)| &figure.stem));
     figures.iter_mut().zip(&stems).for_each(|((_, figure), stem)| figure.stem.clone_from(stem));
     let warn = |key: &str, name: &str| {
         let there =
@@ -107,7 +107,7 @@ fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
 const MAX_TRACED_CELLS: usize = 24;
 
 /// Summaries of one of several traces: the first that the scenario highlights, else the first.
-pub fn one_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
+pub fn highlighted_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary> {
     let about = &design.prose.output.highlight.series;
     let is_about = |line: &&TraceSummary| about.contains(&design.methods[line.method].label);
     let method = summary.tracing.iter().find(is_about).or(summary.tracing.first()).map_or(0, |line| line.method);
@@ -134,9 +134,9 @@ fn stem_of(stem: &str, part: &str) -> String {
 fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     // Of several traces only one is plotted; the others are in the tables.
-    let lines = one_trace(design, summary);
+    let lines = highlighted_trace(design, summary);
     let method = lines.first().map_or(0, |line| line.method);
-    let whose = if has_several(design) { here(&design.methods[method].label) } else { String::new() };
+    let whose = if has_several_traces(design) { here(&design.methods[method].label) } else { String::new() };
     let are_hulls = !lines.is_empty() && lines.iter().all(TraceSummary::is_hull);
     let confusion = |(number, (group, map)): (usize, (String, _))| {
         let rows = match are_hulls {
@@ -162,14 +162,14 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
                        intervals; of many kinds of trial those in a \
                        third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
                        threshold of the usual rule, a probability of 0.95, under white noise.";
-        let [named, trials] = traces::single(&lines);
+        let [named, trials] = traces::single_effect_counts(&lines);
         let finding = format!("The one missing effect is named in {named} of {trials} trials");
         PageFigure::new("power", finding, format!("{caption}{whose}"), data)
     });
     let reliability = traces::reliability(&lines).map(|data| {
         let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
                        effect on the list counts once in every trial of a ship whose effects are known.";
-        PageFigure::new("reliability", traces::kept(&lines), format!("{caption}{whose}"), data)
+        PageFigure::new("reliability", traces::kept_effects_finding(&lines), format!("{caption}{whose}"), data)
     });
     let rules = traces::rules(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \
@@ -273,7 +273,7 @@ fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Ite
         (
             "replays",
             "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
-            Some((left(&showcase.replays), showcase.replays.panels().into())),
+            Some((replay_error_finding(&showcase.replays), showcase.replays.panels().into())),
         ),
         (
             "intervals",
@@ -304,7 +304,7 @@ fn accelerations(data: &DerivativeCurves) -> String {
 }
 
 /// Finding: range of the replay errors.
-pub fn left(data: &Replays) -> String {
+pub fn replay_error_finding(data: &Replays) -> String {
     let named_rms = |replay: &ReplayCurves| Some((replay.origin.label().to_owned(), replay.rms_deg?));
     capital(&findings::range("replay error, rms [°]", data.replays.iter().filter_map(named_rms)))
 }

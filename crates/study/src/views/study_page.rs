@@ -30,7 +30,10 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
         text += &tables::overall(summary, design).to_text();
     }
     if !summary.tracing.is_empty() {
-        text += &format!("\neffects named by the traces\n{}", tracing_table::kinds(&summary.tracing, design).to_text());
+        text += &format!(
+            "\neffects named by the traces\n{}",
+            tracing_table::by_ship_kind(&summary.tracing, design).to_text()
+        );
     }
     if !summary.predictions.is_empty() {
         text += &format!(
@@ -97,7 +100,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
     let named = || {
         let spots = blind_spots(tracing, design);
         NamedEffects {
-            kinds: tracing_table::kinds(tracing, design),
+            kinds: tracing_table::by_ship_kind(tracing, design),
             blind_spots: (!spots.is_empty()).then(|| blind_spots_table::table(&spots, design, names::effect)),
             outcomes: outcomes::table(design, summary),
             cells: tracing_table::table(tracing, summary, design, false),

@@ -39,7 +39,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     let mut table = Table::new(head.numbers(["evaluations"]));
     for line in lines {
         let record = &line.record;
-        let mut cells = place(design, line.cell, line.method);
+        let mut cells = row_labels(design, line.cell, line.method);
         cells.extend([record.trials.to_string(), record.failed().to_string()]);
         for errors in [&record.k, &record.t, &record.k_over_t] {
             cells.extend(ERRORS.iter().flat_map(|(.., get)| all_digits(get(errors))));
@@ -86,7 +86,7 @@ pub fn head_of_cells(design: &Design) -> TableHead {
 }
 
 /// Labels of a cell and a method, in the columns of [`head`].
-pub fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
+pub fn row_labels(design: &Design, cell: usize, method: usize) -> Vec<String> {
     let labels = design.cells[cell].labels.iter().cloned();
     labels.chain([design.methods[method].label.clone()]).collect()
 }
@@ -99,7 +99,7 @@ fn with_ends(head: TableHead, name: &str, unit: &str) -> TableHead {
 
 /// Statistic and the ends of its interval with all digits.
 fn all_digits(figure: Option<Statistic>) -> [String; 3] {
-    Statistic::flat(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
+    Statistic::value_and_ends(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
 }
 
 /// Statistics of methods in the width of a screen or a page: failures, median and rms errors with interval, coverage,
@@ -114,7 +114,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     }
     let mut table = Table::new(head.numbers(validated.then_some("validation")).unit("deg"));
     for line in &summary.methods {
-        let mut cells = place(design, line.cell, line.method);
+        let mut cells = row_labels(design, line.cell, line.method);
         cells.extend(brief(&line.record));
         cells.extend(validated.then(|| supported(line.record.validation_rmse_deg)));
         table.push(cells);
@@ -203,7 +203,7 @@ pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     }
     let mut table = Table::new(head);
     for line in &summary.pairs {
-        let mut cells = place(design, line.cell, line.method);
+        let mut cells = row_labels(design, line.cell, line.method);
         cells.push(line.trials.to_string());
         for comparison in [&line.k, &line.t] {
             for figure in [comparison.rms_ratio, comparison.closer.map(|share| share.times(100.0))] {
@@ -230,7 +230,7 @@ pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> 
     }
     let mut table = Table::new(head);
     for line in lines {
-        let mut cells = place(design, line.cell, line.method);
+        let mut cells = row_labels(design, line.cell, line.method);
         cells.extend([reference.label.clone(), line.trials.to_string()]);
         for comparison in [&line.k, &line.t] {
             cells.extend(all_digits(comparison.rms_difference));
@@ -247,7 +247,7 @@ fn fixed(figure: Option<Statistic>, decimals: usize) -> String {
 }
 
 fn supported(figure: Option<Statistic>) -> String {
-    figure.map_or_else(|| MISSING.to_owned(), |figure| number::supported(figure.value, figure.ci95))
+    figure.map_or_else(|| MISSING.to_owned(), |figure| number::with_supported_digits(figure.value, figure.ci95))
 }
 
 fn interval(figure: Option<Statistic>) -> String {

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use campaign::scenario::{HULL, TRACE};
 use report::figures::{
-    CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler,
-    Shades, Stack,
+    AxisSpec, CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowsColumn, Shades, Stack,
 };
 use report::number::significant;
 use report::palette::{
@@ -16,8 +16,8 @@ use report::{CurveOrigin, PlotCurve};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::statistics::{Statistic, distinct, grouped, share};
-use campaign::summary::{CALIBRATION, CalibrationBin, TraceSummary};
+use campaign::statistics::{Statistic, distinct, grouped, wilson_share};
+use campaign::summary::{CALIBRATION_BIN_EDGES, CalibrationBin, TraceSummary};
 
 /// Name of the row of ships without a missing effect, and of the column of trials in which no effect was named.
 const NOTHING: &str = "nothing";
@@ -63,7 +63,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
             id => line.named.get(id).copied().unwrap_or(0),
         };
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
-        let named = share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
+        let named = wilson_share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
         let is_right = lines[0].missing.iter().any(|lack| lack == id) || (id == NOTHING && lines[0].missing.is_empty());
         let of_alias: u64 = lines.iter().filter_map(|line| line.aliases.get(id)).sum();
         let is_alias = 2 * of_alias > lines.iter().map(count).sum();
@@ -100,7 +100,8 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     }
     let share_of = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
         let lines = || lines.iter().filter(|line| !lacks || !line.missing.is_empty());
-        share(lines().map(|line| count(line)).sum(), lines().map(|line| line.trials).sum()).map(|all| all.times(100.0))
+        wilson_share(lines().map(|line| count(line)).sum(), lines().map(|line| line.trials).sum())
+            .map(|all| all.times(100.0))
     };
     let of_rule = |(method, lines): &(usize, Vec<&TraceSummary>)| {
         let (wrong, exact) = (share_of(lines, |line| line.wrong, false)?, share_of(lines, |line| line.exact, true)?);
@@ -138,12 +139,12 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         note += &format!(" The rules {} give the same.", kinds.join(", "));
     }
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
-        let share = share(*wrong, *trials)?.times(100.0);
+        let share = wilson_share(*wrong, *trials)?.times(100.0);
         let text = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
         Some(vec![RowItem { text, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
     };
     let column = RowsColumn {
-        x: Ruler::decimal("trials with a false name [%]"),
+        x: AxisSpec::decimal("trials with a false name [%]"),
         rows: rules.iter().map(row).collect::<Option<_>>()?,
         zero: true,
         room: 0.47,
@@ -175,7 +176,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
             RowItem { number, ..RowItem::below(*kind, look, share.value, share.ci95) }
         };
         let row = |variant: &&str| rules.iter().zip(&parts).filter(|(_, (_, of))| of == variant).map(item).collect();
-        RowsColumn { x: Ruler::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
+        RowsColumn { x: AxisSpec::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
     };
     NamedRows {
         of: String::from("named if its probability is"),
@@ -208,7 +209,7 @@ type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 
 /// Measured shares by name, with theoretical curves.
 fn shares(
-    x: Ruler,
+    x: AxisSpec,
     y_title: &str,
     series: Vec<(String, Vec<MeasuredShare>)>,
     theory: Vec<(String, PlotCurve)>,
@@ -225,7 +226,7 @@ fn shares(
         Layer::marks(name, Look { colour, marker, dash: SOLID, hollow: false }, points)
     };
     let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();
-    let row = PanelRow::new(Ruler::new(y_title, Division::Percent), 0.42);
+    let row = PanelRow::new(AxisSpec::new(y_title, Division::Percent), 0.42);
     Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
@@ -253,7 +254,8 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         (_, true) => String::from("a moment that depends on time"),
     };
     let point = |lines: &[&TraceSummary]| {
-        let share = share(lines.iter().map(|line| line.complete).sum(), lines.iter().map(|line| line.trials).sum())?;
+        let share =
+            wilson_share(lines.iter().map(|line| line.complete).sum(), lines.iter().map(|line| line.trials).sum())?;
         let middle = (lines.iter().map(|line| expected(line).ln()).sum::<f64>() / lines.len() as f64).exp();
         let share = share.times(100.0);
         Some((middle, share.value, share.ci95))
@@ -276,24 +278,27 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
-    let x = Ruler::new("size of the effect: expected 2 ln Λ", Division::Factors);
+    let x = AxisSpec::new("size of the effect: expected 2 ln Λ", Division::Factors);
     Some(shares(x, "trials in which it is named [%]", series, theory.into()))
 }
 
 /// Number of trials with one missing effect in which it was named, and of all such trials.
-pub fn single(lines: &[TraceSummary]) -> [u64; 2] {
+pub fn single_effect_counts(lines: &[TraceSummary]) -> [u64; 2] {
     let single = || lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull());
     [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
 }
 
 /// Finding: how many of the effects with the highest probabilities were present.
-pub fn kept(lines: &[TraceSummary]) -> String {
+pub fn kept_effects_finding(lines: &[TraceSummary]) -> String {
     let ranges = calibration(lines);
     let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {
         return String::from("No effect has a probability");
     };
     let CalibrationBin { present, effects, .. } = surest;
-    format!("Of {effects} effects with a probability above {} %, {present} were there", 100.0 * CALIBRATION[place])
+    format!(
+        "Of {effects} effects with a probability above {} %, {present} were there",
+        100.0 * CALIBRATION_BIN_EDGES[place]
+    )
 }
 
 /// Minimum number of effects of a share that is plotted as reliable.
@@ -303,7 +308,7 @@ const MANY: u64 = 30;
 /// mean probability; `None` if no effect was present.
 pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let point = |range: &CalibrationBin| {
-        let share = share(range.present, range.effects)?.times(100.0);
+        let share = wilson_share(range.present, range.effects)?.times(100.0);
         Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
     };
     let ranges = calibration(lines);
@@ -312,14 +317,14 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
         [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
     let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
-    let x = Ruler::new("mean probability given [%]", Division::Percent);
+    let x = AxisSpec::new("mean probability given [%]", Division::Percent);
     let theory = vec![(String::from("calibrated"), diagonal)];
     ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
 /// Bins of effects by their probability, over all cells.
 pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
-    let mut all = vec![CalibrationBin::default(); CALIBRATION.len() - 1];
+    let mut all = vec![CalibrationBin::default(); CALIBRATION_BIN_EDGES.len() - 1];
     for line in lines {
         all.iter_mut().zip(line.calibration).for_each(|(all, bin)| *all += bin);
     }

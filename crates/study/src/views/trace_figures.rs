@@ -1,7 +1,7 @@
 //! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
 //! held-out records, the evidence, the innovations, the moment that the base lacks, and plots of the residuals.
 
-use campaign::curves::{curve, degrees};
+use campaign::curves::{angle_curve_deg, degrees};
 use document::names;
 use document::trace::{
     BeforeAfter, Document, EffectEntry, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument,
@@ -9,7 +9,8 @@ use document::trace::{
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 use identify::replay::Replay;
 use report::figures::{
-    AxisLine, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Ruler, Stack,
+    AxisLine, AxisSpec, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn,
+    Stack,
 };
 use report::number::{MISSING, fixed, significant};
 use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
@@ -71,7 +72,7 @@ pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
 }
 
 /// Figures of the residuals of fitted records; held-out ones serve for validation only.
-pub fn further(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
+pub fn residual_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let mut figures = Vec::new();
     for (number, (RecordEntry { name, held_out, .. }, record)) in
@@ -104,15 +105,15 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
     let about = |band: &[f64], middle: &dyn Fn(usize) -> f64| {
         [-1.0, 1.0].map(|side| {
             let end = |(row, half): (usize, &f64)| middle(row) + side * half;
-            curve(&after.time, &band.iter().enumerate().map(end).collect::<Vec<f64>>())
+            angle_curve_deg(&after.time, &band.iter().enumerate().map(end).collect::<Vec<f64>>())
         })
     };
     let band = record.band.as_ref().map(|half| [about(half, &|row| after.heading[row]), about(half, &|_| 0.0)]);
     let model = |(number, (origin, replay)): (usize, (CurveOrigin, &Replay))| ModelOverTime {
         band: band.clone().filter(|_| origin == CurveOrigin::After),
         origin,
-        heading: curve(&replay.time, &replay.heading),
-        residual: curve(&replay.time, &replay.residual),
+        heading: angle_curve_deg(&replay.time, &replay.heading),
+        residual: angle_curve_deg(&replay.time, &replay.residual),
         rms_deg: rms.map(|rms| rms[number]),
     };
     models(record).into_iter().enumerate().map(model).collect()
@@ -122,7 +123,8 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
 fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
     let trial = &record.trial;
     let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
-    let (heading, rudder) = (curve(trial.time(), trial.heading()), curve(trial.time(), trial.rudder()));
+    let (heading, rudder) =
+        (angle_curve_deg(trial.time(), trial.heading()), angle_curve_deg(trial.time(), trial.rudder()));
     over_time(heading, rudder, models_over_time(record, Some(rms)))
 }
 
@@ -192,16 +194,16 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
         let (name, look) = outcome_look(outcome);
         vec![RowItem { text: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
     };
-    let column = |x: Ruler, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
+    let column = |x: AxisSpec, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, (value, text), _, outcome)| bar(*value, text.clone(), *outcome));
     let change = rows.iter().map(|(_, _, bic, outcome)| {
         bar(bic.unwrap_or(0.0), bic.map_or_else(|| MISSING.to_owned(), |bic| significant(bic, 3)), *outcome)
     });
     let has_group = trace.effects.iter().any(|effect| !effect.aliases.is_empty());
-    let cut = Ruler::decimal("ΔBIC (negative: it helps)").within(MAX_BAR_MEDIANS, Some(0.0));
+    let cut = AxisSpec::decimal("ΔBIC (negative: it helps)").within(MAX_BAR_MEDIANS, Some(0.0));
     let room = if has_group { 0.5 } else { 0.25 };
     let columns =
-        vec![column(Ruler::decimal("probability"), room, probability.collect()), column(cut, 0.3, change.collect())];
+        vec![column(AxisSpec::decimal("probability"), room, probability.collect()), column(cut, 0.3, change.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { names, columns, ..NamedRows::default() };
     let group = if has_group { " In brackets: probability of it or an indistinguishable effect." } else { "" };
@@ -215,7 +217,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
 fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
-    let stack = |x: Ruler, y: Ruler, joined: bool, curve_of: &dyn Fn(&Replay) -> PlotCurve| {
+    let stack = |x: AxisSpec, y: AxisSpec, joined: bool, curve_of: &dyn Fn(&Replay) -> PlotCurve| {
         let layer = |(origin, replay): (CurveOrigin, &Replay)| {
             let colour = origin.look().colour;
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
@@ -226,12 +228,12 @@ fn residual(record: &TracedRecord) -> Panels {
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
         let scatter = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
-        stack(Ruler::decimal(x_title), Ruler::decimal("residual [°]"), false, &scatter)
+        stack(AxisSpec::decimal(x_title), AxisSpec::decimal("residual [°]"), false, &scatter)
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
-    let frequency = Ruler::new("frequency [Hz]", Division::Factors);
-    let density = Ruler::new("power [°²/Hz]", Division::Factors);
+    let frequency = AxisSpec::new("frequency [Hz]", Division::Factors);
+    let density = AxisSpec::new("power [°²/Hz]", Division::Factors);
     let spectrum = stack(frequency, density, true, &|replay| power_spectrum(&series(replay)));
     let mark = period.map(|period| AxisLine { at: period.recip(), label: String::from("period") });
     let stacks = vec![

@@ -17,7 +17,7 @@ use trial::ZigZag;
 use super::overshoots::ReplayedOvershoot;
 use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
-use super::trace_hero;
+use super::trace_key_figure;
 use super::trace_tables as tables;
 use super::{first_page, held_out, horizon, indices, overshoots, prior_odds, staircase};
 use crate::documents::curves::TraceCurves;
@@ -35,10 +35,10 @@ pub fn around_table(document: &TraceDocument) -> [String; 2] {
     if !trace.effects.is_empty() {
         before += &format!("\n{}", tables::effects(document).to_text());
     }
-    before += &format!("\n{}", indices::of_trace(document).to_text());
+    before += &format!("\n{}", indices::trace_table(document).to_text());
     let mut behind = String::new();
     if let Some(all) = &document.single_records {
-        behind += &format!("\n{}", indices::of_records(all));
+        behind += &format!("\n{}", indices::range_sentence(all));
     }
     for typed in formulas(document, "") {
         behind += &format!("\n{typed}");
@@ -156,7 +156,7 @@ struct TracePage<'a> {
 /// Content of `report.md` with its figures; `turns` are the steady turns of the model. The finding, its figure and the
 /// errors on held-out records come first; their basis is folded.
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
-    let (prior, overshoots) = (&document.trace.prior, overshoots::all(document, curves));
+    let (prior, overshoots) = (&document.trace.prior, overshoots::replayed_overshoots(document, curves));
     let fitted = document.records.iter().filter(|record| !record.held_out);
     let named = fitted.map(|record| (names::record(&record.name), &record.trial_particulars));
     let page = TracePage {
@@ -188,7 +188,7 @@ fn placed(
 ) -> PlacedFigures<&'static str> {
     let mut placed = PlacedFigures::default();
     let mut records = figures::records(document, curves).into_iter();
-    let hero = trace_hero::figure(document, curves);
+    let hero = trace_key_figure::figure(document, curves);
     match staircase::figure(document, curves) {
         Some(stairs) => placed.put("first", [stairs]),
         None if hero.is_none() => placed.put("first", records.next()),
@@ -196,9 +196,9 @@ fn placed(
     }
     placed.put("overshoots", overshoots::figure(document, overshoots));
     placed.put("held out", hero);
-    placed.put("held out", held_out::residuals(document, curves));
+    placed.put("held out", held_out::residual_figure(document, curves));
     placed.put("held out", horizon::figure(document));
-    placed.put("records", held_out::errors(document).into_iter().chain(records));
+    placed.put("records", held_out::error_figure(document).into_iter().chain(records));
     placed.put("evidence", [figures::evidence(document)]);
     placed.put("prior odds", prior_odds::figure(document));
     placed.put("innovations", figures::innovations(document, curves));
@@ -209,7 +209,7 @@ fn placed(
                        range of the records.";
         PageFigure::new("steady", stability(curves), caption, steady_turns(curves, *seen))
     }));
-    placed.put("further", figures::further(document, curves));
+    placed.put("further", figures::residual_figures(document, curves));
     placed
 }
 
@@ -334,7 +334,7 @@ mod tests {
         let parameter = |symbol: &str, value, at_bound| ParameterEntry {
             key: String::new(),
             symbol: symbol.into(),
-            quantity: Quantity::bare(value),
+            quantity: Quantity::without_uncertainty(value),
             unit: "1/s".into(),
             prime: None,
             only: None,

@@ -10,8 +10,8 @@ use super::tables::head_of_cells;
 use super::trace_charts::calibration;
 use campaign::design::Design;
 use campaign::scenario::TRACE;
-use campaign::statistics::{Statistic, share};
-use campaign::summary::{CALIBRATION, MIN_CLEAR_MARGIN, Performance, Summary, TraceSummary};
+use campaign::statistics::{Statistic, wilson_share};
+use campaign::summary::{CALIBRATION_BIN_EDGES, MIN_CLEAR_MARGIN, Performance, Summary, TraceSummary};
 use trace::Verdict;
 
 /// Table of every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -20,7 +20,7 @@ use trace::Verdict;
 /// itself and on the validation manoeuvre. Coverages of the bands are means over the trials: of the headings of the
 /// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
-    let several = has_several(design);
+    let several = has_several_traces(design);
     let name = |id: &String| if all_digits { id.clone() } else { names::effect(id) };
     let ends: &[&str] = if all_digits { &["", " low", " high"] } else { &[""] };
     let shares = ["all named", "exact", "false names", "named where clear"];
@@ -40,12 +40,12 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
             line.missing.iter().map(name).collect::<Vec<_>>().join(" + ")
         });
         cells.push(line.trials.to_string());
-        for figure in [line.complete_share(), line.exact_share(), line.wrong_share(), line.clear_share()] {
+        for figure in [line.complete_share(), line.exactly_named_share(), line.wrong_share(), line.clear_share()] {
             cells.extend(percent(figure, all_digits));
         }
         cells.push(line.clear[0].to_string());
         cells.extend(line.verdicts.map(|count| count.to_string()));
-        let records = [summary.reference, line.method].map(|method| summary.record(line.cell, method));
+        let records = [summary.reference, line.method].map(|method| summary.performance(line.cell, method));
         let three = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 3);
         for error in [|row: &Performance| row.heading_rmse_deg, |row: &Performance| row.validation_rmse_deg] {
             cells.extend(records.map(|record| three(record.and_then(error).map(|figure| figure.value))));
@@ -68,12 +68,14 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
 pub fn reliability(lines: &[TraceSummary]) -> Table {
     let head = TableHead::default().counts(["probability from", "to"]).unit("%").counts(["effects"]);
     let mut table = Table::new(head.numbers(["mean probability", "present", "low", "high"]).unit("%"));
-    for (range, ends) in calibration(lines).iter().zip(CALIBRATION.windows(2)) {
+    for (range, ends) in calibration(lines).iter().zip(CALIBRATION_BIN_EDGES.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
-        let present = share(range.present, range.effects);
+        let present = wilson_share(range.present, range.effects);
         let mut cells: Vec<String> = ends.iter().map(|end| number::fixed(100.0 * end, 0)).collect();
         cells.extend([range.effects.to_string(), number::optional(mean, 2)]);
-        cells.extend(Statistic::flat(present).map(|share| number::optional(share.map(|share| 100.0 * share), 2)));
+        cells.extend(
+            Statistic::value_and_ends(present).map(|share| number::optional(share.map(|share| 100.0 * share), 2)),
+        );
         table.push(cells);
     }
     table
@@ -82,17 +84,17 @@ pub fn reliability(lines: &[TraceSummary]) -> Table {
 fn percent(figure: Option<Statistic>, all_digits: bool) -> Vec<String> {
     let (count, digits) = if all_digits { (3, 3) } else { (1, 1) };
     let value = |x: Option<f64>| number::optional(x.map(|x| 100.0 * x), digits);
-    Statistic::flat(figure).into_iter().take(count).map(value).collect()
+    Statistic::value_and_ends(figure).into_iter().take(count).map(value).collect()
 }
 
 /// `true` if more than one method of a study is a trace.
-pub fn has_several(design: &Design) -> bool {
+pub fn has_several_traces(design: &Design) -> bool {
     design.methods.iter().filter(|method| method.id == TRACE).count() > 1
 }
 
 /// Table of all cells of one kind together, one row per trace: no missing effect, one effect, several, a hull.
-pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
-    let several = has_several(design);
+pub fn by_ship_kind(lines: &[TraceSummary], design: &Design) -> Table {
+    let several = has_several_traces(design);
     let head = TableHead::default().texts(several.then_some("method")).texts(["cells"]).counts(["number", "trials"]);
     let mut table = Table::new(head.texts(["all named", "exact", "false names", "named where clear"]).unit("%"));
     let kind = |line: &TraceSummary| match line.missing.len() {
@@ -127,7 +129,7 @@ pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
             part.len().to_string(),
             sum.trials.to_string(),
             cell(sum.complete_share()),
-            cell(sum.exact_share()),
+            cell(sum.exactly_named_share()),
             cell(sum.wrong_share()),
             cell(sum.clear_share()),
         ]));

@@ -17,11 +17,11 @@ use crate::scales::RescaledRecords;
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// A method with its label.
-pub type Named = (String, Box<dyn Identifier>);
+pub type LabelledMethod = (String, Box<dyn Identifier>);
 
 /// Estimates of every method at each scale alone and its joint estimate; `None` if all records have one scale.
 pub fn compared(
-    methods: &[Named],
+    methods: &[LabelledMethod],
     answers: &[(MethodEntry, Option<Estimate>)],
     together: &RescaledRecords,
 ) -> Option<ScalesEntry> {
@@ -32,7 +32,7 @@ pub fn compared(
     let estimates_by_scale = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
         trials.par_iter().map(|trials| method.identify(trials).ok()).collect()
     };
-    let compared = |((_, method), (entry, joint)): (&Named, &(MethodEntry, Option<Estimate>))| {
+    let compared = |((_, method), (entry, joint)): (&LabelledMethod, &(MethodEntry, Option<Estimate>))| {
         let terms = terms(joint.as_ref()?, &estimates_by_scale(method.as_ref()), first);
         Some(ComparedModel { model: entry.method.clone(), terms })
     };
@@ -61,7 +61,8 @@ fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> 
 
 /// Term of this symbol and unit: its joint value, its values at each scale, and whether it scales.
 pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Quantity>>) -> ComparedTerm {
-    let values: Vec<Quantity> = at_scales.iter().map(|value| value.unwrap_or(Quantity::bare(f64::NAN))).collect();
+    let values: Vec<Quantity> =
+        at_scales.iter().map(|value| value.unwrap_or(Quantity::without_uncertainty(f64::NAN))).collect();
     let (difference_sd, verdict) = compare_scales(&values);
     ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own: at_scales, difference_sd, verdict }
 }
@@ -69,7 +70,9 @@ pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Qu
 /// 1/T or K/T with its standard deviation.
 fn parameter(estimate: &Estimate, place: usize) -> Quantity {
     let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
-    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return Quantity::bare(value) };
+    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else {
+        return Quantity::without_uncertainty(value);
+    };
     let sd = covariance.matrix[(place, place)].max(0.0).sqrt();
     let reach = covariance.quantile95() * sd;
     Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }

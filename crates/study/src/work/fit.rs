@@ -20,18 +20,18 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Channel, Side, Trial, ZigZag, imo};
 
-use super::earlier::{self, EarlierModel};
-use super::every_scale::{self, Named, PREFERRED_METHODS};
-use super::loading::{AGAINST_FORM, speak_against_form};
+use super::earlier_trials::{self, EarlierModel};
+use super::every_scale::{self, LabelledMethod, PREFERRED_METHODS};
+use super::loading::{FORM_RULED_OUT, rule_out_form};
 use super::predicted_circle::PredictedCircle;
 use super::single_records::RecordedZigZags;
 use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
-use crate::records::{self, file_of, no_track, source_of};
+use crate::records::{self, file_of, missing_track_warning, source_of};
 use crate::scales::{self, RescaledRecords};
-use campaign::curves::{curve, replay_curves, zigzag_figure};
+use campaign::curves::{angle_curve_deg, replay_curves, zigzag_figure};
 use campaign::identified_ship::{self, RecordFacts};
 use campaign::statistics::grouped;
 
@@ -65,7 +65,7 @@ impl FitResult {
     /// Curves of the figures: records, replays, and 95 % regions of K and T.
     pub fn curves(&self) -> FitCurves {
         let RescaledRecords { trials, held_out, .. } = &self.together;
-        let stems = records::names(trials.iter().chain(held_out).map(Trial::name));
+        let stems = records::unique_names(trials.iter().chain(held_out).map(Trial::name));
         let records = trials.iter().chain(held_out).zip(stems).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
         let regions = self.answers.iter().filter_map(|(entry, estimate)| {
@@ -84,7 +84,7 @@ impl FitResult {
         let rejected = |channel: Channel| {
             let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
             let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
-            curve(&time, &values)
+            angle_curve_deg(&time, &values)
         };
         FitRecord {
             file: file_of(trial).0.to_owned(),
@@ -92,11 +92,11 @@ impl FitResult {
             validation,
             zigzag: zigzag.map(|zigzag| zigzag_figure(trial, &zigzag)),
             replays: Replays {
-                record: curve(trial.time(), trial.heading()),
+                record: angle_curve_deg(trial.time(), trial.heading()),
                 truth: None,
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
-            rudder: curve(trial.time(), trial.rudder()),
+            rudder: angle_curve_deg(trial.time(), trial.rudder()),
             circle: (!validation).then(|| MeasuredCircle::of(trial)?.track).flatten().map(from_above),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
             name,
@@ -111,14 +111,14 @@ impl FitResult {
 /// hull can be fitted: that is wrong input, not a result.
 pub fn fit(
     [records, validation]: [&[Trial]; 2],
-    methods: &[Named],
+    methods: &[LabelledMethod],
     priors: &[EarlierModel],
     quiet: bool,
     mut warnings: Warnings,
 ) -> Result<FitResult, Failure> {
-    let together = scales::together(records, validation)?;
+    let together = scales::to_common_scale(records, validation)?;
     let (trials, held_out) = (&together.trials[..], &together.held_out[..]);
-    warnings.extend(earlier::check(priors, trials)?);
+    warnings.extend(earlier_trials::check(priors, trials)?);
     let ship = scales::particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
@@ -138,9 +138,9 @@ pub fn fit(
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
-    let shown = RecordFacts::of(trials).with_motion(None, &earlier::hulls(priors));
-    warnings.extend(no_track(&shown).into_iter().chain(no_loading(trials, &shown)));
-    let earlier_trials = earlier::entry(priors, trials, &shown);
+    let shown = RecordFacts::of(trials).with_motion(None, &earlier_trials::hulls(priors));
+    warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
+    let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     warnings.extend(answers.iter().flat_map(answer_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
@@ -155,7 +155,7 @@ pub fn fit(
         ships: answers.iter().filter_map(ship_of).collect(),
         earlier_trials,
         scales: every_scale::compared(methods, &answers, &together),
-        scaling: together.sentence(),
+        scaling: together.scaling_sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
         amplitude: zigzags.mean_amplitude(),
@@ -236,8 +236,8 @@ fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<W
 /// Warning for a ship of known draught whose model cannot be converted to another loading.
 fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
-    let text = format!("{AGAINST_FORM}; `study predict --load` cannot take this ship to another loading");
-    (has_form && speak_against_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
+    let text = format!("{FORM_RULED_OUT}; `study predict --load` cannot take this ship to another loading");
+    (has_form && rule_out_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
 }
 
 /// Warning for a record whose first overshoot cannot be read.
@@ -250,7 +250,7 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
 /// that use random numbers get this seed.
 ///
 /// Fails if no method has such a name.
-pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failure> {
+pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
     let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
@@ -273,7 +273,7 @@ pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Named>, Failur
 
 /// Methods with an estimate and an interval, in order of preference: that of the verdict, then [`PREFERRED_METHODS`].
 fn preferred<'a>(
-    methods: &'a [Named],
+    methods: &'a [LabelledMethod],
     entries: &[MethodEntry],
     verdict: Option<&VerdictEntry>,
 ) -> Vec<&'a dyn Identifier> {

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use campaign::earlier::hulls_of;
+use campaign::earlier_trials::hulls_of;
 use campaign::failure::Failure;
 use document::identified_hull::IdentifiedHull;
 use document::{IdentifiedShip, WarningCode, WarningSource, Warnings};
@@ -18,12 +18,12 @@ use trial::{Sidecar, file};
 const FORM: &str = "mmg";
 
 /// Message if the records rule out a hull of this form.
-pub const AGAINST_FORM: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
+pub const FORM_RULED_OUT: &str = "a hull of the form mmg does not fit the records: its heading error is more than three \
     times that of another hull, or its \
                                 replay fails";
 
 /// `true` if records rule out a hull of this form: hulls were fitted, but none of this form.
-pub fn speak_against_form(hulls: &[IdentifiedHull]) -> bool {
+pub fn rule_out_form(hulls: &[IdentifiedHull]) -> bool {
     !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
 
@@ -43,7 +43,7 @@ impl DescribedLoading {
     /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
     /// Fails as a sidecar does, or if the file has no draught.
-    pub fn of_file(path: &Path) -> Result<Self, Failure> {
+    pub fn from_file(path: &Path) -> Result<Self, Failure> {
         let given = Sidecar::load(path).map_err(Failure::input)?.conditions.hull;
         let loading = Self { file: file::display_path(path).display().to_string(), given };
         match given.draught {
@@ -68,7 +68,7 @@ impl DescribedLoading {
     /// proportional to the approach speed, and the yaw response, which does not depend on draught, is not used.
     ///
     /// Fails as [`only_hull`] does, if the loading is of another ship, or if it is that of the trials.
-    pub fn of_ship(
+    pub fn convert_ship(
         &self,
         shown: &str,
         ship: &IdentifiedShip,
@@ -156,9 +156,9 @@ impl DescribedLoading {
 ///
 /// Fails if there is no such hull, or if its draught, beam or block coefficient is not known.
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
-    if speak_against_form(&ship.hulls) {
+    if rule_out_form(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";
-        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg: {AGAINST_FORM}; {cure}")));
+        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg: {FORM_RULED_OUT}; {cure}")));
     }
     let mut ship = ship.clone();
     ship.hulls.retain(|hull| hull.form == FORM);
@@ -226,7 +226,7 @@ mod tests {
         };
         let ship = IdentifiedShip { hulls: vec![IdentifiedHull::default(), hull], ..IdentifiedShip::default() };
         let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Warnings::default());
-        let (mut ship, _) = loading.of_ship("fit.json", &ship, &mut warnings).expect("another loading");
+        let (mut ship, _) = loading.convert_ship("fit.json", &ship, &mut warnings).expect("another loading");
         assert_eq!(ship.hulls.len(), 1);
         (ship.hulls.remove(0), warnings.ranked())
     }

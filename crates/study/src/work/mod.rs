@@ -1,9 +1,9 @@
 //! Computation of the commands, before any output; also called by the Python package.
 
-pub mod each;
-pub mod earlier;
+pub mod earlier_trials;
 pub mod every_scale;
 pub mod fit;
+pub mod fit_each;
 mod loading;
 mod planned;
 pub mod predict;
@@ -11,6 +11,6 @@ pub mod predicted_circle;
 pub mod simulate;
 pub mod single_records;
 pub mod steady;
-mod stored_answer;
+mod stored_ships;
 mod target_scale;
 pub mod trace;

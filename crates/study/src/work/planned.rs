@@ -18,7 +18,7 @@ const GEAR_RATES_DEG_S: [f64; 2] = [1.0, 20.0];
 const MAX_DURATIONS: f64 = 3.0;
 
 /// All manoeuvres that the fitted ship completes, with the sampling and the rudder rate of the records.
-pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
+pub fn planned_trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
         [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, suffix)| {

@@ -18,10 +18,10 @@ use report::number::fixed;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
-use super::earlier::{EarlierModel, LaterShip, with_earlier};
+use super::earlier_trials::{EarlierModel, LaterShip, with_earlier};
 use super::loading::{DescribedLoading, only_hull};
-use super::stored_answer::{StoredAnswer, ships_of, text_of};
-use super::target_scale::{self, Declared, TargetScale, at_scale, is_alike, of_two_scales};
+use super::stored_ships::{StoredShips, ships_of, text_of};
+use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, scale_mismatch};
 use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
@@ -52,8 +52,8 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
     for model in models {
         let ship = at_scale(&model.ship, scale).map_err(|error| Failure::about(&model.file, error))?;
         let [first, next] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
-        if !first.zip(next).map_or(first == next, |(first, next)| is_alike(first, next)) {
-            return Err(of_two_scales([(&models[0].file, first), (&model.file, next)]));
+        if !first.zip(next).map_or(first == next, |(first, next)| is_same_scale(first, next)) {
+            return Err(scale_mismatch([(&models[0].file, first), (&model.file, next)]));
         }
         ships.push((ship, 1.0));
     }
@@ -63,10 +63,10 @@ fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<Ship
 impl StoredModel {
     /// Identified ship in a file, by the method and weather of the request.
     ///
-    /// Fails if it cannot be read, or as [`of_document`](Self::of_document) does.
-    pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
+    /// Fails if it cannot be read, or as [`from_document`](Self::from_document) does.
+    pub fn from_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
-        Self::of_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
+        Self::from_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
     /// Identified ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the one with
@@ -74,14 +74,14 @@ impl StoredModel {
     /// messages.
     ///
     /// Fails if the text is no such document, or if it holds no estimate with a covariance.
-    pub fn of_document(
+    pub fn from_document(
         shown: &str,
         text: &str,
         asked: Option<&str>,
         calm: bool,
         warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
-        let StoredAnswer { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
+        let StoredShips { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
         // A trace has only one estimate.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
@@ -305,10 +305,10 @@ fn at_loading(
     ballast: &[StoredModel],
     warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
-    let loading = DescribedLoading::of_file(path)?;
+    let loading = DescribedLoading::from_file(path)?;
     let mut draughts = Vec::new();
     let mut taken = |file: &str, ship_at_trials: &IdentifiedShip| {
-        let (ship, draught) = loading.of_ship(file, ship_at_trials, warnings)?;
+        let (ship, draught) = loading.convert_ship(file, ship_at_trials, warnings)?;
         draughts.push(draught);
         Ok(ship)
     };

@@ -1,11 +1,11 @@
 //! Simulated trials as records that other commands read, each with its true values.
 
-use campaign::answers::part_name;
 use campaign::engine;
 use campaign::failure::Failure;
+use campaign::outside_estimates::part_name;
 use campaign::scenario::Scenario;
 use campaign::scenario::problem::suggestion;
-use campaign::task::Task;
+use campaign::shard::TrialId;
 use simulate::Simulated;
 
 use crate::documents::truth::truth;
@@ -17,7 +17,7 @@ const MAX_RECORDS: u64 = 100_000;
 /// Requested trials, in their order.
 ///
 /// Fails if no such cell or trial exists, or if there are too many records.
-pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
+pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<TrialId>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
         return Err(Failure::about(&request.scenario, problem));
@@ -55,7 +55,7 @@ pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>
             "{count} records would be written, expected at most {MAX_RECORDS}; name a cell with --cell or a trial with --replicate"
         )));
     }
-    Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| Task { cell, replicate })).collect())
+    Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| TrialId { cell, replicate })).collect())
 }
 
 /// Files of a simulated record.
@@ -73,7 +73,7 @@ pub struct RecordFiles {
 /// Records of one trial; the first has the name `name`, further ones of the same ship are numbered.
 ///
 /// Fails if the trial cannot be simulated.
-pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<RecordFiles>, Failure> {
+pub fn records(scenario: &Scenario, task: TrialId, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
         Failure::work(format!(
             "trial {} of cell {} of {} cannot be made: {error}",
@@ -81,7 +81,7 @@ pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Record
         ))
     };
     let simulated = engine::simulate(scenario, task).map_err(refuse)?;
-    let truths = engine::truths(scenario, task).map_err(refuse)?;
+    let truths = engine::true_responses(scenario, task).map_err(refuse)?;
     let files = |(number, simulated): (usize, &Simulated)| {
         let mut table = Vec::new();
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;

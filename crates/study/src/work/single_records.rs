@@ -7,7 +7,7 @@ use ship::angle::to_deg;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::records::names;
+use crate::records::unique_names;
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
@@ -45,7 +45,7 @@ pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
 impl<'a> RecordedZigZags<'a> {
     /// Amplitude of every record that is a zig-zag.
     pub fn of(trials: &'a [Trial]) -> Self {
-        let named = trials.iter().zip(names(trials.iter().map(Trial::name)));
+        let named = trials.iter().zip(unique_names(trials.iter().map(Trial::name)));
         Self(
             named
                 .filter_map(|(trial, name)| Some(RecordedZigZag { trial, name, amplitude: amplitude(trial)? }))
@@ -110,8 +110,8 @@ mod tests {
         let record = |k: f64, t: f64, sd: Option<f64>| SingleRecord {
             record: String::new(),
             amplitude: Amplitude { rudder_deg: 10.0, heading_deg: 14.0 },
-            k_per_s: Quantity { sd, ..Quantity::bare(k) },
-            t_s: Quantity { sd, ..Quantity::bare(t) },
+            k_per_s: Quantity { sd, ..Quantity::without_uncertainty(k) },
+            t_s: Quantity { sd, ..Quantity::without_uncertainty(t) },
         };
         let pair = |apart: f64| agree(&[record(1.0, 2.0, Some(0.1)), record(1.0 + apart, 2.0 + apart, Some(0.1))]);
         assert_eq!((pair(0.2), pair(0.24), pair(0.25), pair(0.4)), (Some(true), Some(true), Some(false), Some(false)));

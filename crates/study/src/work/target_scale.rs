@@ -43,7 +43,7 @@ impl TargetScale {
         let mut scales = of_records.chain(of_sidecar);
         let Some((file, first)) = scales.next() else { return Ok(None) };
         match scales.find(|(_, ship)| !is_same_length(ship.length, first.length)) {
-            Some((other, ship)) => Err(of_two_scales([(file, Some(first)), (other, Some(ship))])),
+            Some((other, ship)) => Err(scale_mismatch([(file, Some(first)), (other, Some(ship))])),
             None => Ok(Some(Self::of_trial(first))),
         }
     }
@@ -59,7 +59,7 @@ impl TargetScale {
 }
 
 /// Failure for two files of ships of different scales.
-pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Particulars>); 2]) -> Failure {
+pub fn scale_mismatch([(first, of_first), (other, of_other)]: [(&str, Option<Particulars>); 2]) -> Failure {
     let ship_words = |ship: Option<Particulars>| match ship {
         Some(ship) => format!("{} m long at {} m/s", fixed(ship.length, 2), fixed(ship.speed, 2)),
         None => String::from("of no known length and speed"),
@@ -70,7 +70,7 @@ pub fn of_two_scales([(first, of_first), (other, of_other)]: [(&str, Option<Part
 }
 
 /// `true` if ships have equal length and Froude number, with the tolerances used for earlier trials.
-pub fn is_alike(a: Particulars, b: Particulars) -> bool {
+pub fn is_same_scale(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
     a.has_length_of(&b) && !differs_in_froude_number(&a, &b)
@@ -82,7 +82,7 @@ pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Ide
     // The speed of a trial is estimated from its beginning and never quite equals that of another trial.
     let is_speed_of = |scale: Particulars, speed| match is_asked {
         true => speed == scale.speed,
-        false => is_alike(scale, Particulars { speed, ..scale }),
+        false => is_same_scale(scale, Particulars { speed, ..scale }),
     };
     match ship.particulars() {
         None if speed.is_some() => Ok(IdentifiedShip { length_m: Some(length), speed_m_s: speed, ..ship.clone() }),

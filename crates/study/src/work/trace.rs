@@ -13,14 +13,14 @@ use identify::plausibility::unusual_ship;
 use indicatif::ProgressBar;
 use trial::{Channel, Trial};
 
-use super::earlier::{self, EarlierModel};
+use super::earlier_trials::{self, EarlierModel};
 use super::planned;
 use super::single_records::RecordedZigZags;
 use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
-use crate::records::{file_of, names, no_track, particulars, rudder_logged_late};
+use crate::records::{file_of, missing_track_warning, particulars, rudder_logged_late, unique_names};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -42,7 +42,7 @@ impl TraceResult {
 
     /// Writes document and tables; returns the text of the document. Fails if a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
-        let text = documents::keep(folder, TRACE, &self.document)?;
+        let text = documents::write_document(folder, TRACE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
     }
 }
@@ -89,9 +89,9 @@ pub fn trace(
     quiet: bool,
     warnings: &mut Warnings,
 ) -> Result<TraceResult, Failure> {
-    let together = scales::together(records, validation)?;
-    warnings.extend(earlier::check(priors, &together.trials)?);
-    let settings = &Settings { earlier: earlier::hulls(priors), ..settings.clone() };
+    let together = scales::to_common_scale(records, validation)?;
+    warnings.extend(earlier_trials::check(priors, &together.trials)?);
+    let settings = &Settings { earlier: earlier_trials::hulls(priors), ..settings.clone() };
     let watch = TraceWatch {
         busy: progress::busy("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
@@ -99,11 +99,11 @@ pub fn trace(
     let analysis = ::trace::trace_with_watcher(&together.trials, &together.held_out, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
-    let (scales, RescaledRecords { trials, held_out, .. }) = (together.sentence(), together);
+    let (scales, RescaledRecords { trials, held_out, .. }) = (together.scaling_sentence(), together);
     let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
-    warnings.extend(no_track(&shown));
+    warnings.extend(missing_track_warning(&shown));
     warnings.extend(unusual_ship(&analysis.base, scales::particulars(&trials), records));
-    let names = names(trials.iter().chain(&held_out).map(Trial::name));
+    let names = unique_names(trials.iter().chain(&held_out).map(Trial::name));
     let innovations = analysis.innovations();
     let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
         name: name.clone(),
@@ -123,7 +123,7 @@ pub fn trace(
     tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = identified_ship::from_analysis(&analysis, &shown);
     warnings.extend(ship.rudder_logged_late().map(|late| WarningCode::LateRudder.warning(rudder_logged_late(late))));
-    let earlier_trials = earlier::entry(priors, &trials, &shown);
+    let earlier_trials = earlier_trials::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
     let zigzags = RecordedZigZags::of(&trials);
@@ -193,7 +193,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
 
 /// Sentence on the most informative next trial.
 fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
-    let prospects = analysis.prospects(&planned::trials(analysis, trials));
+    let prospects = analysis.prospects(&planned::planned_trials(analysis, trials));
     let Some(best) = prospects.first() else {
         return String::from("The fitted model cannot be steered through any standard manoeuvre.");
     };
@@ -223,7 +223,7 @@ pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
 }
 
 /// Records of a request without the withheld channels.
-pub fn without(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Trial> {
+pub fn withhold_channels(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Trial> {
     let withheld: Vec<Channel> = request.without.iter().flat_map(|channel| channels(*channel)).copied().collect();
     trials.into_iter().map(|trial| trial.without_channels(&withheld)).collect()
 }

@@ -38,7 +38,7 @@ pub fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
         Ok(())
     };
     StoredStudy::read(&desk.path(folder))
-        .and_then(|stored| stored.rows(keep))
+        .and_then(|stored| stored.for_each_row(keep))
         .unwrap_or_else(|failure| panic!("{failure}"));
     rows
 }

@@ -132,7 +132,7 @@ pub struct Summary {
 
 impl Summary {
     /// Performance of a method in a cell.
-    pub fn record(&self, cell: usize, method: usize) -> Option<&Performance> {
+    pub fn performance(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
         Some(&self.methods[place].record)

@@ -3,16 +3,16 @@
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-use crate::backend::Plotted;
-use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, at, hull, marker};
-use crate::fonts::{LINE, text_width};
+use crate::backend::PlotResult;
+use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, marker, page_units, ship_outline};
+use crate::fonts::{LINE_SPACING, text_width};
 use crate::lines::wrap;
 use crate::palette::{CurveOrigin, Dash, INK, Look};
 use crate::theme::Theme;
 
 /// Symbol of a legend entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum KeySample {
+pub(crate) enum LegendSymbol {
     Nothing,
     /// Line, or an area as a thick one.
     Line(Stroke),
@@ -34,22 +34,25 @@ pub(crate) fn outline_stroke(dash: Dash, theme: &Theme) -> Stroke {
 
 /// Entry of a legend: symbol and name.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct KeyEntry {
-    pub sample: KeySample,
+pub(crate) struct LegendEntry {
+    pub sample: LegendSymbol,
     pub label: String,
 }
 
-impl KeyEntry {
-    pub(crate) fn new(sample: KeySample, label: impl Into<String>) -> Self {
+impl LegendEntry {
+    pub(crate) fn new(sample: LegendSymbol, label: impl Into<String>) -> Self {
         Self { sample, label: label.into() }
     }
 
     fn sample_width(&self, theme: &Theme) -> f64 {
         theme.small_font
             * match self.sample {
-                KeySample::Nothing => 0.0,
-                KeySample::Dots(_) | KeySample::Marker(_) | KeySample::Upright(_) | KeySample::Outline(_) => 1.6,
-                KeySample::Line(_) | KeySample::LineAndMarker(..) | KeySample::Hull(_) => 2.9,
+                LegendSymbol::Nothing => 0.0,
+                LegendSymbol::Dots(_)
+                | LegendSymbol::Marker(_)
+                | LegendSymbol::Upright(_)
+                | LegendSymbol::Outline(_) => 1.6,
+                LegendSymbol::Line(_) | LegendSymbol::LineAndMarker(..) | LegendSymbol::Hull(_) => 2.9,
             }
     }
 
@@ -65,44 +68,44 @@ impl KeyEntry {
 
     /// Draws the entry in a given width, with the middle of its first line at `place`; returns the number of lines of
     /// its name.
-    pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> Plotted<usize> {
+    pub(crate) fn draw(&self, canvas: &Canvas, (x, y): PagePoint, room: f64, theme: &Theme) -> PlotResult<usize> {
         let width = self.sample_width(theme);
         let end = x + width - 0.5 * theme.small_font;
         let centre = ((x + end) / 2.0, y);
         let half = 0.5 * theme.small_font;
-        if let KeySample::Line(stroke) | KeySample::LineAndMarker(stroke, _) = self.sample {
+        if let LegendSymbol::Line(stroke) | LegendSymbol::LineAndMarker(stroke, _) = self.sample {
             canvas.line(&[(x, y), (end, y)], stroke)?;
         }
         match self.sample {
-            KeySample::Nothing | KeySample::Line(_) => {}
-            KeySample::Dots(colour) => {
+            LegendSymbol::Nothing | LegendSymbol::Line(_) => {}
+            LegendSymbol::Dots(colour) => {
                 let dot = Look { colour, ..CurveOrigin::Record.look() };
-                canvas.elements(marker(at(centre), 1.2 * theme.dot, &dot))?;
+                canvas.elements(marker(page_units(centre), 1.2 * theme.dot, &dot))?;
             }
-            KeySample::Marker(look) | KeySample::LineAndMarker(_, look) => {
-                canvas.elements(marker(at(centre), theme.marker, &look))?;
+            LegendSymbol::Marker(look) | LegendSymbol::LineAndMarker(_, look) => {
+                canvas.elements(marker(page_units(centre), theme.marker, &look))?;
             }
-            KeySample::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
-            KeySample::Outline(dash) => {
+            LegendSymbol::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
+            LegendSymbol::Outline(dash) => {
                 let cell = Rect { x: centre.0 - half, y: y - half, w: 2.0 * half, h: 2.0 * half };
                 canvas.outline(cell, outline_stroke(dash, theme))?;
             }
-            KeySample::Hull(colour) => {
-                canvas.elements(hull(at(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
+            LegendSymbol::Hull(colour) => {
+                canvas.elements(ship_outline(page_units(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
             }
         }
         let lines = self.lines(room, theme);
         let name = TextLine::new(lines.join("\n"), theme.small_font, HPos::Left);
         // The place of a text of several lines is its middle.
-        let down = 0.5 * LINE * theme.small_font * (lines.len().max(1) - 1) as f64;
+        let down = 0.5 * LINE_SPACING * theme.small_font * (lines.len().max(1) - 1) as f64;
         canvas.text((x + width, y + down), &name)?;
         Ok(lines.len())
     }
 }
 
 /// Entries in rows of a width, points, as many in each as fit.
-pub(crate) fn rows<'a>(entries: &'a [KeyEntry], width: f64, theme: &Theme) -> Vec<&'a [KeyEntry]> {
-    let mut rows: Vec<&[KeyEntry]> = Vec::new();
+pub(crate) fn rows<'a>(entries: &'a [LegendEntry], width: f64, theme: &Theme) -> Vec<&'a [LegendEntry]> {
+    let mut rows: Vec<&[LegendEntry]> = Vec::new();
     let mut start = 0;
     for end in 1..=entries.len() {
         if end - start > 1 && row_width(&entries[start..end], theme) > width {
@@ -115,7 +118,7 @@ pub(crate) fn rows<'a>(entries: &'a [KeyEntry], width: f64, theme: &Theme) -> Ve
 }
 
 /// Width of a row of entries with the gaps between them, points.
-pub(crate) fn row_width(row: &[KeyEntry], theme: &Theme) -> f64 {
+pub(crate) fn row_width(row: &[LegendEntry], theme: &Theme) -> f64 {
     row.iter().map(|entry| entry.width(theme) + gap(theme)).sum::<f64>() - gap(theme)
 }
 
@@ -131,7 +134,8 @@ mod tests {
     #[test]
     fn rows_fit_the_width() {
         let theme = Theme::screen();
-        let entries: Vec<KeyEntry> = (0..7).map(|i| KeyEntry::new(KeySample::Nothing, "m".repeat(4 + i))).collect();
+        let entries: Vec<LegendEntry> =
+            (0..7).map(|i| LegendEntry::new(LegendSymbol::Nothing, "m".repeat(4 + i))).collect();
         assert_eq!(rows(&entries, 1e4, &theme).len(), 1);
         assert_eq!(rows(&entries, 10.0, &theme).len(), 7);
         let fitted = rows(&entries, 300.0, &theme);

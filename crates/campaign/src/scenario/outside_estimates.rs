@@ -12,12 +12,12 @@ pub const ID: &str = "external";
 
 /// Outside estimates by trial. A trial without an estimate counts as failed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answers {
+pub struct OutsideEstimates {
     answers: HashMap<TrialNumber, Result<OutsideFit, String>>,
     sha256: String,
 }
 
-impl Answers {
+impl OutsideEstimates {
     /// Outside estimates, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
     pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
@@ -29,7 +29,7 @@ impl Answers {
     }
 
     /// Estimate for a trial. Fails with the reason of a missing estimate.
-    pub fn to(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
+    pub fn estimate_of(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
             Some(Err(reason)) => Err(IdentifyError::outside(reason)),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use campaign::earlier::hulls_of;
+use campaign::earlier_trials::hulls_of;
 use campaign::failure::Failure;
 use campaign::identified_ship::RecordFacts;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
@@ -15,7 +15,7 @@ use report::number::fixed;
 use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
-use super::stored_answer::{StoredAnswer, ships_of, text_of};
+use super::stored_ships::{StoredShips, ships_of, text_of};
 use crate::documents::prior;
 use crate::records::file_of;
 
@@ -29,11 +29,11 @@ pub struct EarlierModel {
 }
 
 impl EarlierModel {
-    /// Models of some files. Fails if a file cannot be read, or as [`of_document`](Self::of_document) does.
-    pub fn of_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
+    /// Models of some files. Fails if a file cannot be read, or as [`from_document`](Self::from_document) does.
+    pub fn from_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
             let shown = file::display_path(path).display().to_string();
-            Self::of_document(&shown, &text_of(path)?)
+            Self::from_document(&shown, &text_of(path)?)
         };
         paths.iter().map(read).collect()
     }
@@ -41,8 +41,8 @@ impl EarlierModel {
     /// Model in the text of a `fit.json` or `trace.json`; `shown` is its name in messages.
     ///
     /// Fails if the text is no such document, or if it holds no hull.
-    pub fn of_document(shown: &str, text: &str) -> Result<Self, Failure> {
-        let StoredAnswer { ships, records, .. } = ships_of(shown, text)?;
+    pub fn from_document(shown: &str, text: &str) -> Result<Self, Failure> {
+        let StoredShips { ships, records, .. } = ships_of(shown, text)?;
         let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
         let ship = ship.ok_or_else(|| {
             let problem = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \

@@ -1,10 +1,10 @@
 //! Key figure of a trace: the first fitted record and one held-out record, each with the models before and after and
 //! their heading residuals.
 
-use campaign::curves::curve;
+use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, TraceDocument};
-use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Ruler, Stack};
+use report::figures::{AxisSpec, Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Stack};
 use report::number::{counted, significant};
 use report::palette::SOLID;
 use report::{CurveOrigin, PageFigure};
@@ -50,7 +50,8 @@ fn nearest(held: &[BeforeAfter]) -> Option<usize> {
 fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role: &str) -> Stack {
     let name = record.trial.title();
     let trial = &record.trial;
-    let [mut upper, lower] = heading_and_residual(curve(trial.time(), trial.heading()), models_over_time(record, None));
+    let [mut upper, lower] =
+        heading_and_residual(angle_curve_deg(trial.time(), trial.heading()), models_over_time(record, None));
     for layer in &mut upper {
         // As in the residuals below.
         if let LayerKind::Line(pen) = &mut layer.kind {
@@ -71,7 +72,7 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
         format!("({}) rms {before}° → {after}°, {share:.0} %", letters[1]),
     ];
     let heights = [0.21, 0.15];
-    let rulers = [Ruler::heading(), Ruler::new("residual [°]", Division::Angle)];
+    let rulers = [AxisSpec::heading(), AxisSpec::new("residual [°]", Division::Angle)];
     let rows = [PanelRow::new, PanelRow::zeroed].into_iter().zip(rulers).zip(heights);
     let rows = rows.map(|((row, ruler), height)| row(ruler, height));
     let panels = [upper, lower].into_iter().zip(heads);
@@ -82,7 +83,7 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
             ..LayeredPanel::default()
         })
         .collect();
-    Stack { is_half: true, x: vec![Ruler::time()], rows: rows.collect(), panels, ..Stack::default() }
+    Stack { is_half: true, x: vec![AxisSpec::time()], rows: rows.collect(), panels, ..Stack::default() }
 }
 
 /// Heading errors before and after of all held-out records, the worst first, headed by their root mean squares.
@@ -103,9 +104,9 @@ fn all_held(held: &[BeforeAfter]) -> Stack {
         held.len(),
         100.0 * ratio(held.iter())
     );
-    let row = PanelRow::new(Ruler::decimal("rms error [°]"), 0.13);
+    let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
     let panel = LayeredPanel { head: Some(head), layers: layers.into(), ..LayeredPanel::default() };
-    let x = vec![Ruler::decimal("held-out record, worst first")];
+    let x = vec![AxisSpec::decimal("held-out record, worst first")];
     Stack { x, rows: vec![row], panels: vec![panel], ..Stack::default() }
 }
 

@@ -18,7 +18,7 @@ const MODEL: file::Kind = file::Kind { name: "a model", max_bytes: 1 << 26 };
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// Content of a document.
-pub struct StoredAnswer {
+pub struct StoredShips {
     /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE`].
     pub ships: BTreeMap<String, IdentifiedShip>,
     /// Method that the verdict of a fit recommends.
@@ -31,14 +31,14 @@ pub struct StoredAnswer {
 
 /// Text of a model. Fails if it cannot be read.
 pub fn text_of(path: &Path) -> Result<String, Failure> {
-    name::of_file(path)?;
+    name::study_name(path)?;
     let shown = file::display_path(path).display().to_string();
     file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
 }
 
 /// Content of the text of a `fit.json` or `trace.json`; `shown` is its name in messages. Fails if it is no such
 /// document, or if it has another version.
-pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
+pub fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
     let refuse = |problem: String| Failure::about(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
     let value: Value =
@@ -66,7 +66,7 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredAnswer, Failure> {
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
     let because = value["verdict"]["because"].as_str().unwrap_or("its verdict does not say why");
     let disbelief = (value["verdict"]["believe"] == "no").then(|| because.to_owned());
-    Ok(StoredAnswer { ships, verdict, disbelief, records: records_of(&value, records) })
+    Ok(StoredShips { ships, verdict, disbelief, records: records_of(&value, records) })
 }
 
 /// Records in a document under `key`, and those of its priors: their files by SHA-256.

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 /// One trial of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Task {
+pub struct TrialId {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the replicate in the cell.
@@ -28,7 +28,7 @@ impl Shard {
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Range of `count` items in this shard: consecutive, with sizes that differ by at most one.
-    pub(crate) fn part(self, count: u64) -> Range<u64> {
+    pub(crate) fn item_range(self, count: u64) -> Range<u64> {
         let end = |number: u64| (u128::from(count) * u128::from(number) / u128::from(self.of)) as u64;
         end(self.number - 1)..end(self.number)
     }

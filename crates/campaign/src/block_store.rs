@@ -97,7 +97,7 @@ impl<'a> BlockStore<'a> {
     /// describes what happens to its trials.
     ///
     /// Fails if a file cannot be read, and if one is a block of another study, seed or program.
-    pub fn survey(
+    pub fn stored_trials(
         &self,
         is_asked: impl Fn(Block) -> bool + Sync,
         becomes: &str,
@@ -120,7 +120,7 @@ impl<'a> BlockStore<'a> {
         let results = ResultFolder::make(&self.folder)?;
         let bytes = encode(rows, &self.label(block), &self.layout);
         let bytes = bytes.map_err(|error| Failure::work(format!("{}: {error}", self.path(block).display())))?;
-        results.subfolder(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_text(self.design)?)?;
+        results.subfolder(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_csv(self.design)?)?;
         results.subfolder(ROWS)?.write(&rows_name(block), bytes)
     }
 
@@ -128,21 +128,21 @@ impl<'a> BlockStore<'a> {
     pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
         let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
         let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
-        Ok(Timings::of_text(&text, self.design).unwrap_or_default())
+        Ok(Timings::from_csv(&text, self.design).unwrap_or_default())
     }
 
     /// Blocks of the design in order, each with its number of trials.
-    pub fn of_design(&self) -> impl Iterator<Item = (Block, u64)> {
+    pub fn design_blocks(&self) -> impl Iterator<Item = (Block, u64)> {
         self.design.cells.iter().enumerate().flat_map(|(cell, facts)| {
             let count = facts.trials.end;
-            let blocks = (0..Block::of_cell(count)).map(move |number| Block { cell, number });
+            let blocks = (0..Block::count_in_cell(count)).map(move |number| Block { cell, number });
             blocks.map(move |block| (block, block.range(count).count() as u64))
         })
     }
 
     /// Passes every row of the design to `take`, in order. Fails if a block is missing, incomplete or damaged.
-    pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
-        let blocks: Vec<(Block, u64)> = self.of_design().collect();
+    pub fn for_each_row(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
+        let blocks: Vec<(Block, u64)> = self.design_blocks().collect();
         let whole = |&(block, trials): &(Block, u64)| {
             let content = self.read(block)?;
             let expected = trials as usize * self.layout.methods();
@@ -174,7 +174,7 @@ fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
 }
 
 /// `true` if a folder contains blocks.
-pub fn is_in(folder: &Path) -> Result<bool, Failure> {
+pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
     Ok(!blocks_in(folder)?.is_empty())
 }
 

@@ -14,10 +14,10 @@ use trial::file::{self, Kind};
 use crate::design::Design;
 use crate::failure::Failure;
 use crate::observer::Observer;
-use crate::scenario::answers::{Answers, TrialNumber};
 use crate::scenario::name::{shown, slug};
+use crate::scenario::outside_estimates::{OutsideEstimates, TrialNumber};
 use crate::scenario::{Scenario, hex};
-use crate::task::Task;
+use crate::shard::TrialId;
 
 /// File next to exported records: their scenario and seed.
 pub const TRIALS: &str = "trials.toml";
@@ -45,7 +45,7 @@ impl Trials {
 }
 
 /// Name of the first record of a trial: scenario, cell and replicate; an index that cannot vary is omitted.
-pub fn record_name(scenario: &Scenario, task: Task) -> String {
+pub fn record_name(scenario: &Scenario, task: TrialId) -> String {
     let mut name = scenario.name.clone();
     if scenario.cells.len() > 1 {
         name += &format!("-{:0width$}", task.cell, width = (scenario.cells.len() - 1).to_string().len());
@@ -91,7 +91,7 @@ pub fn read(
     path: &Path,
     scenario: &Scenario,
     observer: &dyn Observer,
-) -> Result<IndexMap<Option<String>, Answers>, Failure> {
+) -> Result<IndexMap<Option<String>, OutsideEstimates>, Failure> {
     let refuse = |problem: String| Failure::about(path, problem);
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
@@ -141,12 +141,15 @@ pub fn read(
     }
     answers.iter().for_each(|(method, given)| missing(path, scenario, method.as_deref(), given.len() as u64, observer));
     let sha256 = hex(&Sha256::digest(text.as_bytes()));
-    Ok(answers.into_iter().map(|(method, by_trial)| (method, Answers::new(by_trial, sha256.clone()))).collect())
+    Ok(answers
+        .into_iter()
+        .map(|(method, by_trial)| (method, OutsideEstimates::new(by_trial, sha256.clone())))
+        .collect())
 }
 
 /// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.trials_of(cell)).sum();
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_trials_of_cell(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
         let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
@@ -166,7 +169,7 @@ struct Records<'a> {
 
 impl<'a> Records<'a> {
     fn of(scenario: &'a Scenario) -> Self {
-        let name = |cell: usize| record_name(scenario, Task { cell, replicate: 0 });
+        let name = |cell: usize| record_name(scenario, TrialId { cell, replicate: 0 });
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
         let mut fits: HashMap<String, Vec<TrialNumber>> = HashMap::new();
@@ -196,7 +199,7 @@ impl<'a> Records<'a> {
             0 | 1 => (name, 0),
             _ => stem(name).1.parse().ok().map(|number| (stem(name).0, number))?,
         };
-        let task = Task { cell: *self.cells.get(cell)? as usize, replicate };
+        let task = TrialId { cell: *self.cells.get(cell)? as usize, replicate };
         let is_match = replicate < self.scenario.replicates && record_name(self.scenario, task) == name;
         is_match.then_some((task.cell as u64, replicate))
     }
@@ -301,7 +304,7 @@ mod tests {
         }
     }
 
-    fn read_from(text: &str, scenario: &Scenario) -> (Result<Answers, String>, String) {
+    fn read_from(text: &str, scenario: &Scenario) -> (Result<OutsideEstimates, String>, String) {
         let desk = tempfile::tempdir().expect("a folder");
         let path = desk.path().join("answers.csv");
         std::fs::write(&path, text).expect("written");
@@ -316,8 +319,8 @@ mod tests {
         for (cells, replicates) in [("", 1), ("", 12), (TWO_CELLS, 1), (TWO_CELLS, 1000)] {
             let scenario = zig_zag(replicates, cells);
             let records = Records::of(&scenario);
-            for task in
-                (0..scenario.cells.len()).flat_map(|cell| [0, replicates - 1].map(|replicate| Task { cell, replicate }))
+            for task in (0..scenario.cells.len())
+                .flat_map(|cell| [0, replicates - 1].map(|replicate| TrialId { cell, replicate }))
             {
                 let name = record_name(&scenario, task);
                 for written in [name.clone(), format!("{name}.csv"), format!("a/b/{name}.csv"), format!("c:\\{name}")] {
@@ -336,12 +339,12 @@ mod tests {
                          0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
         let (read, warnings) = read_from(by_record, &scenario);
         let answers = read.expect("a table of answers");
-        let good = answers.to((0, 2)).expect("an answer");
+        let good = answers.estimate_of((0, 2)).expect("an answer");
         assert!(
             (good.response.rudder_bias - from_deg(1.5)).abs() < 1e-15
                 && (good.K().sd.expect("given") - 0.01).abs() < 1e-12
         );
-        let failure = |place| answers.to(place).expect_err("none").to_string();
+        let failure = |place| answers.estimate_of(place).expect_err("none").to_string();
         assert_eq!(failure((1, 0)), "outside: K_per_s is missing or not a finite number");
         assert_eq!((failure((1, 1)), failure((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
         assert!(
@@ -349,9 +352,9 @@ mod tests {
             "{warnings}"
         );
         let (read, warnings) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
-        assert_eq!(read.expect("a table").to((1, 2)).expect("an answer").K().value, 0.1);
+        assert_eq!(read.expect("a table").estimate_of((1, 2)).expect("an answer").K().value, 0.1);
         assert!(warnings.contains("5 of 6 trials"));
-        let named = scenario.with_answers("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
+        let named = scenario.with_outside_estimates("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
         let last = MethodName { label: "mine".into(), id: "external".into() };
         assert_eq!(named.method_names().pop(), Some(last));
     }

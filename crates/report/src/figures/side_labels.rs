@@ -3,7 +3,7 @@
 use plotters::style::text_anchor::HPos;
 
 use super::panels::{Layer, LayerKind, Panels, Stack};
-use crate::backend::Plotted;
+use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -20,7 +20,7 @@ fn text(layer: &Layer, theme: &Theme) -> TextLine {
 }
 
 /// Width of the names with the gap to the frame, points.
-pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
+pub(super) fn width(data: &Panels, theme: &Theme) -> f64 {
     let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
     let named = layers.filter(|layer| data.names_aside && layer.name.is_some());
     let widths = named.map(|layer| text(layer, theme).width());
@@ -30,13 +30,13 @@ pub(super) fn room(data: &Panels, theme: &Theme) -> f64 {
 /// Anchor of a name: the rightmost point of its layer in the frame; an infinite value is at the edge.
 fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     let place = |(x, y): (f64, f64)| match y.is_infinite() {
-        true => Some((chart.across(x)?, chart.rect.y)),
+        true => Some((chart.page_x(x)?, chart.rect.y)),
         false => chart.inside(x, y),
     };
     let last = layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0));
     let LayerKind::Band(upper, ..) = &layer.kind else { return last };
     // A band is named in the middle of its height in the frame.
-    let up = |curve: &PlotCurve| curve.pairs().last().and_then(|(x, y)| chart.place(x, y));
+    let up = |curve: &PlotCurve| curve.pairs().last().and_then(|(x, y)| chart.page_point(x, y));
     let [(x, low), (_, high)] = [up(&layer.curve)?, up(upper)?];
     let [low, high] = [low, high].map(|y| y.clamp(chart.rect.y, chart.rect.bottom()));
     Some((x, 0.5 * (low + high)))
@@ -44,7 +44,7 @@ fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
 
 /// Writes the names right of the last panel of every row of `count`; returns the names without a point in the frame,
 /// with their numbers.
-pub(super) fn of_stack(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme) -> Plotted<Vec<String>> {
+pub(super) fn draw(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme) -> PlotResult<Vec<String>> {
     let symbol = |title: &str| title.split(" [").next().unwrap_or_default().replace(is_markup, "");
     let across = stack.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
     let mut outside = Vec::new();
@@ -61,7 +61,7 @@ pub(super) fn of_stack(charts: &[Chart], stack: &Stack, count: usize, theme: &Th
 }
 
 /// Writes the names of a panel; returns the layers without a point in the frame.
-fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> Plotted<Vec<&'a Layer>> {
+fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> PlotResult<Vec<&'a Layer>> {
     let (named, outside): (Vec<_>, Vec<_>) = layers
         .iter()
         .filter(|layer| layer.name.is_some())

@@ -12,7 +12,7 @@ use trial::{Origin, Side, Trial, ZigZag};
 
 use crate::benchmark::cases::{BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, Skipped, rounded};
 use crate::engine::is_method_failure;
-use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
+use crate::rows::{NamedEffect, StudyRow, TraceRow};
 use crate::scenario::records::RecordSet;
 use crate::scenario::{DesignCell, HULL, Method, Procedure, Scenario};
 use crate::statistics::distinct;
@@ -80,7 +80,7 @@ fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchT
 }
 
 /// Tasks of one cell.
-struct CellQuestions {
+struct CellTasks {
     set: String,
     /// Records of the set; for simulated trials the fitted records and then the validation record.
     records: Vec<SteeredRecord>,
@@ -93,7 +93,7 @@ struct CellQuestions {
     missing: Option<Option<String>>,
 }
 
-impl CellQuestions {
+impl CellTasks {
     fn new(scenario: &Scenario, cell: &DesignCell, is_of_names: bool) -> Self {
         let records = match cell.record_set() {
             Some(set) => set.trials.iter().map(SteeredRecord::measured).collect(),
@@ -107,7 +107,7 @@ impl CellQuestions {
                 None => scenario.name.clone(),
             },
             records,
-            fitted: cell.records(),
+            fitted: cell.record_count(),
             is_simulated: cell.record_set().is_none(),
             has_indices: cell.record_set().is_none() && !cell.is_nearest(),
             missing: is_to_be_named.then(|| missing.into_iter().next()),
@@ -142,8 +142,8 @@ impl CellQuestions {
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     let lacks = |cell: &DesignCell| cell.missing().iter().any(|id| id != HULL);
     let is_of_names = scenario.cells.iter().any(lacks);
-    let of_cell = |cell: &DesignCell| CellQuestions::new(scenario, cell, is_of_names);
-    let cells: Vec<CellQuestions> = scenario.cells.iter().map(of_cell).collect();
+    let of_cell = |cell: &DesignCell| CellTasks::new(scenario, cell, is_of_names);
+    let cells: Vec<CellTasks> = scenario.cells.iter().map(of_cell).collect();
     let (mut cases, mut skipped, mut asked) = (Vec::new(), absent(scenario, &cells), HashSet::new());
     for rows in rows.chunk_by(|row, next| (row.cell, row.replicate) == (next.cell, next.replicate)) {
         let (place, replicate) = (rows[0].cell as usize, rows[0].replicate);
@@ -180,7 +180,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
 }
 
 /// Records that are absent.
-fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
+fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
     let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
     let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
         let skipped = |(record, reason): &(String, String)| Skipped {
@@ -194,10 +194,10 @@ fn absent(scenario: &Scenario, cells: &[CellQuestions]) -> Vec<Skipped> {
 }
 
 /// Sets of a study with their records.
-fn bench_sets(scenario: &Scenario, cells: Vec<CellQuestions>) -> Vec<BenchSet> {
+fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
-        let trials = scenario.trials_of(place);
+        let trials = scenario.max_trials_of_cell(place);
         let records = cell.records.into_iter().map(|steered| steered.record);
         match sets.iter_mut().find(|set| set.name == cell.set) {
             Some(set) => {
@@ -235,7 +235,7 @@ fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str
 }
 
 /// Effects named by a trace, each followed by its aliases.
-fn named(trace: &TraceAnswer) -> Vec<Vec<String>> {
+fn named(trace: &TraceRow) -> Vec<Vec<String>> {
     let group = |term: &NamedEffect| std::iter::once(&term.id).chain(&term.aliases).map(|id| id.to_string()).collect();
     trace.named.iter().map(group).collect()
 }

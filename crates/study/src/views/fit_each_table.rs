@@ -8,7 +8,7 @@ use serde_json::Value;
 use trial::Quantity;
 
 use super::method_table::estimate;
-use crate::work::each::LogFit;
+use crate::work::fit_each::LogFit;
 
 /// Table with one row for every log.
 pub fn table(fits: &[LogFit]) -> Table {
