@@ -70,10 +70,36 @@ impl Sensor {
 /// Reading: the time step before it, and its sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reading {
-    /// Index of the time step before the reading; `None` if no time passes.
-    pub step: Option<usize>,
+    /// Index of the time step before the reading; [`NO_TIME`] if no time passes.
+    step: u32,
     /// Index of the sensor.
-    pub sensor: usize,
+    sensor: u32,
+}
+
+/// Step of a reading at the time of the reading before it.
+const NO_TIME: u32 = u32::MAX;
+
+impl Reading {
+    /// Reading of a sensor after a time step; `None` if no time passes.
+    ///
+    /// # Panics
+    /// If an index is beyond 32 bits.
+    pub fn new(step: Option<usize>, sensor: usize) -> Self {
+        let narrow = |index: usize| u32::try_from(index).expect("fewer than 2³² steps and sensors");
+        Self { step: step.map_or(NO_TIME, narrow), sensor: narrow(sensor) }
+    }
+
+    /// Index of the time step before the reading; `None` if no time passes.
+    #[inline(always)]
+    pub fn step(self) -> Option<usize> {
+        (self.step != NO_TIME).then_some(self.step as usize)
+    }
+
+    /// Index of the sensor.
+    #[inline(always)]
+    pub fn sensor(self) -> usize {
+        self.sensor as usize
+    }
 }
 
 /// Linear system with the sequence of its readings.
@@ -106,7 +132,7 @@ impl<const N: usize> System<N> {
                 sensors.push(Sensor { state: 0, beside, variance });
                 sensors.len() - 1
             });
-            Reading { step: (row > 0).then_some(step), sensor }
+            Reading::new((row > 0).then_some(step), sensor)
         };
         let readings = row_steps.iter().zip(variances).enumerate().map(reading).collect();
         Self { steps, sensors, readings, initial }
@@ -158,9 +184,9 @@ impl<const N: usize> Filter<N> {
                 continue;
             }
             let before = &after[(number + MAX_PERIOD - 1) % MAX_PERIOD];
-            let mut covariance = reading.step.map_or(*before, |step| system.steps[step].propagate(before));
+            let mut covariance = reading.step().map_or(*before, |step| system.steps[step].propagate(before));
             visit(&covariance);
-            let gain = correct(&mut covariance, &system.sensors[reading.sensor]);
+            let gain = correct(&mut covariance, &system.sensors[reading.sensor()]);
             after[number % MAX_PERIOD] = covariance;
             let is_stationary = repeats && {
                 let before = &gains[gain_of[number - MAX_PERIOD] as usize];
@@ -275,12 +301,12 @@ impl Whitener {
     /// Predicted states before every reading of a column, given the earlier readings.
     pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
         let mut x = [[0.0]; MAX_STATES];
-        let predict = |(&value, &(Reading { step, sensor }, gain)): (&f64, &(Reading, u32))| {
-            if let Some(step) = step {
+        let predict = |(&value, &(reading, gain)): (&f64, &(Reading, u32))| {
+            if let Some(step) = reading.step() {
                 x = advanced(&self.transitions[step], &x);
             }
             let before = x.map(|[state]| state);
-            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[sensor].observe(&x) };
+            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[reading.sensor()].observe(&x) };
             let (gain, _) = &self.gains[gain as usize];
             x.iter_mut().zip(gain).for_each(|(state, gain)| state[0] += gain * (value - seen));
             before
@@ -292,12 +318,12 @@ impl Whitener {
     /// noise.
     pub fn apply_transposed(&self, column: &mut [f64]) {
         let mut later = [0.0; MAX_STATES];
-        for (value, &(Reading { step, sensor }, gain)) in column.iter_mut().zip(&self.readings).rev() {
+        for (value, &(reading, gain)) in column.iter_mut().zip(&self.readings).rev() {
             let (gain, weight) = &self.gains[gain as usize];
             *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
-            let Sensor { state, beside, .. } = self.sensors[sensor];
+            let Sensor { state, beside, .. } = self.sensors[reading.sensor()];
             [Some(state), beside].into_iter().flatten().for_each(|state| later[state] -= *value);
-            if let Some(step) = step {
+            if let Some(step) = reading.step() {
                 let f = &self.transitions[step];
                 later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());
             }
@@ -329,12 +355,12 @@ impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUM
             for (k, column) in self.columns.iter().enumerate() {
                 block.iter_mut().zip(&column[rows.clone()]).for_each(|(values, value)| values[k] = *value);
             }
-            for (values, &(Reading { step, sensor }, gain)) in block.iter_mut().zip(readings) {
-                if let Some(step) = step {
+            for (values, &(reading, gain)) in block.iter_mut().zip(readings) {
+                if let Some(step) = reading.step() {
                     x = advanced(&transitions[step], &x);
                 }
                 let (gain, weight) = &gains[gain as usize];
-                let seen = sensors[sensor].observe(&x);
+                let seen = sensors[reading.sensor()].observe(&x);
                 let mut innovation = [0.0; COLUMNS];
                 for k in 0..COLUMNS {
                     innovation[k] = values[k] - seen[k];

@@ -3,6 +3,9 @@
 //! Sources: Hyndman and Fan (1996), The American Statistician 50:361-365; Wilson (1927), Journal of the American
 //! Statistical Association 22:209-212.
 
+/// Maximum number of values that are sorted for their median: a selection costs more.
+const MAX_SORTED: usize = 16;
+
 /// Median; for an even number of values the mean of the two middle values, so that the median of a mirrored set is
 /// mirrored.
 ///
@@ -10,6 +13,10 @@
 pub fn median(values: &mut [f64]) -> Option<f64> {
     let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
+    if (1..=MAX_SORTED).contains(&values.len()) {
+        values.sort_unstable_by(f64::total_cmp);
+        return Some(if even { 0.5 * (values[middle - 1] + values[middle]) } else { values[middle] });
+    }
     let (below, &mut upper, _) = (!values.is_empty()).then(|| values.select_nth_unstable_by(middle, f64::total_cmp))?;
     let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| even);
     Some(lower.map_or(upper, |lower| 0.5 * (lower + upper)))

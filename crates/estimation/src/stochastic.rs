@@ -45,11 +45,11 @@ impl<const N: usize> System<N> {
         };
         let mut state = draw(&root(&self.initial));
         let read = self.readings.iter().map(|reading| {
-            if let Some(step) = reading.step {
+            if let Some(step) = reading.step() {
                 let (added, f) = (draw(&roots[step]), &self.steps[step].transition);
                 state = std::array::from_fn(|i| added[i] + (0..N).map(|j| f[i][j] * state[j]).sum::<f64>());
             }
-            let Sensor { state: first, beside, .. } = self.sensors[reading.sensor];
+            let Sensor { state: first, beside, .. } = self.sensors[reading.sensor()];
             state[first] + beside.map_or(0.0, |beside| state[beside])
         });
         read.collect()

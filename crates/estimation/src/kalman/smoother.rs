@@ -25,7 +25,8 @@ impl<const N: usize> Smoother<N> {
     /// before the row.
     fn run(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<([f64; N], f64)> {
         let mut x = [0.0; N];
-        let step = |(row, &Reading { step, sensor }): (usize, &Reading)| {
+        let step = |(row, reading): (usize, &Reading)| {
+            let (step, sensor) = (reading.step(), reading.sensor());
             if let Some(step) = step {
                 let f = &self.filter.system.steps[step].transition;
                 let added = forced(row);
@@ -53,7 +54,8 @@ impl<const N: usize> Smoother<N> {
         let mut score = [0.0; N];
         for (row, (state, innovation)) in states.iter_mut().enumerate().rev() {
             let index = self.filter.gain_of[row] as usize;
-            let (gain, Reading { step, sensor }) = (&self.filter.gains[index], self.filter.system.readings[row]);
+            let (gain, reading) = (&self.filter.gains[index], self.filter.system.readings[row]);
+            let (step, sensor) = (reading.step(), reading.sensor());
             // Backwards through the correction by the reading.
             let through = *innovation / gain.variance - (0..N).map(|i| gain.gain[i] * score[i]).sum::<f64>();
             let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
@@ -74,7 +76,8 @@ impl<const N: usize> Smoother<N> {
         let mut variances = vec![0.0; self.filter.gain_of.len()];
         for row in (0..variances.len()).rev() {
             let index = self.filter.gain_of[row] as usize;
-            let (gain, Reading { step, sensor }) = (&self.filter.gains[index], self.filter.system.readings[row]);
+            let (gain, reading) = (&self.filter.gains[index], self.filter.system.readings[row]);
+            let (step, sensor) = (reading.step(), reading.sensor());
             let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
             let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == beside));
             let unit = identity::<N>();

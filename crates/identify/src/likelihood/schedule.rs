@@ -61,10 +61,10 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step, sensor: HEADING });
+                schedule.readings.push(Reading::new(step, HEADING));
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step: step.filter(|_| !both), sensor: YAW_RATE });
+                schedule.readings.push(Reading::new(step.filter(|_| !both), YAW_RATE));
             }
         }
         schedule
@@ -86,7 +86,9 @@ impl Schedule {
             return heading.to_vec();
         }
         let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
-        let next = |reading: &Reading| if reading.sensor == HEADING { heading.next() } else { yaw_rate.next() };
-        self.readings.iter().filter_map(next).copied().collect()
+        let next = |reading: &Reading| if reading.sensor() == HEADING { heading.next() } else { yaw_rate.next() };
+        let mut column = Vec::with_capacity(self.readings.len());
+        column.extend(self.readings.iter().filter_map(next).copied());
+        column
     }
 }

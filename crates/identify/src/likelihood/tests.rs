@@ -1,4 +1,5 @@
 use approx::assert_relative_eq;
+use estimation::kalman::Reading;
 use nalgebra::{DMatrix, DVector};
 use ship::FirstOrder;
 use ship::angle::from_deg;
@@ -207,7 +208,7 @@ fn even_rows_settle() {
     let mut apart = schedule.clone();
     for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
         apart.spans.push(schedule.spans[0].clone());
-        reading.step = Some(k);
+        *reading = Reading::new(Some(k), reading.sensor());
     }
     let mut stepwise = track.heading.clone();
     whitener(&apart, &parameters, [0.0; 2]).apply(&mut [&mut stepwise]);

@@ -100,6 +100,26 @@ pub struct MotionColumns {
     pub rates: RateColumns,
 }
 
+impl MotionColumns {
+    /// The three columns of the heading.
+    fn headings(&mut self) -> [&mut Vec<f64>; 3] {
+        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
+    }
+
+    /// Columns of the heading and of the yaw rate.
+    fn slices(&mut self) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
+        let Self { homogeneous, rudder, constant, rates } = self;
+        ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all().map(Vec::as_mut_slice))
+    }
+}
+
+impl RateColumns {
+    /// The three columns.
+    fn all(&mut self) -> [&mut Vec<f64>; 3] {
+        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
+    }
+}
+
 /// Yaw rates of the columns.
 #[derive(Debug, Clone, Default)]
 pub struct RateColumns {
@@ -307,37 +327,87 @@ impl Track {
         }
     }
 
+    /// Fills the columns for a = `inverse_time`, 1/s, and their derivatives with respect to a.
+    pub fn fill_with_tangents(&self, inverse_time: f64, columns: &mut MotionColumns, tangents: &mut MotionColumns) {
+        let (rows, backward) = (self.time.len(), is_backward(inverse_time));
+        let anchor = self.anchor_row(backward);
+        let has_rates = !self.observed_rates.is_empty();
+        for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
+            columns.headings().into_iter().for_each(|column| *column = vec![0.0; rows]);
+            if has_rates {
+                columns.rates.all().into_iter().for_each(|column| *column = vec![0.0; rows]);
+                columns.rates.homogeneous[anchor] = rate;
+            }
+        }
+        {
+            let [of_value, of_tangent] = [&mut *columns, &mut *tangents].map(MotionColumns::slices);
+            let [f, g, h] = of_value.0;
+            let [df, dg, dh] = of_tangent.0;
+            let ([fr, gr, hr], [dfr, dgr, dhr]) = (of_value.1, of_tangent.1);
+            self.motions_with_tangents(inverse_time, backward, |row, [heading, by_heading], [rate, by_rate]| {
+                [f[row], g[row], h[row], _] = heading;
+                [df[row], dg[row], dh[row], _] = by_heading;
+                if has_rates {
+                    [fr[row], gr[row], hr[row], _] = rate;
+                    [dfr[row], dgr[row], dhr[row], _] = by_rate;
+                }
+            });
+        }
+        for columns in [columns, tangents] {
+            columns.headings().into_iter().for_each(|column| keep(&self.observed, column));
+            columns.rates.all().into_iter().for_each(|column| keep(&self.observed_rates, column));
+        }
+    }
+
+    /// Visits heading and yaw rate of the motions φ₁, G, H (and a fourth at rest, for alignment) and their derivatives
+    /// with respect to a, at every row but the anchor.
+    #[inline(always)]
+    fn motions_with_tangents(
+        &self,
+        inverse_time: f64,
+        backward: bool,
+        mut visit: impl FnMut(usize, [[f64; 4]; 2], [[f64; 4]; 2]),
+    ) {
+        let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
+        let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
+        let mut step = TangentTransition::new(inverse_time, 0.0);
+        for TrackStep { from, to, length, rudder_rate: slope, bend } in self.steps(backward) {
+            if needs_new_transition(step.value.h, length) {
+                step = TangentTransition::new(inverse_time, length);
+            }
+            let (f, d, delta) = (&step.value, &step.by_inverse_T, self.rudder[from]);
+            let forced = |[one, two]: [f64; 2]| [0.0, one * delta + two * slope, one, 0.0];
+            let (of_heading, of_rate) = (forced([f.phi2, f.phi3]), forced([f.phi1, f.phi2]));
+            let (of_by_heading, of_by_rate) = (forced([d.phi2, d.phi3]), forced([d.phi1, d.phi2]));
+            for motion in 0..4 {
+                by_heading[motion] += f.phi1 * by_rate[motion] + (d.phi1 * rate[motion] + of_by_heading[motion]);
+                by_rate[motion] = f.decay * by_rate[motion] + (d.decay * rate[motion] + of_by_rate[motion]);
+                heading[motion] += f.phi1 * rate[motion] + of_heading[motion];
+                rate[motion] = f.decay * rate[motion] + of_rate[motion];
+            }
+            if let Some(RudderCorner { remaining, change }) = bend {
+                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, remaining);
+                heading[1] += value.phi3 * change;
+                rate[1] += value.phi2 * change;
+                by_heading[1] += by_inverse_T.phi3 * change;
+                by_rate[1] += by_inverse_T.phi2 * change;
+            }
+            visit(to, [heading, by_heading], [rate, by_rate]);
+        }
+    }
+
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
     pub fn sensitivity(&self, inverse_time: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
-        self.sensitivities(inverse_time, coefficients, [out, &mut Vec::new()]);
-    }
-
-    /// ∂ψ/∂a at the observed rows, rad s, and ∂r/∂a at the rows with a yaw rate, rad.
-    pub fn sensitivities(&self, inverse_time: f64, coefficients: &Coefficients, out: [&mut Vec<f64>; 2]) {
-        let [heading, rate] = out;
-        let of_heading = self.prepared(inverse_time, heading);
-        if self.observed_rates.is_empty() {
-            self.tangents(inverse_time, coefficients, |row, by_heading, _| of_heading[row] = by_heading);
-        } else {
-            let of_rate = self.prepared(inverse_time, rate);
-            self.tangents(inverse_time, coefficients, |row, by_heading, by_rate| {
-                (of_heading[row], of_rate[row]) = (by_heading, by_rate);
-            });
-            keep(&self.observed_rates, rate);
-        }
-        keep(&self.observed, heading);
-    }
-
-    /// Column of all rows, zero at the anchor.
-    fn prepared<'a>(&self, inverse_time: f64, out: &'a mut Vec<f64>) -> &'a mut [f64] {
         out.resize(self.time.len(), 0.0);
         out[self.anchor_row(is_backward(inverse_time))] = 0.0;
-        &mut out[..self.time.len()]
+        let column = &mut out[..self.time.len()];
+        self.tangents(inverse_time, coefficients, |row, by_heading| column[row] = by_heading);
+        keep(&self.observed, out);
     }
 
-    /// Visits ∂ψ/∂a and ∂r/∂a at every row but the anchor.
+    /// Visits ∂ψ/∂a at every row but the anchor.
     #[inline(always)]
-    fn tangents(&self, inverse_time: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64, f64)) {
+    fn tangents(&self, inverse_time: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64)) {
         let backward = is_backward(inverse_time);
         let anchor = coefficients.anchor;
         // Derivative of the motion, and the motion.
@@ -367,7 +437,7 @@ impl Track {
                     yaw_rate[motion] += part * change;
                 }
             }
-            visit(to, heading[0], yaw_rate[0]);
+            visit(to, heading[0]);
         }
     }
 

@@ -56,8 +56,8 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
         let products = records[number].information(inverse_time, vector, &coefficients);
         products.map(|products| products / part.variance)
     };
-    let motions: Option<Vec<Matrix3<f64>>> = vectors.iter().enumerate().map(|(k, vector)| motion(k, vector)).collect();
-    let inverse = motions.as_ref().and_then(|all| all.iter().sum::<Matrix3<f64>>().try_inverse());
+    let motions: Vec<Matrix3<f64>> = parts.iter().map(|part| part.motion / part.variance).collect();
+    let inverse = motions.iter().sum::<Matrix3<f64>>().try_inverse();
     let Some(inverse) = inverse else { return 1.0 };
     // Gradients of log K, log T and δ_r with respect to (1/T, b, b δ_r).
     let (a, b) = (inverse_time, gain);
@@ -81,7 +81,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
                 let change = (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE);
                 // A tied compass error shrinks as its entry grows.
                 let tied = entry == RUDDER && record.declared.is_some();
-                motions.as_ref().filter(|_| tied).map_or(change, |products| change + products[number] * 2.0)
+                if tied { change + motions[number] * 2.0 } else { change }
             })
             .collect();
         let count = entries.len();
@@ -93,7 +93,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
             let seen = inverse * direction;
             let size = direction.dot(&seen);
             let change = |by: &Matrix3<f64>| -seen.dot(&(by * seen)) / size;
-            let by_size = motions.as_ref().map_or(0.0, |products| change(&(products[number] * -2.0)));
+            let by_size = change(&(motions[number] * -2.0));
             let mut slopes = DVector::from_iterator(count, by_entry.iter().map(change));
             if !is_tied {
                 slopes -= &maximum.linearised.totals[number] * (by_size / (2.0 * readings));
@@ -293,7 +293,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noi
     if is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }
-    let record = Record::new(track, noise.rudder_sd > 0.0);
+    let record = Record::new(track, noise.rudder_sd > 0.0, None);
     let information = record.information(truth.inverse_T, &NoiseVector::from_model(noise, truth), &coefficients)?;
     let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);

@@ -115,7 +115,7 @@ impl PreparedRecords {
             .zip(trials)
             .map(|(track, trial)| {
                 let track = track.with_rates(trial.yaw_rate().filter(|_| gyro), trial);
-                Record { declared: declared_sd(trial).filter(|_| declared), ..Record::new(track, by_row) }
+                Record::new(track, by_row, declared_sd(trial).filter(|_| declared))
             })
             .collect();
         Ok(Self { records, start: first.response, outliers: suspects, too_many, evaluations })
@@ -288,7 +288,12 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
             MomentKind::White | MomentKind::Walk => search.level_starts(a, &none, kind),
             MomentKind::OrnsteinUhlenbeck => search.gust_starts(white.as_ref(), walk.as_ref()),
         };
-        let start = search.best_start(starts, |point| point.restricted);
+        let start = match kind {
+            MomentKind::White | MomentKind::Walk => {
+                search.best_level(starts, plain.map(|(_, plain)| plain.point.restricted))
+            }
+            _ => search.best_start(starts, |point| point.restricted),
+        };
         // A moment without gain at any size is absent; the BIC still counts its entries.
         let is_unseen = |start: &Point| {
             matches!(kind, MomentKind::White | MomentKind::Walk)

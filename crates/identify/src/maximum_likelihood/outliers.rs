@@ -108,11 +108,13 @@ fn isolation(sides: [Option<Neighbours>; 2]) -> f64 {
 /// Comparison of every reading with its neighbours before and after.
 fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> {
     let against = |k: usize, side: std::ops::Range<usize>| {
-        let mut around: Vec<f64> = side.map(|other| residual[kept[other]]).collect();
+        let mut neighbours = [0.0; NEIGHBOURS];
+        let around = &mut neighbours[..side.len()];
+        around.iter_mut().zip(&kept[side]).for_each(|(value, &other)| *value = residual[other]);
         (around.len() >= MIN_NEIGHBOURS).then(|| {
-            let level = middle(&mut around);
+            let level = middle(around);
             around.iter_mut().for_each(|value| *value = (*value - level).abs());
-            Neighbours { distance: residual[kept[k]] - level, spread: middle(&mut around) }
+            Neighbours { distance: residual[kept[k]] - level, spread: middle(around) }
         })
     };
     (0..kept.len())
@@ -124,12 +126,14 @@ fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> 
 
 /// First readings after changes of level.
 fn jumps(residual: &[f64], kept: &[usize], floor: f64) -> Vec<usize> {
-    let level = |range: std::ops::Range<usize>| middle(&mut range.map(|k| residual[kept[k]]).collect::<Vec<f64>>());
     if kept.len() < 4 * SIDE {
         return Vec::new();
     }
-    let places: Vec<usize> = (SIDE..=kept.len() - SIDE).collect();
-    let changes: Vec<f64> = places.iter().map(|&k| level(k..k + SIDE) - level(k - SIDE..k)).collect();
+    // Median of every run of readings, by its first reading.
+    let runs = (0..=kept.len() - SIDE).map(|k| std::array::from_fn::<f64, SIDE, _>(|side| residual[kept[k + side]]));
+    let levels: Vec<f64> = runs.map(|mut run| middle(&mut run)).collect();
+    let places: Vec<usize> = (SIDE..levels.len()).collect();
+    let changes: Vec<f64> = places.iter().map(|&k| levels[k] - levels[k - SIDE]).collect();
     let limit = (JUMP_SDS * NORMAL * middle(&mut magnitudes(&changes))).max(floor);
     let mut accepted: Vec<usize> = Vec::new();
     let mut order: Vec<usize> = (0..changes.len()).filter(|&k| changes[k].abs() > limit).collect();

@@ -5,6 +5,9 @@
 //! other unknowns: the likelihood of the part that these unknowns cannot fit, which does not underestimate the noise
 //! (Patterson and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use estimation::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
@@ -34,17 +37,32 @@ pub(super) struct Record {
     /// Declared standard deviation of the rudder error, rad. It fixes the rudder error of a noise vector, whose entry
     /// then represents the size of the compass error.
     pub declared: Option<f64>,
+    /// Columns of the last 1/T: the filters of many noise laws share them.
+    last_columns: RefCell<Option<Rc<RecordColumns>>>,
 }
 
-/// Whitened columns of one record: nuisance columns of its initial state and jumps, orthonormal; and the responses to
-/// rudder and constant and the readings, projected off the nuisance columns.
+/// Columns of the readings of one record for one 1/T.
+#[derive(Debug, Clone)]
+struct RecordColumns {
+    inverse_time: f64,
+    /// Columns of the initial state and of the jumps.
+    nuisance: Vec<Vec<f64>>,
+    /// Responses to rudder and constant, and the readings.
+    projected: [Vec<f64>; 3],
+    /// Derivatives with respect to 1/T of the responses to the initial yaw rate, rudder and constant.
+    tangents: [Vec<f64>; 3],
+}
+
+/// Whitened columns of one record, projected off the nuisance columns of its initial state and jumps: the responses to
+/// rudder and constant, and the readings.
 #[derive(Debug, Clone)]
 pub(super) struct WhitenedColumns {
     pub filter: Whitener,
-    pub nuisance: Vec<Vec<f64>>,
     /// Triangular factor from the orthonormal columns to those of the initial state and the jumps.
     triangle: DMatrix<f64>,
     pub projected: [Vec<f64>; 3],
+    /// Derivatives of [`RecordColumns`], projected off the nuisance columns.
+    tangents: [Vec<f64>; 3],
     /// Components of responses and readings along the nuisance columns.
     shares: [Vec<f64>; 3],
 }
@@ -85,9 +103,9 @@ pub(super) struct Point {
 }
 
 impl Record {
-    pub fn new(track: Track, by_row: bool) -> Self {
+    pub fn new(track: Track, by_row: bool, declared: Option<f64>) -> Self {
         let schedule = Schedule::new(&track, by_row);
-        Self { track, schedule, jumps: Vec::new(), declared: None }
+        Self { track, schedule, jumps: Vec::new(), declared, last_columns: RefCell::default() }
     }
 
     /// Number of readings.
@@ -116,31 +134,21 @@ impl Record {
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
+    /// Columns of a ship with this 1/T; those of the last 1/T are kept.
+    fn columns(&self, inverse_time: f64) -> Rc<RecordColumns> {
+        let mut last = self.last_columns.borrow_mut();
+        if let Some(columns) = last.as_ref().filter(|columns| columns.is_of(self, inverse_time)) {
+            return Rc::clone(columns);
+        }
+        let columns = Rc::new(RecordColumns::new(self, inverse_time));
+        *last = Some(Rc::clone(&columns));
+        columns
+    }
+
     /// Columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a column is
     /// not finite.
     fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<WhitenedColumns> {
-        let mut motion = MotionColumns::default();
-        self.track.fill_columns(inverse_time, &mut motion);
-        let MotionColumns { homogeneous, rudder, constant, rates } = &motion;
-        let ones = self.schedule.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
-        let mut nuisance = vec![ones, self.schedule.stacked(homogeneous, &rates.homogeneous)];
-        nuisance.extend(self.jumps.iter().map(|&jump| self.step_at(jump)));
-        let columns = [
-            self.schedule.stacked(rudder, &rates.rudder),
-            self.schedule.stacked(constant, &rates.constant),
-            self.schedule.stacked(&self.track.heading, &self.track.rates),
-        ];
-        WhitenedColumns::new(nuisance, columns, whitener(&self.schedule, noise, [0.0; 2]))
-    }
-
-    /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
-    fn by_time(&self, white: &WhitenedColumns, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
-        let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
-        self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
-        let mut column = self.schedule.stacked(&by_heading, &by_rate);
-        white.filter.apply(&mut [&mut column]);
-        white.nuisance.iter().for_each(|unit| _ = project_off(unit, &mut column));
-        column
+        WhitenedColumns::new(&self.columns(inverse_time), whitener(&self.schedule, noise, [0.0; 2]))
     }
 
     /// Products of the whitened sensitivities to (1/T, b, b δ_r) at given coefficients, with the initial state
@@ -152,7 +160,7 @@ impl Record {
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
         let white = self.white(inverse_time, &vector.parameters(inverse_time))?;
-        let by_time = self.by_time(&white, inverse_time, coefficients);
+        let by_time = white.by_time(coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
     }
@@ -165,12 +173,37 @@ pub(super) fn project_off(unit: &[f64], column: &mut [f64]) -> f64 {
     share
 }
 
+impl RecordColumns {
+    fn new(record: &Record, inverse_time: f64) -> Self {
+        let Record { track, schedule, jumps, .. } = record;
+        let (mut motion, mut by_time) = (MotionColumns::default(), MotionColumns::default());
+        track.fill_with_tangents(inverse_time, &mut motion, &mut by_time);
+        let ones = schedule.stacked(&vec![1.0; track.len()], &vec![0.0; track.rates.len()]);
+        let stacked = |MotionColumns { homogeneous, rudder, constant, rates }: &MotionColumns| {
+            [(homogeneous, &rates.homogeneous), (rudder, &rates.rudder), (constant, &rates.constant)]
+                .map(|(heading, rate)| schedule.stacked(heading, rate))
+        };
+        let [homogeneous, rudder, constant] = stacked(&motion);
+        let mut nuisance = vec![ones, homogeneous];
+        nuisance.extend(jumps.iter().map(|&jump| record.step_at(jump)));
+        let projected = [rudder, constant, schedule.stacked(&track.heading, &track.rates)];
+        Self { inverse_time, nuisance, projected, tangents: stacked(&by_time) }
+    }
+
+    /// `true` if these are the columns of a record for this 1/T.
+    fn is_of(&self, record: &Record, inverse_time: f64) -> bool {
+        self.inverse_time == inverse_time && self.nuisance.len() == record.nuisance_count()
+    }
+}
+
 impl WhitenedColumns {
-    fn new(mut nuisance: Vec<Vec<f64>>, mut projected: [Vec<f64>; 3], filter: Whitener) -> Option<Self> {
+    fn new(columns: &RecordColumns, filter: Whitener) -> Option<Self> {
+        let RecordColumns { mut nuisance, mut projected, mut tangents, .. } = columns.clone();
         let (first, jumps) = nuisance.split_at_mut(2);
         let [heading, yaw_rate] = first else { return None };
         let [rudder, constant, readings] = &mut projected;
-        filter.apply(&mut [heading, yaw_rate, rudder, constant, readings]);
+        let [by_yaw_rate, by_rudder, by_constant] = &mut tangents;
+        filter.apply(&mut [heading, yaw_rate, rudder, constant, readings, by_yaw_rate, by_rudder, by_constant]);
         jumps.iter_mut().for_each(|jump| filter.apply(&mut [jump]));
         let count = nuisance.len();
         let mut triangle = DMatrix::zeros(count, count);
@@ -189,7 +222,17 @@ impl WhitenedColumns {
             column[0].iter_mut().for_each(|x| *x *= per);
         }
         let shares = projected.each_mut().map(|column| nuisance.iter().map(|unit| project_off(unit, column)).collect());
-        Some(Self { filter, nuisance, triangle, projected, shares })
+        for column in &mut tangents {
+            nuisance.iter().for_each(|unit| _ = project_off(unit, column));
+        }
+        Some(Self { filter, triangle, projected, tangents, shares })
+    }
+
+    /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
+    fn by_time(&self, Coefficients { anchor, gain, offset }: &Coefficients) -> Vec<f64> {
+        let [by_yaw_rate, by_rudder, by_constant] = &self.tangents;
+        let steered = by_rudder.iter().zip(by_constant).map(|(g, h)| gain * g + offset * h);
+        by_yaw_rate.iter().zip(steered).map(|(f, steered)| anchor.yaw_rate * f + steered).collect()
     }
 
     /// Products of the sensitivities to 1/T, b and b δ_r.
@@ -295,12 +338,11 @@ impl RecordAtPoint {
         let white = record.white(inverse_time, &noise.parameters(filtered))?;
         let weight = Weight::new(record, noise, &white, readings);
         let variance = weight.variance(steering[0], steering[1]);
-        Self::from_columns(record, inverse_time, steering, white, &weight, variance)
+        Self::from_columns(record, steering, white, &weight, variance)
     }
 
     fn from_columns(
         record: &Record,
-        inverse_time: f64,
         [gain, offset]: [f64; 2],
         white: WhitenedColumns,
         weight: &Weight,
@@ -312,7 +354,7 @@ impl RecordAtPoint {
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         let determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
-        let by_time = record.by_time(&white, inverse_time, &Coefficients { anchor, gain, offset });
+        let by_time = white.by_time(&Coefficients { anchor, gain, offset });
         let (motion, innovations) = (white.motion(&by_time), white.residual(gain, offset));
         let readings = record.len();
         Some(Self { variance, readings, anchor, innovations, deviance, determinant, motion, white, by_time })
@@ -337,9 +379,8 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVe
     let (steering, variances) = weigh(&weights)?;
     let steering: [f64; 2] = steering.into();
     let parts = columns.into_iter().zip(weights.iter().zip(variances)).zip(records);
-    let part = |((white, (weight, variance)), record)| {
-        RecordAtPoint::from_columns(record, inverse_time, steering, white, weight, variance)
-    };
+    let part =
+        |((white, (weight, variance)), record)| RecordAtPoint::from_columns(record, steering, white, weight, variance);
     let parts = parts.map(part).collect::<Option<Vec<_>>>()?;
     let deviance = parts.iter().map(|part| part.deviance).sum::<f64>();
     let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();

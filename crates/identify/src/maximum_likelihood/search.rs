@@ -17,6 +17,9 @@ const MIN_DECREASE_ALONE: f64 = 1e-12;
 /// Maximum increase of −2 log of the restricted likelihood in a step.
 const SLACK: f64 = 1e-2;
 
+/// Rise of −2 log of the restricted likelihood with the size of a moment beyond which larger moments are hopeless.
+const STEEP_RISE: f64 = 2.0;
+
 /// Ridge, relative to the scaled information, for its regularity.
 const RIDGE: f64 = 1e-10;
 
@@ -105,6 +108,25 @@ impl Search<'_> {
     pub fn best_start(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
         let points = starts.iter().filter_map(|(a, vectors)| self.evaluate(*a, vectors));
         points.min_by(|a, b| height(a).total_cmp(&height(b)))
+    }
+
+    /// Start with the lowest restricted −2 log L among starts of increasing size; a size after which it rises by more
+    /// than [`STEEP_RISE`] above `without` a moment ends the search.
+    pub fn best_level(&mut self, starts: Vec<Start>, without: Option<f64>) -> Option<Point> {
+        let mut best: Option<Point> = None;
+        let mut last = f64::INFINITY;
+        for (a, vectors) in starts {
+            let Some(point) = self.evaluate(a, &vectors) else { continue };
+            let is_steep = without.is_some_and(|without| point.restricted > last.max(without) + STEEP_RISE);
+            last = point.restricted;
+            if best.as_ref().is_none_or(|best| point.restricted < best.restricted) {
+                best = Some(point);
+            }
+            if is_steep {
+                break;
+            }
+        }
+        best
     }
 
     /// Start at the noise vectors obtained by `moved` from given vectors.

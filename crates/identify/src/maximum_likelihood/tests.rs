@@ -105,8 +105,10 @@ fn the_score_is_the_derivative() {
         record_with_gyro(trial.time().to_vec(), trial.heading().to_vec(), trial.rudder().to_vec(), rate)
     };
     let trials = [disturbed(&noisy(), &ExtraNoise::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
-    let records: Vec<Record> =
-        trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
+    let records: Vec<Record> = trials
+        .iter()
+        .map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true, None))
+        .collect();
     for moment in MomentKind::ALL {
         let vectors = [
             NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
