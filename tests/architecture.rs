@@ -43,7 +43,7 @@ const ASKED_FOR: [(&str, &str, &[&str]); 6] = [
 ];
 
 /// What draws a kind of figure.
-const KINDS: [&str; 4] = ["layers", "rows", "cells", "zigzag_trial"];
+const KINDS: [&str; 4] = ["layers", "row_layers", "cells", "zigzag_trial"];
 
 /// What a reader of the README types first.
 const COMMANDS: [(&str, &str); 2] = [("sh", "cargo run -p study -- scenarios/yukun.toml"), ("sh,skip=", "cargo test")];

@@ -9,16 +9,16 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 68_316,
-    tests: 31_177,
+    code: 69_002,
+    tests: 31_297,
     long_functions: 0,
-    shared_types: 8,
+    shared_types: 7,
     packages: 298,
     tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 11_149,
+    largest_crate: 11_354,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.

@@ -69,9 +69,8 @@ impl<'a> RecordFacts<'a> {
         // Structures may replay the records better, but give no speed in another manoeuvre.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
-        let after_trials = fitted.iter().filter(|hull| hull.expected.has_trials);
-        self.checks =
-            after_trials.filter_map(|hull| Some((hull.expected.form.as_str(), hull.prior_check()?))).collect();
+        let informed = fitted.iter().filter(|hull| hull.expected.has_trials);
+        self.checks = informed.filter_map(|hull| Some((hull.expected.form.as_str(), hull.prior_check()?))).collect();
         let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {

@@ -8,9 +8,10 @@
 //! rudder movement, random moments do not: nine terms explain nearly all of a missing ship term and part of a random
 //! moment.
 //!
-//! The test is of first order in small terms and does not identify a term; [`unexplained_share`](LackOfFit::unexplained_share) is
-//! compared with a limit from simulated trials. It is a score test by linearised regression, Ljung (1999), System
-//! Identification: Theory for the User, chapter 16 on model validation.
+//! The test is of first order in small terms and does not identify a term;
+//! [`unexplained_share`](LackOfFit::unexplained_share) is compared with a limit from simulated trials. It is a score
+//! test by linearised regression, Ljung (1999), System Identification: Theory for the User, chapter 16 on model
+//! validation.
 
 use estimation::column::dot;
 use ship::FirstOrder;

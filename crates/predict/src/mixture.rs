@@ -54,8 +54,8 @@ const MAX_TRIES: usize = 100;
 /// Correlation time of the process that approximates a white moment, in timescales of the ship.
 const WHITE_CORRELATION_TIME: f64 = 0.05;
 
-/// Structure prepared for sampling: model and square root of its parameter covariance. A hull, if there is one, replaces
-/// the model.
+/// Structure prepared for sampling: model and square root of its parameter covariance. A hull, if there is one,
+/// replaces the model.
 #[derive(Debug, Clone)]
 pub(crate) struct StructureSampler {
     /// Probability among all structures.
@@ -134,8 +134,8 @@ impl ShipMixture {
         Ok(Self { parts, files, shares, timescale, is_independent: false, shares_trial_errors: false, wind: None })
     }
 
-    /// The same ships, sampled with random numbers independent of `other`. If each ship has one hull, converted from the
-    /// hull of `other`, the estimation errors of that hull stay common to both.
+    /// The same ships, sampled with random numbers independent of `other`. If each ship has one hull, converted from
+    /// the hull of `other`, the estimation errors of that hull stay common to both.
     pub fn independent_of(self, other: &Self) -> Self {
         let shares_trial_errors =
             |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
@@ -188,8 +188,8 @@ impl ShipMixture {
             let rate = gear.rate_rad_s + random_part(UncertaintySource::SteeringGear, gear_normal * gear.sd_rad_s);
             SteeringGear::with_rate(rate.max(0.1 * gear.rate_rad_s))
         });
-        // A hull converted to another loading shares the sampled errors of the trial hull (stream 2) and adds independent
-        // conversion errors (stream 3).
+        // A hull converted to another loading shares the sampled errors of the trial hull (stream 2) and adds
+        // independent conversion errors (stream 3).
         let of_trial = StreamKey { seed: u64::from(self.is_independent && !self.shares_trial_errors), ..key };
         let mut rng = of_trial.indexed(Purpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {

@@ -8,6 +8,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::IntoLogRange;
 
+pub use crate::division::Division;
 use crate::fonts::text_width;
 use crate::lines::wrap;
 use crate::number;
@@ -27,34 +28,6 @@ const MARGIN: f64 = 1.3;
 /// Maximum number of decades of a logarithmic axis with lines between the decades.
 const MAX_TICKED_DECADES: i32 = 6;
 
-/// Division of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Division {
-    /// Equal steps of 1, 2 or 5 times a power of ten.
-    #[default]
-    Decimal,
-    /// Degrees.
-    Angle,
-    /// Seconds and minutes, without free space at the ends.
-    Time,
-    /// Equal factors; zero has a separate place beyond a break, and negative values are omitted.
-    Factors,
-    /// From 0 to 100 %, whatever the data.
-    Percent,
-}
-
-impl Division {
-    /// Unit of the ticks over a span: one, 30° or 30 s, 90° or 60 s.
-    fn unit(self, span: f64) -> f64 {
-        match (self, span) {
-            (Self::Time, 1e3..) => 60.0,
-            (Self::Angle, 400.0..) => 90.0,
-            (Self::Time | Self::Angle, 100.0..) => 30.0,
-            _ => 1.0,
-        }
-    }
-}
-
 #[derive(Debug, Clone, PartialEq)]
 enum AxisScale {
     Linear(Division),
@@ -73,8 +46,8 @@ pub(crate) struct Axis {
     /// Value at the right or upper end, below `lo` if names run downwards.
     hi: f64,
     scale: AxisScale,
-    /// Maximum value with a tick: the range beyond is free for text.
-    last: f64,
+    /// Maximum value with a tick: the range beyond is free for text; infinite if there is none.
+    pub last: f64,
     /// Tick values with their labels.
     pub ticks: Vec<(f64, String)>,
 }
@@ -136,11 +109,6 @@ impl Axis {
         let (lo, last) = (self.lo, self.hi);
         let hi = if self.is_logarithmic() { last * (last / lo).powf(part) } else { last + part * (last - lo) };
         if share > 0.0 { Self { hi, last: last.min(self.last), ..self } } else { self }
-    }
-
-    /// Value at which the data end; infinite without free space behind them.
-    pub(crate) fn last(&self) -> f64 {
-        self.last
     }
 
     /// The axis from `lo` to `hi`, which are in order.

@@ -54,7 +54,7 @@ impl Chart {
 
     /// Right end of the data: of the frame, or of the space for numbers in it.
     pub(crate) fn data_right(&self) -> f64 {
-        Some(self.x.last())
+        Some(self.x.last)
             .filter(|last| last.is_finite())
             .and_then(|last| self.page_x(last))
             .unwrap_or(self.rect.right())

@@ -48,6 +48,7 @@ mod backend;
 mod canvas;
 mod changes;
 mod chart;
+mod division;
 mod fonts;
 mod indexed;
 mod legend;

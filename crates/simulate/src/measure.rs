@@ -1,5 +1,5 @@
-//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`PerfectReadings`] contains the
-//! readings of perfect instruments; [`with_sensor_errors`] adds the random errors of one record.
+//! Measurement: from the true motion to a record, with instruments, clocks and drop-outs. A [`PerfectReadings`]
+//! contains the readings of perfect instruments; [`with_sensor_errors`] adds the random errors of one record.
 //!
 //! Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265, for bursts of lost rows.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]

@@ -30,7 +30,8 @@ pub enum CorrelatedNoise {
     Walk,
     /// Compass error ε added to the heading: ε' = −ε/τ + w; the index is that of τ in [`COMPASS_CORRELATION_SHARES`].
     Compass(usize),
-    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w; the index is that of τ in [`SMOOTH_ERROR_CORRELATION_SHARES`].
+    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w; the index is that of τ in
+    /// [`SMOOTH_ERROR_CORRELATION_SHARES`].
     Smooth(usize),
     /// Smooth moment of unknown shape (Matérn 3/2): r' = −a r + d, d'' + 2d'/τ + d/τ² = w; the index is that of τ in
     /// [`SMOOTH_MOMENT_CORRELATION_SHARES`].

@@ -13,6 +13,7 @@
 //! Sources: Åström and Källström (1976), Automatica 12, 9–22, for maximum likelihood on ship records; Van Loan (1978)
 //! for exact discretisation; Harvey (1989) for the prediction error decomposition.
 
+mod columns;
 pub mod filter;
 pub mod parameters;
 pub mod schedule;

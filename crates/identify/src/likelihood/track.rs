@@ -11,6 +11,9 @@ use ship::FirstOrder;
 use ship::first_order::{State, TangentTransition, Transition};
 use trial::Trial;
 
+pub use super::columns::MotionColumns;
+use super::columns::keep;
+
 /// Relative tolerance of equal step lengths: far below the resolution of a clock.
 const STEP_TOLERANCE: f64 = 1e-9;
 
@@ -85,50 +88,6 @@ impl RudderCorner {
         let step = Transition::new(inverse_time, self.remaining);
         [step.phi3 * self.change, step.phi2 * self.change]
     }
-}
-
-/// Columns of the heading except the constant column, at the observed rows.
-#[derive(Debug, Clone, Default)]
-pub struct MotionColumns {
-    /// φ₁(t − t₁), s.
-    pub homogeneous: Vec<f64>,
-    /// Response G to the rudder, rad s².
-    pub rudder: Vec<f64>,
-    /// Response H to a constant, s².
-    pub constant: Vec<f64>,
-    /// Columns of the yaw rate, at the rows where it is used.
-    pub rates: RateColumns,
-}
-
-impl MotionColumns {
-    /// The three columns of the heading.
-    fn headings(&mut self) -> [&mut Vec<f64>; 3] {
-        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
-    }
-
-    /// Columns of the heading and of the yaw rate.
-    fn slices(&mut self) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
-        let Self { homogeneous, rudder, constant, rates } = self;
-        ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all().map(Vec::as_mut_slice))
-    }
-}
-
-impl RateColumns {
-    /// The three columns.
-    fn all(&mut self) -> [&mut Vec<f64>; 3] {
-        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
-    }
-}
-
-/// Yaw rates of the columns.
-#[derive(Debug, Clone, Default)]
-pub struct RateColumns {
-    /// exp(−a (t − t₁)).
-    pub homogeneous: Vec<f64>,
-    /// Response G' to the rudder, rad s.
-    pub rudder: Vec<f64>,
-    /// Response H' to a constant, s.
-    pub constant: Vec<f64>,
 }
 
 /// Coefficients of the four columns.
@@ -333,11 +292,7 @@ impl Track {
         let anchor = self.anchor_row(backward);
         let has_rates = !self.observed_rates.is_empty();
         for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
-            columns.headings().into_iter().for_each(|column| *column = vec![0.0; rows]);
-            if has_rates {
-                columns.rates.all().into_iter().for_each(|column| *column = vec![0.0; rows]);
-                columns.rates.homogeneous[anchor] = rate;
-            }
+            columns.reset(rows, has_rates.then_some((anchor, rate)));
         }
         {
             let [of_value, of_tangent] = [&mut *columns, &mut *tangents].map(MotionColumns::slices);
@@ -354,8 +309,7 @@ impl Track {
             });
         }
         for columns in [columns, tangents] {
-            columns.headings().into_iter().for_each(|column| keep(&self.observed, column));
-            columns.rates.all().into_iter().for_each(|column| keep(&self.observed_rates, column));
+            columns.keep(&self.observed, &self.observed_rates);
         }
     }
 
@@ -478,16 +432,6 @@ impl Track {
             }
             visit(to, state);
         }
-    }
-}
-
-/// Keeps the given rows of a column that was filled in every row.
-fn keep(rows: &[usize], column: &mut Vec<f64>) {
-    if rows.len() < column.len() {
-        for (place, &row) in rows.iter().enumerate() {
-            column[place] = column[row];
-        }
-        column.truncate(rows.len());
     }
 }
 

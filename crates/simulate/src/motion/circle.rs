@@ -61,8 +61,8 @@ const STEADY: f64 = TAU;
 const MIN_STEADY_CHANGE: f64 = PI;
 
 /// Characteristics of a turn with the execute at `execute` s, from times (s, increasing), headings (rad, not wrapped),
-/// positions (m, north and east: measured, or of [`dead_reckoning`]; empty if unknown), surge and sway at the same point (m/s),
-/// and yaw rates (rad/s).
+/// positions (m, north and east: measured, or of [`dead_reckoning`]; empty if unknown), surge and sway at the same
+/// point (m/s), and yaw rates (rad/s).
 ///
 /// The course of the approach is the heading at the execute; the last heading determines the side of the turn. The
 /// heading is interpolated linearly between rows. The steady turn is the part after a heading change of 360°, if it

@@ -13,8 +13,8 @@ pub fn probability_from_gain(gain: f64, factor: f64) -> f64 {
 }
 
 impl TraceParts<'_> {
-    /// Probability that one of the terms selected by `matches` is present, for each of [`PRIOR_ODDS_FACTORS`]; empty if no
-    /// structure has one. The odds of a required effect are not changed.
+    /// Probability that one of the terms selected by `matches` is present, for each of [`PRIOR_ODDS_FACTORS`]; empty if
+    /// no structure has one. The odds of a required effect are not changed.
     pub fn by_prior_odds(&self, matches: impl Fn(&TermName) -> bool) -> Vec<f64> {
         let is_weighed = |name: &TermName| !self.settings.selection.requires(name.0);
         let with = |factor: f64| self.structures.probability_with_odds(factor, is_weighed, &matches);

@@ -1,0 +1,70 @@
+//! Columns of heading and yaw rate of which a first-order response is a linear combination.
+
+/// Columns of the heading except the constant column, at the observed rows.
+#[derive(Debug, Clone, Default)]
+pub struct MotionColumns {
+    /// φ₁(t − t₁), s.
+    pub homogeneous: Vec<f64>,
+    /// Response G to the rudder, rad s².
+    pub rudder: Vec<f64>,
+    /// Response H to a constant, s².
+    pub constant: Vec<f64>,
+    /// Columns of the yaw rate, at the rows where it is used.
+    pub rates: RateColumns,
+}
+
+impl MotionColumns {
+    /// The three columns of the heading.
+    fn headings(&mut self) -> [&mut Vec<f64>; 3] {
+        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
+    }
+
+    /// Columns of zeros; `rate` is the row and the value of the homogeneous yaw rate at the anchor, if there are rates.
+    pub(super) fn reset(&mut self, rows: usize, rate: Option<(usize, f64)>) {
+        self.headings().into_iter().for_each(|column| *column = vec![0.0; rows]);
+        if let Some((anchor, rate)) = rate {
+            self.rates.all().into_iter().for_each(|column| *column = vec![0.0; rows]);
+            self.rates.homogeneous[anchor] = rate;
+        }
+    }
+
+    /// Keeps the rows with a heading and those with a yaw rate.
+    pub(super) fn keep(&mut self, headings: &[usize], rates: &[usize]) {
+        self.headings().into_iter().for_each(|column| keep(headings, column));
+        self.rates.all().into_iter().for_each(|column| keep(rates, column));
+    }
+
+    /// Columns of the heading and of the yaw rate.
+    pub(super) fn slices(&mut self) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
+        let Self { homogeneous, rudder, constant, rates } = self;
+        ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all().map(Vec::as_mut_slice))
+    }
+}
+
+impl RateColumns {
+    /// The three columns.
+    pub(super) fn all(&mut self) -> [&mut Vec<f64>; 3] {
+        [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
+    }
+}
+
+/// Yaw rates of the columns.
+#[derive(Debug, Clone, Default)]
+pub struct RateColumns {
+    /// exp(−a (t − t₁)).
+    pub homogeneous: Vec<f64>,
+    /// Response G' to the rudder, rad s.
+    pub rudder: Vec<f64>,
+    /// Response H' to a constant, s.
+    pub constant: Vec<f64>,
+}
+
+/// Keeps the given rows of a column that was filled in every row.
+pub(super) fn keep(rows: &[usize], column: &mut Vec<f64>) {
+    if rows.len() < column.len() {
+        for (place, &row) in rows.iter().enumerate() {
+            column[place] = column[row];
+        }
+        column.truncate(rows.len());
+    }
+}
