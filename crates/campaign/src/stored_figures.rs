@@ -313,6 +313,6 @@ mod tests {
         let estimates = method_ids().enumerate().map(estimate).collect();
         let drawn = svg(Intervals { estimates, truth, ..Intervals::default() }.rows());
         assert!(drawn.contains("<tspan font-style=\"italic\">K</tspan> [1/s]") && drawn.contains("no estimate"));
-        assert!(drawn.contains("Bars: 95 % intervals") && drawn.contains("Arrows: beyond the axis."));
+        assert!(drawn.contains("Error bars: 95 % intervals") && drawn.contains("Arrows: beyond the axis."));
     }
 }

@@ -127,7 +127,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// #     order = if psi * order > 20.0 { -order } else { order };
 /// #     delta = next;
 /// # }
-/// # let read = trial::reader::read_bytes("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
 /// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
 /// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");

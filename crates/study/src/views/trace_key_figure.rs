@@ -90,14 +90,14 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
 fn all_held(held: &[BeforeAfter]) -> Stack {
     let mut order: Vec<&BeforeAfter> = held.iter().collect();
     order.sort_by(|a, b| b.before.heading_rmse_deg.total_cmp(&a.before.heading_rmse_deg));
-    let models: [(CurveOrigin, fn(&BeforeAfter) -> f64); 2] = [
-        (CurveOrigin::Before, |errors| errors.before.heading_rmse_deg),
-        (CurveOrigin::After, |errors| errors.after.heading_rmse_deg),
-    ];
-    let layers = models.map(|(origin, error)| {
+    let layer = |origin: CurveOrigin, error: fn(&BeforeAfter) -> f64| {
         let points = order.iter().zip(1..).map(|(errors, place)| (f64::from(place), error(errors), None));
         Layer::marks("", origin.look(), points.collect())
-    });
+    };
+    let layers = vec![
+        layer(CurveOrigin::Before, |errors| errors.before.heading_rmse_deg),
+        layer(CurveOrigin::After, |errors| errors.after.heading_rmse_deg),
+    ];
     let [before, after] = rms(held.iter()).map(|error| significant(error, 3));
     let head = format!(
         "(e) all {} held-out records: rms {before}° → {after}°, {:.0} %",
@@ -105,7 +105,7 @@ fn all_held(held: &[BeforeAfter]) -> Stack {
         100.0 * ratio(held.iter())
     );
     let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
-    let panel = LayeredPanel { head: Some(head), layers: layers.into(), ..LayeredPanel::default() };
+    let panel = LayeredPanel { head: Some(head), layers, ..LayeredPanel::default() };
     let x = vec![AxisSpec::decimal("held-out record, worst first")];
     Stack { x, rows: vec![row], panels: vec![panel], ..Stack::default() }
 }

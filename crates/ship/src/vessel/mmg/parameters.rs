@@ -171,15 +171,15 @@ macro_rules! named_constants {
 
 constants!(BySign: positive negative);
 named_constants!(HullDerivatives: mx my Jz R0 Xvv Xvr Xrr Xvvvv Yv Yr Yvvv Yvvr Yvrr Yrrr Nv Nr Nvvv Nvvr Nvrr Nrrr);
-constants!(Propeller: DP wP0 tP xP, wake = Wake::to_real, k = |k: &[f64; 3]| k.map(R::from));
+constants!(Propeller: DP wP0 tP xP, wake = |wake: &Wake| wake.to_real(), k = |k: &[f64; 3]| k.map(R::from));
 constants!(Rudder: AR eta f_alpha epsilon kappa tR aH xH xR lR, gammaR = BySign::to_real);
 constants!(Parameters: Lpp d volume xG kzz,
     hull = HullDerivatives::to_real, propeller = Propeller::to_real, rudder = Rudder::to_real);
 
 impl Wake {
-    fn to_real<R: Real>(&self) -> Wake<R> {
+    fn to_real<R: Real>(self) -> Wake<R> {
         match self {
-            Self::Exponential { C1, C2 } => Wake::Exponential { C1: R::from(*C1), C2: C2.to_real() },
+            Self::Exponential { C1, C2 } => Wake::Exponential { C1: R::from(C1), C2: C2.to_real() },
             Self::Gaussian => Wake::Gaussian,
         }
     }

@@ -18,12 +18,12 @@ fn summed(body: &str) -> String {
 /// Content of a log of sentences.
 type Sentences = (Vec<Series>, Log);
 
-fn read_bytes(bytes: &[u8]) -> Result<Sentences, Problem> {
+fn read_from(bytes: &[u8]) -> Result<Sentences, Problem> {
     read(Lines::new(bytes, Encoding::Utf8))
 }
 
 fn read_log(lines: &[String]) -> Result<Sentences, Problem> {
-    read_bytes(lines.join("\r\n").as_bytes())
+    read_from(lines.join("\r\n").as_bytes())
 }
 
 fn source(lines: &[String]) -> Sentences {
@@ -235,7 +235,7 @@ fn damaged_lines_are_counted_and_read_past() {
     }
     bytes.extend(vec![b'x'; 3 << 20]);
     bytes.extend(b"\n\n\n");
-    let source = read_bytes(&bytes).expect("most lines are sound");
+    let source = read_from(&bytes).expect("most lines are sound");
     assert_eq!(series(&source, Channel::Heading).time.len(), 20);
     assert_eq!(source.1.rows, 31);
     assert!(has_warning(&source, "9 of 31 lines are cut short or not text"), "{:?}", source.1.warnings);
@@ -326,7 +326,7 @@ fn positions_are_metres_from_the_first() {
 #[test]
 fn lines_are_counted_and_the_hash_is_that_of_the_file() {
     let text = stamped(&["HEHDT,1.0,T", "HEHDT,2.0,T", "HEHDT,3.0,T"]).join("\n");
-    let source = read_bytes(text.as_bytes()).expect("a log");
+    let source = read_from(text.as_bytes()).expect("a log");
     assert_eq!((source.1.rows, series(&source, Channel::Heading).time.len()), (3, 3));
     assert_eq!(source.1.sha256, crate::reader::lines::sha256(text.as_bytes()));
 }
