@@ -17,7 +17,7 @@ pub struct IndexEstimates {
     /// T, s.
     #[serde(rename = "T_s")]
     pub t_s: Quantity,
-    /// δ_r, deg.
+    /// Rudder bias δ_r, deg.
     pub delta_r_deg: Quantity,
 }
 

@@ -288,7 +288,7 @@ impl Equations {
         Vector3::new(self.minus_rate[equation], self.rudder[equation], 1.0)
     }
 
-    /// Regressors times residual, part by part.
+    /// Scores of every part of the record: each regressor times the residual at the parameters a, b, c.
     fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<[Vec<f64>; 3]> {
         let mut equation = 0;
         let mut part_scores = |rows: usize| {

@@ -10,7 +10,7 @@ use skrifa::{FontRef, MetadataProvider};
 
 use crate::markup::is_markup;
 
-/// Name of the embedded family.
+/// Name of the embedded font family.
 pub(crate) const FAMILY: &str = "DejaVu Sans";
 
 /// Font families in an SVG. Verdana is second because its widths are nearest to those of DejaVu Sans, with which the

@@ -42,7 +42,7 @@ const MIN_FORECAST_S: f64 = 10.0;
 const MIN_ELAPSED: Duration = Duration::from_secs(1);
 
 /// Known number of steps of about equal duration.
-pub struct ProgressSteps {
+pub struct ProgressStages {
     bar: ProgressBar,
     label: &'static str,
     most: u64,
@@ -52,7 +52,7 @@ pub struct ProgressSteps {
     is_told: AtomicBool,
 }
 
-impl ProgressSteps {
+impl ProgressStages {
     /// Progress over `most` steps, of which `done` are complete; `side_by_side` run at a time.
     pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {

@@ -66,7 +66,7 @@ pub struct SampledTriples {
     pub answers: Vec<TripleEstimate>,
     /// Number of sampled triples.
     pub tried: usize,
-    /// Number of triples left out with three points on a line, as with three equal rudder angles.
+    /// Number of triples left out because their points lie on a line, for example with three equal rudder angles.
     pub singular: usize,
     /// Number of triples left out with a condition number above the limit.
     pub ill_conditioned: usize,

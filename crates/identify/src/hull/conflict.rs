@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::is_trial_specific;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::expected::FormPrior;
+use super::expected::HullFormPrior;
 
 /// Maximum ratio of posterior to prior variance of an informed direction.
 const MAX_RATIO: f64 = 0.9;
@@ -43,7 +43,7 @@ impl PriorCheck {
 
     /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` if
     /// the records add no information.
-    pub(super) fn of(expected: &FormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn of(expected: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
             (0..values.len()).filter(|&place| !is_trial_specific(expected.coefficients[place].key)).collect();
         let of_ship =

@@ -11,7 +11,7 @@ use trial::{Channel, Columns, Trial};
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
 use super::track::HullTrack;
-use super::{EarlierHull, FormPrior, HullEstimate, combined, fit};
+use super::{EarlierHull, HullEstimate, HullFormPrior, combined, fit};
 
 const SHIP: HullParticulars = HullParticulars {
     length: LENGTH,
@@ -40,7 +40,7 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
 /// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
 /// deviations of the prior of her particulars.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
-    let expected = FormPrior::candidates(Some(ship), all);
+    let expected = HullFormPrior::candidates(Some(ship), all);
     let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
     let place = expected.coefficients.iter().position(|own| own.key == key).expect("known");
     let (own, generic) = (expected.coefficients[place], expected.form.coefficients()[place]);
@@ -103,7 +103,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
     assert_eq!(Likeness::of(&SHIP, &ballast), Likeness::OtherHull);
     let of = |ship: &HullParticulars, all: &[EarlierHull]| {
-        let expected = FormPrior::candidates(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
+        let expected = HullFormPrior::candidates(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
         *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
     };
     let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
@@ -120,7 +120,7 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
 #[test]
 fn what_is_expected_follows_the_hull_of_the_trials() {
     let ballast = HullParticulars { draught: Some(0.3), ..SHIP };
-    let expected = FormPrior::candidates(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
+    let expected = HullFormPrior::candidates(Some(&ballast), &[earlier(SHIP, "mmg")]).pop().expect("the last is MMG");
     let [covariance, gain] = expected.covariance_and_gain().expect("trials are in it");
     let own = expected.form.coefficients();
     let place = |key: &str| own.iter().position(|one| one.key == key).expect("known");
@@ -129,7 +129,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
     near(of("epsilon"), [11.0 / 12.0, 1.0 / 12.0]);
     near(of("R0"), [0.0, 1.0]);
     near(of("delta_r"), [0.0, 1.0]);
-    assert!(FormPrior::candidates(Some(&ballast), &[])[0].covariance_and_gain().is_none());
+    assert!(HullFormPrior::candidates(Some(&ballast), &[])[0].covariance_and_gain().is_none());
 }
 
 /// Particulars that only one ship declares are used for both ships.
@@ -137,7 +137,7 @@ fn what_is_expected_follows_the_hull_of_the_trials() {
 fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
     let of = |ship: &HullParticulars| {
-        let all = FormPrior::candidates(Some(ship), &[earlier(SHIP, "mmg")]);
+        let all = HullFormPrior::candidates(Some(ship), &[earlier(SHIP, "mmg")]);
         all.into_iter().find(|own| own.form.as_str() == "mmg").expect("known").mean()
     };
     assert!((of(&bare) - of(&SHIP)).amax() < 1e-12);
@@ -152,8 +152,8 @@ fn left_by(estimate: &HullEstimate) -> EarlierHull {
     }
 }
 
-fn quadratic(all: &[EarlierHull]) -> FormPrior {
-    FormPrior::candidates(Some(&SHIP), all).remove(0)
+fn quadratic(all: &[EarlierHull]) -> HullFormPrior {
+    HullFormPrior::candidates(Some(&SHIP), all).remove(0)
 }
 
 /// Mean square heading error of the replays of other records, rad².
@@ -184,10 +184,10 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
     let third = sailed([15.0, 15.0]);
     let others = [[20.0, 10.0], [-15.0, 10.0], [25.0, 20.0]].map(sailed);
     let mut squares = [0.0; 2];
-    for (place, expected) in FormPrior::candidates(Some(&SHIP), &[]).iter().enumerate() {
+    for (place, expected) in HullFormPrior::candidates(Some(&SHIP), &[]).iter().enumerate() {
         let earlier = left_by(&fit(&two, expected).expect("a fit"));
         let whole = fit(std::slice::from_ref(&third), expected).expect("a fit");
-        let after_trials = FormPrior::candidates(Some(&SHIP), &[earlier]).swap_remove(place);
+        let after_trials = HullFormPrior::candidates(Some(&SHIP), &[earlier]).swap_remove(place);
         let half = fit(&[half_of(&third)], &after_trials).expect("a fit");
         let [half_square, whole_square] = [&half, &whole].map(|own| error_on(own, &others));
         squares = [squares[0] + half_square, squares[1] + whole_square];

@@ -25,7 +25,7 @@ const MIN_INFORMATION: f64 = 1e-6;
 
 /// Normal prior distribution of the coefficients of one hull form.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FormPrior {
+pub struct HullFormPrior {
     /// Hull form.
     pub form: HullForm,
     /// Particulars of the ship; `None` if they are not declared.
@@ -57,7 +57,7 @@ pub fn differs_in_froude_number(earlier: &HullParticulars, ship: &HullParticular
     (earlier.froude_number() / ship.froude_number() - 1.0).abs() > FROUDE_TOLERANCE
 }
 
-impl FormPrior {
+impl HullFormPrior {
     /// Prior from the form alone.
     pub fn from_form(form: HullForm) -> Self {
         let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
@@ -125,7 +125,7 @@ impl EarlierHull {
     ///
     /// Coefficients of a single trial are left out, as are coefficients of friction at another scale, except through
     /// their correlations.
-    fn information(&self, expected: &FormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    fn information(&self, expected: &HullFormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::of(&self.particulars, ship);
         let before = self.form.coefficients();
         let of_ship = |key: &str| !is_trial_specific(key) && (likeness == Likeness::SameShip || !is_frictional(key));
@@ -168,7 +168,7 @@ impl EarlierHull {
     }
 
     /// Prior means before the earlier trials, moved by the change of the formulas with the particulars.
-    fn carried(&self, expected: &FormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
+    fn carried(&self, expected: &HullFormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
         // A particular that only one ship declares has no effect.
         let filled = self.particulars.with_missing_from(ship);
         let forms = HullForm::candidates(Some(&filled));

@@ -7,7 +7,7 @@
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`HullDeviations`], which describe the error of the form and not of a sensor: a hull
+//! with the standard deviations of [`CoefficientDeviations`], which describe the error of the form and not of a sensor: a hull
 //! of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every record,
 //! down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw rate is
 //! not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the
@@ -44,9 +44,9 @@ use trial::Trial;
 
 pub use conflict::PriorCheck;
 pub use error::HullFitError;
-pub use expected::{EarlierHull, FormPrior, differs_in_froude_number};
+pub use expected::{EarlierHull, HullFormPrior, differs_in_froude_number};
 pub use moment::FormMoment;
-pub use objective::HullDeviations;
+pub use objective::CoefficientDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
@@ -86,7 +86,7 @@ pub struct HullResidual {
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
     /// Form, and the prior of the coefficients.
-    pub expected: FormPrior,
+    pub expected: HullFormPrior,
     /// Length, speed and propeller rate that make the quantities dimensionless.
     pub reference: HullReference,
     /// Values of the coefficients.
@@ -103,7 +103,7 @@ pub struct HullEstimate {
 ///
 /// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart, an
 /// impossible duration or a start near rest, or if no coefficients near the prior can be replayed.
-pub fn fit(trials: &[Trial], expected: &FormPrior) -> Result<HullEstimate, HullFitError> {
+pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &expected.form;
     let mut problem = HullObjective::new(expected, &tracks);
@@ -152,7 +152,7 @@ const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
-    let expected = FormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    let expected = HullFormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 

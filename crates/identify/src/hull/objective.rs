@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
-use super::expected::FormPrior;
+use super::expected::HullFormPrior;
 use super::replayed::{ReplayedWindow, replay_rows};
 use super::track::HullTrack;
 use super::turn::HardTurn;
@@ -25,7 +25,7 @@ const MIN_GAIN: f64 = 1e-6;
 /// Standard deviations of the residuals of a hull, which weigh the kinds of reading: even the best form leaves an
 /// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HullDeviations {
+pub struct CoefficientDeviations {
     /// Standard deviation of the heading of a whole replay, rad.
     pub whole: f64,
     /// Standard deviation of the heading in a window, rad.
@@ -35,10 +35,12 @@ pub struct HullDeviations {
 }
 
 /// Minimum deviations of a record.
-const MIN_DEVIATIONS: HullDeviations = HullDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+const MIN_DEVIATIONS: CoefficientDeviations =
+    CoefficientDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search, so large that the hull stays near its prior.
-const FIRST_DEVIATIONS: HullDeviations = HullDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
+const FIRST_DEVIATIONS: CoefficientDeviations =
+    CoefficientDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean square residuals of a record, and the initial yaw rate of the whole replay, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -58,9 +60,9 @@ struct Starts {
 
 /// Objective of the fit of a form with its priors to records.
 pub(super) struct HullObjective<'a> {
-    expected: &'a FormPrior,
+    expected: &'a HullFormPrior,
     tracks: &'a [HullTrack],
-    deviations: Vec<HullDeviations>,
+    deviations: Vec<CoefficientDeviations>,
     starts: Vec<Starts>,
     /// `true` once the starts have been fitted.
     is_begun: bool,
@@ -160,7 +162,7 @@ pub(super) fn window_mean_square(
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(expected: &'a FormPrior, tracks: &'a [HullTrack]) -> Self {
+    pub fn new(expected: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
         assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
@@ -192,7 +194,7 @@ impl<'a> HullObjective<'a> {
     pub fn reweigh(&mut self, at: &[f64]) {
         let misfits = self.misfits(at).unwrap_or_default();
         for (deviations, misfit) in self.deviations.iter_mut().zip(misfits) {
-            *deviations = HullDeviations {
+            *deviations = CoefficientDeviations {
                 whole: MIN_DEVIATIONS.whole.max(misfit.whole.sqrt()),
                 window: MIN_DEVIATIONS.window.max(misfit.window.sqrt()),
                 speed: MIN_DEVIATIONS.speed.max(misfit.speed.sqrt()),
@@ -226,8 +228,8 @@ impl Objective for HullObjective<'_> {
         let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with_coefficients(at)) else {
             return f64::INFINITY;
         };
-        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &HullDeviations)| {
-            let HullDeviations { whole, window, speed } = *deviations;
+        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &CoefficientDeviations)| {
+            let CoefficientDeviations { whole, window, speed } = *deviations;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(misfit.whole, whole) + share(misfit.window, window);
             self.weight(track) * (headings + share(misfit.speed, speed))
@@ -249,7 +251,7 @@ impl Objective for HullObjective<'_> {
             normal.gradient.axpy(-departure.value, &by, 1.0);
         }
         for ((track, starts), deviations) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
-            let HullDeviations { whole, window, speed } = *deviations;
+            let CoefficientDeviations { whole, window, speed } = *deviations;
             let lengths = self.weight(track);
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
@@ -320,7 +322,7 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 /// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
 /// coefficients are not valid.
 pub(super) fn heading_variances(
-    expected: &FormPrior,
+    expected: &HullFormPrior,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,

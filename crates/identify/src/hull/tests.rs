@@ -15,7 +15,7 @@ use trial::{Channel, Columns, Origin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{FormMoment, FormPrior, HullEstimate, HullFitError, HullReference, fit, fit_all, supported_hulls};
+use super::{FormMoment, HullEstimate, HullFitError, HullFormPrior, HullReference, fit, fit_all, supported_hulls};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -73,7 +73,7 @@ fn records(moment: impl Fn(usize) -> f64 + Copy) -> Vec<Trial> {
 }
 
 fn quadratic(trials: &[Trial]) -> HullEstimate {
-    fit(trials, &FormPrior::from_form(form())).expect("a fit")
+    fit(trials, &HullFormPrior::from_form(form())).expect("a fit")
 }
 
 /// All coefficients are recovered within 2.5 standard deviations, and the moment of the rudder within 15 %.
@@ -155,7 +155,7 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     let [fitted, other] = [20.0, 10.0].map(|angle| record(&ship, [angle, angle], |_| 0.0));
     let dimensions = HullParticulars { length: LENGTH, speed: SPEED, beam: Some(1.27), ..HullParticulars::default() };
     for form in HullForm::candidates(Some(&dimensions)) {
-        let expected = FormPrior::from_form(form);
+        let expected = HullFormPrior::from_form(form);
         let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
         let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
         let mut problem = HullObjective::new(&expected, &tracks);
@@ -259,7 +259,7 @@ fn a_trial_at_slow_ahead_is_one() {
 
 #[test]
 fn records_that_tell_no_hull_are_refused() {
-    let expected = FormPrior::from_form(form());
+    let expected = HullFormPrior::from_form(form());
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
         let channels = [Channel::Heading, Channel::Speed].map(|key| (key, trial.channel(key).expect("one").to_vec()));

@@ -4,12 +4,12 @@ use nalgebra::Cholesky;
 use ship::vessel::prime::HullForm;
 
 use super::conflict::PriorCheck;
-use super::expected::{EarlierHull, FormPrior};
+use super::expected::{EarlierHull, HullFormPrior};
 
 /// Estimate of some trials combined with the estimate of earlier trials, which it does not include yet, and the check
 /// of both against each other; `None` if the earlier trials have no information on its form.
 ///
-/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`FormPrior`]. Both are treated as
+/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated as
 /// normal laws: if they are far apart, a fit with the earlier trials as prior is better.
 pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();
@@ -19,12 +19,13 @@ pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(Earlie
     }
     let precision = Cholesky::new(fitted.covariance.clone())?.inverse();
     let (form, particulars) = (fitted.form.clone(), Some(fitted.particulars));
-    let mut both = FormPrior { form, particulars, coefficients, precision, has_trials: false };
+    let mut both = HullFormPrior { form, particulars, coefficients, precision, has_trials: false };
     let of_form: Vec<&EarlierHull> = earlier.iter().filter(|hull| is_same_form(&hull.form)).collect();
     both.add(&fitted.particulars, &of_form);
     let [covariance, _] = both.covariance_and_gain()?;
     let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
-    let before = FormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
+    let before =
+        HullFormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
     let check = before.and_then(|before| PriorCheck::of(&before, &after.values, &after.covariance));
     Some((after, check))
 }

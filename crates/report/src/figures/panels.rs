@@ -203,7 +203,7 @@ impl Layer {
     }
 
     /// The marks joined by a line.
-    pub fn joined(mut self, pen: Pen) -> Self {
+    pub fn with_line(mut self, pen: Pen) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
             marks.joined = Some(pen);
         }

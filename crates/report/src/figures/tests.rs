@@ -93,7 +93,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
     let named = |(number, origin): (usize, CurveOrigin)| {
         let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
-        if number % 2 == 0 { marks.joined(Pen::of(&origin)) } else { marks.apart() }
+        if number % 2 == 0 { marks.with_line(Pen::of(&origin)) } else { marks.apart() }
     };
     let marks = Stack::over(
         ruler("noise [°]"),
@@ -393,7 +393,7 @@ fn a_line_leaves_its_panel_where_it_does() {
 fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let marks = |name: &str, far: f64| {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];
-        Layer::marks(name, CurveOrigin::After.look(), points).joined(Pen::new(INK))
+        Layer::marks(name, CurveOrigin::After.look(), points).with_line(Pen::new(INK))
     };
     let row = PanelRow::new(AxisSpec::new("rms error of T [%]", Division::Factors), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];

@@ -353,7 +353,8 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
             };
             let origin = origin(design, method);
             let points: Vec<_> = group.cells.iter().filter_map(point).collect();
-            (!points.is_empty()).then(|| Layer::marks(origin.label(), origin.look(), points).joined(Pen::of(&origin)))
+            (!points.is_empty())
+                .then(|| Layer::marks(origin.label(), origin.look(), points).with_line(Pen::of(&origin)))
         };
         let bound = |&cell: &usize| Some((at(cell)?, compared.shown_bound(cell, panel)?));
         let (bx, by): (Vec<f64>, Vec<f64>) = group.cells.iter().filter_map(bound).unzip();

@@ -75,7 +75,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
         }));
     }
     let points = x.iter().zip(horizons).map(|(x, entries)| (*x, pooled(entries, *error), None)).collect();
-    layers.push(Layer::marks(origin.label(), look, points).joined(Pen::of(origin)));
+    layers.push(Layer::marks(origin.label(), look, points).with_line(Pen::of(origin)));
     layers
 }
 

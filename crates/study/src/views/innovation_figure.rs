@@ -98,7 +98,7 @@ fn correlation(series: &GappedSeries) -> Stack {
     let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(AxisSpec::decimal("autocorrelation"), 0.32) };
     let thin = Pen::new(HEADING).width(0.6);
     let mut stack =
-        Stack::over(AxisSpec::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).joined(thin)])]);
+        Stack::over(AxisSpec::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).with_line(thin)])]);
     stack.is_half = true;
     stack.panels[0].head = Some(format!("{outside} of {} lags outside ±1.96/√n", points.len()));
     stack

@@ -331,7 +331,7 @@ mod tests {
     fn points_of_curves_have_their_values_once() {
         let layer = |id: &str, y: f64| {
             let pen = Pen::new(method(id).1.colour);
-            Layer::marks(id, method(id).1, vec![(2.0, y, None), (5.0, 3.0 * y, None)]).joined(pen)
+            Layer::marks(id, method(id).1, vec![(2.0, y, None), (5.0, 3.0 * y, None)]).with_line(pen)
         };
         let layers = vec![
             layer("least-squares", f64::INFINITY),

@@ -119,7 +119,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
         let dash = if line.is_named { SOLID } else { DASHED };
         let look = Look { colour, marker: MARKERS[number % MARKERS.len()], dash, hollow: !line.is_named };
         let points = prior.odds_factors.iter().zip(line.probability).map(|(x, y)| (*x, *y, None)).collect();
-        Layer::marks(line.name.as_str(), look, points).joined(Pen { dash, ..Pen::new(colour) })
+        Layer::marks(line.name.as_str(), look, points).with_line(Pen { dash, ..Pen::new(colour) })
     };
     let layers = lines.iter().enumerate().map(layer).collect();
     let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32) };

@@ -8,7 +8,7 @@ use campaign::earlier_trials::hulls_of;
 use campaign::failure::Failure;
 use document::identified_hull::IdentifiedHull;
 use document::{IdentifiedShip, WarningCode, WarningSource, Warnings};
-use identify::hull::FormPrior;
+use identify::hull::HullFormPrior;
 use predict::drawable_hull;
 use ship::ShortNumber;
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError, hull_prior};
@@ -79,8 +79,9 @@ impl DescribedLoading {
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
-        let expected = FormPrior::candidates(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
-        let at_loading = |expected: FormPrior| {
+        let expected =
+            HullFormPrior::candidates(Some(&to), &earlier).into_iter().find(|hull| hull.form.as_str() == FORM);
+        let at_loading = |expected: HullFormPrior| {
             let hull = ship.hulls[0].at_loading(&to, &expected.coefficients, expected.covariance_and_gain()?);
             Some(IdentifiedHull { propeller_per_s: self.given.propeller_rate, ..hull })
         };

@@ -24,7 +24,7 @@ use super::stored_ships::{StoredShips, ships_of, text_of};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, scale_mismatch};
 use crate::documents::prior;
 use crate::options::PredictRequest;
-use crate::progress::ProgressSteps;
+use crate::progress::ProgressStages;
 use crate::records::{file_of, rudder_logged_late, source_of};
 
 /// Methods of fit.json in order of preference; others come last.
@@ -165,7 +165,7 @@ impl SteeredShips<'_> {
     fn predictions(
         &self,
         kinds: &[Manoeuvre],
-        steps: &ProgressSteps,
+        steps: &ProgressStages,
         warnings: &mut Warnings,
     ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
         let (mut predictions, mut lost) = (Vec::new(), None);
@@ -221,7 +221,7 @@ pub fn predict(
     let particulars = mixture.particulars();
     warnings.extend(particulars.and_then(unusual_froude_number));
     let (file, kinds) = (files(models).join(", "), manoeuvres(request));
-    let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
+    let steps = ProgressStages::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
     let (predictions, lost) =
         SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
