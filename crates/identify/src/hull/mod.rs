@@ -7,11 +7,11 @@
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`CoefficientDeviations`], which describe the error of the form and not of a sensor: a hull
-//! of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every record,
-//! down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw rate is
-//! not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the
-//! heading error on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
+//! with the standard deviations of [`CoefficientDeviations`], which describe the error of the form and not of a sensor:
+//! a hull of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every
+//! record, down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw
+//! rate is not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it
+//! changed the heading error on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
 //!
 //! The n records of a ship weigh as much as a single record of their mean length: the error of the form is similar in
 //! all records. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to zig-zags

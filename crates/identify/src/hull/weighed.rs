@@ -9,8 +9,8 @@ use super::expected::{EarlierHull, HullFormPrior};
 /// Estimate of some trials combined with the estimate of earlier trials, which it does not include yet, and the check
 /// of both against each other; `None` if the earlier trials have no information on its form.
 ///
-/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated as
-/// normal laws: if they are far apart, a fit with the earlier trials as prior is better.
+/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated
+/// as normal laws: if they are far apart, a fit with the earlier trials as prior is better.
 pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();
     let mut coefficients = fitted.form.coefficients().to_vec();
