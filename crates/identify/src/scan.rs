@@ -8,7 +8,7 @@ use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
-use crate::likelihood::track::{Track, TrackStep, is_backward, needs_new_transition};
+use crate::likelihood::track::{Track, TrackStep, is_backward, lengths_differ};
 use crate::profile::solve2;
 
 /// Number of values of 1/T in parallel.
@@ -141,7 +141,7 @@ impl estimation::lanes::Kernel for Sweep<'_> {
         let rudder = &track.rudder;
         let backward = is_backward(inverse_time[0]);
         for TrackStep { from, to, length: step, rudder_rate: rate, .. } in track.steps(backward) {
-            if needs_new_transition(length, step) {
+            if lengths_differ(length, step) {
                 length = step;
                 for lane in 0..LANES {
                     let transition = Transition::new(inverse_time[lane], step);

@@ -224,7 +224,7 @@ fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, effect))
 }
 
-/// Sets the parameter sizes of the effects that an earlier column has named.  [on fn set_sizes]
+/// Sets the parameter sizes of the effects that an earlier column has named.
 fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let size = |part: &str| {
         let (symbol, number) = part.split_once('=')?;
@@ -261,7 +261,7 @@ fn times(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| time(effect.time_s)))
 }
 
-/// Sets the times of the effects that an earlier column has named.  [on fn set_times]
+/// Sets the times of the effects that an earlier column has named.
 fn set_times(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let times = list(text, "times of effects", read_time)?;
     let named = &mut answer(row).named;

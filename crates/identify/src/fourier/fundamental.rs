@@ -27,8 +27,8 @@ pub enum Fundamental {
     Global,
     /// One period of the series is the median period between zero crossings of the heading about its mean.
     ZeroCrossings,
-    /// One period of the series is the record plus this many zig-zag periods (periods by ZeroCrossings): the added time
-    /// connects the end of the record to its beginning, so that the record need not be periodic.
+    /// One period of the series is the record plus this many zig-zag periods (periods by `zero-crossings`): the added
+    /// time connects the end of the record to its beginning, so that the record need not be periodic.
     RecordAndPeriods(f64),
 }
 

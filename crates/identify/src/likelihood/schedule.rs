@@ -2,7 +2,7 @@
 
 use estimation::kalman::Reading;
 
-use super::track::{Track, needs_new_transition};
+use super::track::{Track, lengths_differ};
 
 /// Index of the compass among the sensors.
 pub const HEADING: usize = 0;
@@ -24,7 +24,7 @@ impl Span {
     }
 
     fn has_pieces(&self, pieces: &[f64]) -> bool {
-        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(a, b)| !needs_new_transition(*a, *b))
+        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(a, b)| !lengths_differ(*a, *b))
     }
 }
 

@@ -267,7 +267,7 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if needs_new_transition(step.h, length) {
+            if lengths_differ(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
             let delta = self.rudder[from];
@@ -294,20 +294,16 @@ impl Track {
         for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
             columns.reset(rows, has_rates.then_some((anchor, rate)));
         }
-        {
-            let [of_value, of_tangent] = [&mut *columns, &mut *tangents].map(MotionColumns::slices);
-            let [f, g, h] = of_value.0;
-            let [df, dg, dh] = of_tangent.0;
-            let ([fr, gr, hr], [dfr, dgr, dhr]) = (of_value.1, of_tangent.1);
-            self.motions_with_tangents(inverse_time, backward, |row, [heading, by_heading], [rate, by_rate]| {
-                [f[row], g[row], h[row], _] = heading;
-                [df[row], dg[row], dh[row], _] = by_heading;
-                if has_rates {
-                    [fr[row], gr[row], hr[row], _] = rate;
-                    [dfr[row], dgr[row], dhr[row], _] = by_rate;
-                }
-            });
-        }
+        let ([f, g, h], [fr, gr, hr]) = columns.slices();
+        let ([df, dg, dh], [dfr, dgr, dhr]) = tangents.slices();
+        self.motions_with_tangents(inverse_time, backward, |row, [heading, by_heading], [rate, by_rate]| {
+            [f[row], g[row], h[row], _] = heading;
+            [df[row], dg[row], dh[row], _] = by_heading;
+            if has_rates {
+                [fr[row], gr[row], hr[row], _] = rate;
+                [dfr[row], dgr[row], dhr[row], _] = by_rate;
+            }
+        });
         for columns in [columns, tangents] {
             columns.keep(&self.observed, &self.observed_rates);
         }
@@ -326,7 +322,7 @@ impl Track {
         let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: slope, bend } in self.steps(backward) {
-            if needs_new_transition(step.value.h, length) {
+            if lengths_differ(step.value.h, length) {
                 step = TangentTransition::new(inverse_time, length);
             }
             let (f, d, delta) = (&step.value, &step.by_inverse_T, self.rudder[from]);
@@ -368,7 +364,7 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if needs_new_transition(step.value.h, length) {
+            if lengths_differ(step.value.h, length) {
                 step = TangentTransition::new(inverse_time, length);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
@@ -420,7 +416,7 @@ impl Track {
         visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_time, 0.0);
         for TrackStep { from, to, length, rudder_rate, bend } in self.steps(backward) {
-            if needs_new_transition(step.h, length) {
+            if lengths_differ(step.h, length) {
                 step = Transition::new(inverse_time, length);
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
@@ -437,6 +433,6 @@ impl Track {
 
 /// `true` if a step requires a transition other than that of the last step.
 #[inline(always)]
-pub fn needs_new_transition(last: f64, h: f64) -> bool {
+pub fn lengths_differ(last: f64, h: f64) -> bool {
     (last - h).abs() > STEP_TOLERANCE * h.abs()
 }

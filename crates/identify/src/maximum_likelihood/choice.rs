@@ -282,17 +282,16 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         if (!kinds.contains(&kind) && !gusts) || hopeless {
             continue;
         }
-        let starts = match kind {
-            MomentKind::None if none[0].rudder => search.entry_starts(a, &none, RUDDER),
-            MomentKind::None => vec![(a, none.clone())],
-            MomentKind::White | MomentKind::Walk => search.level_starts(a, &none, kind),
-            MomentKind::OrnsteinUhlenbeck => search.gust_starts(white.as_ref(), walk.as_ref()),
-        };
+        let restricted = |point: &Point| point.restricted;
         let start = match kind {
+            MomentKind::None if none[0].rudder => search.best_start(search.entry_starts(a, &none, RUDDER), restricted),
+            MomentKind::None => search.evaluate(a, &none),
             MomentKind::White | MomentKind::Walk => {
-                search.best_level(starts, plain.map(|(_, plain)| plain.point.restricted))
+                search.best_level(search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))
             }
-            _ => search.best_start(starts, |point| point.restricted),
+            MomentKind::OrnsteinUhlenbeck => {
+                search.best_start(search.gust_starts(white.as_ref(), walk.as_ref()), restricted)
+            }
         };
         // A moment without gain at any size is absent; the BIC still counts its entries.
         let is_unseen = |start: &Point| {

@@ -92,7 +92,8 @@ pub(super) struct Maximum {
 }
 
 impl Search<'_> {
-    fn evaluate(&mut self, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
+    /// Point at a 1/T and noise vectors; `None` if it is not a ship or not finite.
+    pub fn evaluate(&mut self, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
         self.evaluations += 1;
         evaluate(self.records, inverse_time, vectors)
     }

@@ -134,7 +134,7 @@ pub struct Marks {
     pub apart: bool,
 }
 
-/// WordsPlace of a point in which its words are.
+/// Place of the words of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WordsPlace {
     /// `true` above the point.

@@ -119,12 +119,8 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
                 chart.rectangle([left, right], [row - 0.5, row + 0.5], HEADING.mix(GROUND))?;
             }
             beyond |= draw(chart, theme, column, pitch)?;
-            column
-                .rows
-                .iter()
-                .flatten()
-                .filter_map(|item| bar_length(chart, item))
-                .for_each(|bar| bars.add(bar, theme));
+            let lengths = column.rows.iter().flatten().filter_map(|item| bar_length(chart, item));
+            lengths.for_each(|length| bars.add(length, theme));
         }
     }
     let arrows = beyond.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
@@ -186,7 +182,7 @@ fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
     // Numbers are right of all data.
     let widest: f64 = number_widths(column, theme).iter().sum();
-    let room = column.room.max(widest / panel).min(MAX_ROOM);
+    let room = (widest / panel).min(MAX_ROOM);
     let kept = if room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
     data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
@@ -239,8 +235,8 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     for (row, items) in column.rows.iter().enumerate() {
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
         let y = chart.page_y(row as f64).unwrap_or(f64::NAN);
-        for ((text, colour), width) in numbers(items, theme).into_iter().rev().zip(widths.iter().rev()) {
-            chart.canvas.text_on_ground((right, y), &TextLine { colour, ..text })?;
+        for (number, width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
+            chart.canvas.text_on_ground((right, y), number)?;
             right -= width;
         }
     }
@@ -249,10 +245,6 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     let is_estimated = column.rows.iter().flatten().all(is_estimate);
     for (row, items) in column.rows.iter().enumerate() {
         let middle = chart.page_y(row as f64).unwrap_or(f64::NAN);
-        for words in items.iter().filter_map(|item| item.text.as_ref()) {
-            let place = (chart.rect.right() - 0.4 * theme.small_font, middle);
-            chart.canvas.text_on_ground(place, &TextLine::new(words, theme.small_font, HPos::Right))?;
-        }
         if is_estimated && !items.iter().any(RowItem::is_value) {
             let text = TextLine { colour: RECORD, ..TextLine::new("no estimate", theme.small_font, HPos::Center) };
             chart.canvas.text_on_ground((chart.rect.x + chart.rect.w / 2.0, middle), &text)?;
@@ -307,11 +299,14 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     Ok(true)
 }
 
-/// Numbers of a row with the colours of their items.
-fn numbers(items: &[RowItem], theme: &Theme) -> Vec<(TextLine, RGBColor)> {
+/// Numbers of a row: of marks and distributions in their colour.
+fn numbers(items: &[RowItem], theme: &Theme) -> Vec<TextLine> {
     let number = |item: &RowItem| {
-        let (RowKind::Mark(look, ..) | RowKind::Violin(look, ..)) = item.kind.clone() else { return None };
-        Some((TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right), look.colour))
+        let colour = match &item.kind {
+            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => look.colour,
+            _ => INK,
+        };
+        Some(TextLine { colour, ..TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right) })
     };
     items.iter().filter_map(number).collect()
 }
@@ -320,9 +315,9 @@ fn numbers(items: &[RowItem], theme: &Theme) -> Vec<(TextLine, RGBColor)> {
 fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
     let mut widths: Vec<f64> = Vec::new();
     for items in &column.rows {
-        for (place, (text, _)) in numbers(items, theme).iter().rev().enumerate() {
+        for (place, number) in numbers(items, theme).iter().rev().enumerate() {
             widths.resize(widths.len().max(place + 1), 0.0);
-            widths[place] = widths[place].max(text.width() + theme.small_font);
+            widths[place] = widths[place].max(number.width() + theme.small_font);
         }
     }
     widths.reverse();

@@ -48,9 +48,7 @@ pub struct RowItem {
     pub place: RowPlace,
     /// `true` if the item may be cut when it leaves the range of all other data by more than that range.
     pub soft: bool,
-    /// Number written at the right end of the row.
-    pub text: Option<String>,
-    /// Number written at the right end of the row, in the colour of the item.
+    /// Number written at the right end of the row, in the colour of a mark.
     pub number: Option<String>,
 }
 
@@ -58,7 +56,7 @@ impl RowItem {
     /// Item in the middle of its row that sets the axis.
     pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
-        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, text: None, number: None }
+        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, number: None }
     }
 
     /// Row that is a heading.
@@ -95,8 +93,6 @@ pub struct RowsColumn {
     pub rows: Vec<Vec<RowItem>>,
     /// `true` if the axis includes zero, with a line there.
     pub zero: bool,
-    /// Share of the axis that is free at its right end, for numbers.
-    pub room: f64,
     /// Reference value.
     pub reference: Option<Reference95>,
     /// Reference values of all rows, with their names in the key.

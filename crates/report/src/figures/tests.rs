@@ -125,7 +125,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).clipped_if_far(),
             RowItem::new("50 %", RowKind::Range(HEADING, [0.1, size(row)])),
-            RowItem { text: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
+            RowItem { number: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
             RowItem::new("limit", RowKind::Limit(size(row))),
             RowItem::new(
                 "",
@@ -142,7 +142,6 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         x,
         rows: (0..n.min(5)).map(items).collect(),
         zero,
-        room: 0.2,
         reference: Some(Reference95::line(1.0)),
         lines: vec![("truth".into(), Pen::new(INK), 0.2)],
         reached: vec![-0.1],

@@ -30,23 +30,17 @@ pub fn trials(design: &Design) -> Option<String> {
 
 /// A chart as the key figure of a study, with a remark on its trials.
 pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -> Plot {
-    let note = match &mut plot {
-        Plot::Panels(data) => {
-            of_panels(data, highlight);
-            &mut data.note
-        }
-        Plot::Rows(data) => {
-            of_rows(data, highlight);
-            &mut data.note
-        }
+    let (remark, note) = match &mut plot {
+        Plot::Panels(data) => (of_panels(data, highlight), &mut data.note),
+        Plot::Rows(data) => (of_rows(data, highlight), &mut data.note),
         Plot::Cells(data) => {
             of_cells(data, highlight);
-            &mut data.note
+            (None, &mut data.note)
         }
         Plot::ZigZag(_) => return plot,
     };
     let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
-    let remarks: Vec<String> = trials.into_iter().chain(over_bound).chain(note.take()).collect();
+    let remarks: Vec<String> = trials.into_iter().chain(over_bound).chain(note.take()).chain(remark).collect();
     *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
     plot
 }
@@ -54,11 +48,11 @@ pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -
 /// Layers that are not highlighted: a single one in pale colours, several as one band from the least to the greatest
 /// value at each point.
 fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
-    let is_word = |layer: &Layer| matches!(layer.kind, LayerKind::Words(..));
-    if names.len() < 2 || quiet.len() < 2 {
-        let pale_layers = quiet.into_iter().filter(|layer| !is_word(layer)).map(pale);
-        let is_named = names.len() < 2;
-        return pale_layers.map(|layer| Layer { name: layer.name.filter(|_| is_named), ..layer }).collect();
+    if names.len() < 2 {
+        return quiet.into_iter().map(pale).collect();
+    }
+    if quiet.len() < 2 {
+        return quiet.into_iter().map(|layer| Layer { name: None, ..pale(layer) }).collect();
     }
     let mut points: Vec<(f64, f64)> = quiet.iter().flat_map(|layer| layer.curve.pairs()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -91,7 +85,8 @@ fn pale(layer: Layer) -> Layer {
     Layer { kind, ..layer }.within(ASIDE)
 }
 
-fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &Highlight) {
+/// Highlights layers; returns a remark on methods that are missing in a panel.
+fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &Highlight) -> Option<String> {
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
@@ -123,8 +118,7 @@ fn of_panels(data: &mut Panels, Highlight { series: about, rows, over_bound }: &
             notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
     }
-    let notes: Vec<String> = data.note.take().into_iter().chain(notes).collect();
-    data.note = Some(notes.join(" ")).filter(|note| !note.is_empty());
+    (!notes.is_empty()).then(|| notes.join(" "))
 }
 
 /// Range of the values of marks in multiples of the Cramér–Rao bound of their panel; `None` without bound.

@@ -40,8 +40,8 @@ pub fn tint(colour: RGBColor) -> RGBColor {
     RGBColor(pale(colour.0), pale(colour.1), pale(colour.2))
 }
 
-/// Highlights rows.
-pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound }: &Highlight) {
+/// Highlights rows; returns a remark on their colours.
+pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound }: &Highlight) -> Option<String> {
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
         for (item, name) in
@@ -67,19 +67,22 @@ pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound
         *row = shown;
         row.extend(pale(quiet, &quiet_names));
     }
-    if !rows.is_empty() {
-        data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows, *over_bound));
-        if data.names.iter().any(|name| name != ALL && !rows.contains(name)) {
-            data.note =
-                Some(data.note.take().map_or_else(String::new, |note| note + " ") + "Dark: the rows of the title.");
-        }
+    if rows.is_empty() {
+        return None;
     }
+    data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows, *over_bound));
+    data.names.iter().any(|name| is_pale(name, rows)).then(|| String::from("Dark: the rows of the title."))
+}
+
+/// `true` if a row is not highlighted.
+fn is_pale(name: &String, about: &[String]) -> bool {
+    name != ALL && !about.contains(name)
 }
 
 /// Moves the highlighted rows up, below the row of all.
 fn sort_rows(data: &mut NamedRows, about: &[String]) {
     let mut order: Vec<usize> = (0..data.names.len()).collect();
-    order.sort_by_key(|&row| data.names[row] != ALL && !about.contains(&data.names[row]));
+    order.sort_by_key(|&row| is_pale(&data.names[row], about));
     data.names = order.iter().map(|&row| data.names[row].clone()).collect();
     for column in &mut data.columns {
         column.rows = order.iter().map(|&row| std::mem::take(&mut column.rows[row])).collect();
@@ -102,7 +105,7 @@ fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_bound: bool) {
     let unit = unit(&column.x.title);
     for (row, name) in column.rows.iter_mut().zip(names) {
-        let is_quiet = name != ALL && !about.contains(name);
+        let is_pale = is_pale(name, about);
         let limit = row.iter().find_map(|item| if let RowKind::Limit(limit) = item.kind { Some(limit) } else { None });
         let limit = limit.filter(|_| over_bound);
         for item in row {
@@ -111,10 +114,10 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
                 let number = significant(*value / limit.unwrap_or(1.0), 2);
                 item.number = Some(format!("{number}{}", if limit.is_some() { "×" } else { unit.as_str() }));
             }
-            if is_quiet {
+            if is_pale {
                 // The key shows the looks of the highlighted rows.
-                look.colour = if *look == OTHER { QUIET } else { tint(look.colour) };
                 item.name = None;
+                look.colour = if *look == OTHER { look.colour } else { tint(look.colour) };
             }
         }
     }

@@ -140,14 +140,13 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     }
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
         let share = wilson_share(*wrong, *trials)?.times(100.0);
-        let text = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
-        Some(vec![RowItem { text, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
+        let number = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
+        Some(vec![RowItem { number, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
     };
     let column = RowsColumn {
         x: AxisSpec::decimal("trials with a false name [%]"),
         rows: rules.iter().map(row).collect::<Option<_>>()?,
         zero: true,
-        room: 0.47,
         ..RowsColumn::default()
     };
     Some(NamedRows {
@@ -370,7 +369,7 @@ mod tests {
         assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
         // For ships without a missing effect the bound is shown: Wilson's of 0 of 2.
         let clean = false_names(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
-        let text = |row: usize| clean.columns[0].rows[row][0].text.as_deref();
+        let text = |row: usize| clean.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
         // Rules with equal counts have one row for each variant.
         let labels = ["bic, long", "posterior, long", "bic, short", "posterior, short"];

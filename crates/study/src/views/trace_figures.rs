@@ -192,18 +192,16 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     let rows: Vec<_> = named.chain(silent).collect();
     let bar = |value: f64, text: String, outcome: Outcome| {
         let (name, look) = outcome_look(outcome);
-        vec![RowItem { text: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
+        vec![RowItem { number: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
     };
-    let column = |x: AxisSpec, room: f64, rows| RowsColumn { x, rows, zero: true, room, ..RowsColumn::default() };
+    let column = |x: AxisSpec, rows| RowsColumn { x, rows, zero: true, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, (value, text), _, outcome)| bar(*value, text.clone(), *outcome));
     let change = rows.iter().map(|(_, _, bic, outcome)| {
         bar(bic.unwrap_or(0.0), bic.map_or_else(|| MISSING.to_owned(), |bic| significant(bic, 3)), *outcome)
     });
     let has_group = trace.effects.iter().any(|effect| !effect.aliases.is_empty());
     let cut = AxisSpec::decimal("ΔBIC (negative: it helps)").within(MAX_BAR_MEDIANS, Some(0.0));
-    let room = if has_group { 0.5 } else { 0.25 };
-    let columns =
-        vec![column(AxisSpec::decimal("probability"), room, probability.collect()), column(cut, 0.3, change.collect())];
+    let columns = vec![column(AxisSpec::decimal("probability"), probability.collect()), column(cut, change.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { names, columns, ..NamedRows::default() };
     let group = if has_group { " In brackets: probability of it or an indistinguishable effect." } else { "" };
