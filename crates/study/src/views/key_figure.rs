@@ -57,7 +57,8 @@ fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
     let mut points: Vec<(f64, f64)> = quiet.iter().flat_map(|layer| layer.curve.pairs()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Errors beyond the axis are infinite.
-    let most = points.iter().map(|(_, y)| *y).filter(|y| y.is_finite()).fold(0.0, f64::max);
+    let finite = points.iter().map(|(_, y)| *y).filter(|y| y.is_finite());
+    let Some(most) = finite.reduce(f64::max) else { return Vec::new() };
     let edge = |pick: fn(f64, f64) -> f64| {
         let groups = points.chunk_by(|a, b| a.0 == b.0);
         let ends = groups
@@ -356,6 +357,7 @@ mod tests {
         assert_eq!(layers[0].name.as_deref(), Some("2 other methods, range"));
         let LayerKind::Band(upper, ..) = &layers[0].kind else { panic!() };
         assert_eq!((&layers[0].curve.y, &upper.y), (&vec![9.0, 27.0], &vec![270.0, 270.0]));
+        assert!(paled(vec![layer("srivc", f64::INFINITY); 2], &["srivc".into(), "other".into()]).is_empty());
         assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound, methods in colour. Marks."));
         assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
