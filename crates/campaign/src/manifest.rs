@@ -58,7 +58,7 @@ pub struct Machine {
     pub wall_time_s: f64,
 }
 
-/// Version and revision of the program, such as "0.2.0 (revision 1a2b3c4d5e)"; ", changed" marks uncommitted source.
+/// Version and revision of the program, such as "0.3.0 (revision 1a2b3c4d5e)"; ", changed" marks uncommitted source.
 pub fn version() -> String {
     let number = env!("CARGO_PKG_VERSION");
     let Some(revision) = option_env!("KEMPF_GIT_REVISION") else { return number.to_owned() };

@@ -40,7 +40,8 @@ pub enum Verdict {
     /// A random moment acts, and no effect is named: the cause is weather, or an effect with a shape that was not
     /// searched for.
     Disturbed,
-    /// Effects are named, and the residual is noise or a random moment.
+    /// Effects are named, and no further shape is found in the residual; a random law describes it, which may be noise,
+    /// weather or an error of the model.
     Traced,
     /// The residual has a shape that belongs to no listed effect.
     Located,

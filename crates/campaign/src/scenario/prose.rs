@@ -62,11 +62,21 @@ impl Presentation {
 pub struct Highlight {
     /// Labels of methods; all if omitted. Of several traces the first one is plotted.
     pub series: Vec<String>,
+    /// Labels of methods that are not in the scenario, whose answers are scored.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub scored: Vec<String>,
     /// Names of rows; all if omitted. Their values are written next to them.
     pub rows: Vec<String>,
     /// `true` if the written values are in multiples of the Cramér–Rao bound.
     #[serde(rename = "over-bound", skip_serializing_if = "std::ops::Not::not")]
     pub over_bound: bool,
+}
+
+impl Highlight {
+    /// Labels of all highlighted methods, those of the scenario first.
+    pub fn methods(&self) -> Vec<String> {
+        [&self.series[..], &self.scored].concat()
+    }
 }
 
 /// Named value of an axis, such as the limit of a rule.

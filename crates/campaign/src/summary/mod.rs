@@ -17,7 +17,7 @@ pub use blind_spots::{BlindSpot, blind_spots, effect_size_axis};
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use judgement::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S};
 pub use performance::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
-pub use predictions::{ImoDecisionTally, PredictionSummary};
+pub use predictions::{ConformalScaling, ImoDecisionTally, PredictionSummary};
 pub use records::{RecordSummary, record_summaries};
 pub use tally::{Tally, summarise};
 pub use tracing::{CALIBRATION_BIN_EDGES, CalibrationBin, MIN_CLEAR_MARGIN, TraceSummary, effect_ids};

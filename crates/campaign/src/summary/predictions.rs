@@ -1,5 +1,6 @@
 //! Coverage of the intervals of predictions, by characteristic of the manoeuvre.
 
+use estimation::statistics::median;
 use predict::imo::limit_of;
 use serde::{Deserialize, Serialize};
 
@@ -21,8 +22,59 @@ pub struct PredictionSummary {
     pub inside: u64,
     /// IMO criterion of the characteristic, with the decisions on it.
     pub criterion: Option<ImoDecisionTally>,
+    /// Trials whose interval, scaled about the median by each of [`interval_scales`], contains the true value, and sums
+    /// of their interval scores.
+    scaled: Vec<(u64, f64)>,
     /// Sums over trials: error of the median, its square, width of the interval, true value.
     sums: [f64; 4],
+}
+
+/// Nominal coverage of the intervals.
+const NOMINAL: f64 = 0.9;
+
+/// Factors by which intervals are scaled about the median to find the one that they lack: 1/8 to 32 in steps of 9 %.
+fn interval_scales() -> impl Iterator<Item = f64> {
+    (-24..=40).map(|eighths| f64::from(eighths) / 8.0).map(f64::exp2)
+}
+
+/// Place of the factor 1 in [`interval_scales`].
+const UNSCALED: usize = 24;
+
+/// Interval score of a 90 % interval: its width, and 20 times the distance of the true value from it; small is good.
+///
+/// Source: T. Gneiting and A. E. Raftery (2007), Strictly proper scoring rules, prediction, and estimation, eq. (43).
+fn interval_score([low, high]: [f64; 2], truth: f64) -> f64 {
+    high - low + 2.0 / (1.0 - NOMINAL) * ((low - truth).max(0.0) + (truth - high).max(0.0))
+}
+
+/// Scaling of the intervals of one ship by the smallest factor that covers 90 % of the figures of the other ships.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConformalScaling {
+    /// Factor on both parts of an interval, below and above its median.
+    pub factor: f64,
+    /// Mean coverage over the figures, unscaled and scaled.
+    pub coverage: [f64; 2],
+    /// Median over the figures of the interval score, relative to the true value, unscaled and scaled.
+    pub score: [f64; 2],
+}
+
+impl ConformalScaling {
+    /// Scaling of the `judged` predictions by the factor of the `others`, every figure with the same weight.
+    ///
+    /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
+    /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ in their noise alone.
+    pub fn from_others(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
+        let coverage = |lines: &[&PredictionSummary], place: usize| {
+            lines.iter().map(|line| line.scaled_coverage(place)).sum::<f64>() / lines.len() as f64
+        };
+        let (place, factor) = interval_scales().enumerate().find(|(place, _)| coverage(others, *place) >= NOMINAL)?;
+        let score = |place| median(&mut judged.iter().map(|line| line.relative_score(place)).collect::<Vec<_>>());
+        Some(Self {
+            factor,
+            coverage: [UNSCALED, place].map(|place| coverage(judged, place)),
+            score: [score(UNSCALED)?, score(place)?],
+        })
+    }
 }
 
 /// Decisions on an IMO criterion: a 90 % interval on one side of the limit is a decision with a probability of at least
@@ -80,6 +132,19 @@ impl PredictionSummary {
     pub fn truth(&self) -> f64 {
         self.mean(3)
     }
+
+    /// Mean interval score.
+    pub fn score(&self) -> f64 {
+        self.scaled[UNSCALED].1 / self.trials as f64
+    }
+
+    fn scaled_coverage(&self, place: usize) -> f64 {
+        self.scaled[place].0 as f64 / self.trials as f64
+    }
+
+    fn relative_score(&self, place: usize) -> f64 {
+        self.scaled[place].1 / self.trials as f64 / self.truth().abs()
+    }
 }
 
 /// Adds the predictions of a row; `length_over_speed` is L/V of the ship, s.
@@ -103,6 +168,12 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
         let error = figure.median - figure.truth;
         let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
         line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
+        line.scaled.resize(interval_scales().count(), (0, 0.0));
+        for (scale, (inside, score)) in interval_scales().zip(&mut line.scaled) {
+            let [low, high] = figure.ci90.map(|end| figure.median + scale * (end - figure.median));
+            *inside += u64::from((low..=high).contains(&figure.truth));
+            *score += interval_score([low, high], figure.truth);
+        }
     }
 }
 
@@ -129,6 +200,37 @@ mod tests {
         assert_eq!((first.bias(), first.width(), first.truth()), (0.0, 5.0, 100.0));
         assert!((first.rms() - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(first.coverage().expect("trials").value, 0.75);
+        // Width 5 in every trial, and 20 times the 1 that the third lies below its interval.
+        assert!((first.score() - (5.0 + 20.0 / 4.0)).abs() < 1e-9);
+    }
+
+    /// Intervals of ±1 whose true values lie 2 off need twice the width; the ship with errors of 1 does not.
+    #[test]
+    fn the_factor_of_other_ships_is_applied() {
+        let ship = |error: f64| {
+            let figure = |error: f64| PredictedCharacteristic {
+                name: "zig-zag 10/10 period_s".into(),
+                truth: 100.0 + error,
+                median: 100.0,
+                ci90: [99.0, 101.0],
+            };
+            let mut lines = Vec::new();
+            for sign in [-1.0, 1.0] {
+                let predicted = Some([figure(sign * error)].into());
+                add_predictions(&mut lines, &StudyRow { predicted, ..StudyRow::default() }, None);
+            }
+            lines.remove(0)
+        };
+        let (near, far) = (ship(1.0), ship(2.0));
+        let scaling = ConformalScaling::from_others(&[&near], &[&far]).expect("both are there");
+        assert_eq!((scaling.factor, scaling.coverage), (2.0, [1.0, 1.0]));
+        assert!((scaling.score[0] - 0.02).abs() < 1e-12 && (scaling.score[1] - 0.04).abs() < 1e-12);
+        let scaling = ConformalScaling::from_others(&[&far], &[&near]).expect("both are there");
+        assert_eq!((scaling.factor, scaling.coverage), (1.0, [0.0, 0.0]));
+        // Width 2 and 20 times 1, of 100.
+        assert!((scaling.score[1] - 0.22).abs() < 1e-9);
+        assert_eq!(ConformalScaling::from_others(&[&near], &[]), None);
+        assert_eq!(ConformalScaling::from_others(&[&near], &[&ship(50.0)]), None);
     }
 
     /// The limit is 5 + L/(2V) = 15°.

@@ -1,25 +1,29 @@
 //! Tables of predictions in a study: coverage of the intervals, by characteristic.
 
+use std::collections::BTreeSet;
+
 use document::names;
-use report::number::{fixed, optional, significant};
+use estimation::statistics::median;
+use report::number::{MISSING, fixed, optional, significant};
 use report::{Table, TableHead};
 
 use super::tables::{head, row_labels};
 use campaign::design::Design;
 use campaign::statistics::{Statistic, grouped, wilson_share};
-use campaign::summary::{ImoDecisionTally, PredictionSummary};
+use campaign::summary::{ConformalScaling, ImoDecisionTally, PredictionSummary};
 
 /// Coverage of every characteristic of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let head = head(design).texts(["figure", "unit"]).counts(["trials"]);
     let head = head.numbers(["inside 90 %", "lower 95", "upper 95"]).unit("%");
-    let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width"]));
+    let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width", "interval score"]));
     for line in lines {
         let mut cells = row_labels(design, line.cell, line.method);
         let (name, unit) = names::figure_of_merit(&line.name);
         cells.extend([name, unit.to_owned(), line.trials.to_string()]);
         cells.extend(percent(line.coverage()));
-        cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
+        let values = [line.truth(), line.bias(), line.rms(), line.width(), line.score()];
+        cells.extend(values.map(|value| significant(value, 3)));
         table.push(cells);
     }
     table
@@ -27,7 +31,8 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// Coverage of all characteristics of a cell and a method: mean, minimum and maximum of their shares.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
-    let head = head(design).counts(["figures", "trials"]).numbers(["inside 90 %", "lowest", "highest"]).unit("%");
+    let columns = ["inside 90 %", "lowest", "highest", "width of the value", "interval score of the value"];
+    let head = head(design).counts(["figures", "trials"]).numbers(columns).unit("%");
     let mut table = Table::new(head.texts(["lowest of", "highest of"]));
     for group in lines.chunk_by(|a, b| (a.cell, a.method) == (b.cell, b.method)) {
         let [first, ..] = group else { continue };
@@ -40,10 +45,42 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let ends = [sorted[0], sorted[sorted.len() - 1]];
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
+        for value in [PredictionSummary::width, PredictionSummary::score] {
+            let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * value(line) / line.truth().abs()).collect();
+            cells.push(optional(median(&mut relative), 1));
+        }
         cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));
         table.push(cells);
     }
     table
+}
+
+/// Intervals of every ship scaled by the factor that those of all other ships need; `None` without an axis `ship` of
+/// three points or more.
+pub fn scaled_by_other_ships(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
+    let axis = design.axes.iter().position(|name| name == "ship")?;
+    let ship = |line: &PredictionSummary| &design.cells[line.cell].labels[axis];
+    let by_ship = grouped(lines.iter(), |line| (line.method, ship(line).clone()));
+    if by_ship.iter().map(|((_, ship), _)| ship).collect::<BTreeSet<_>>().len() < 3 {
+        return None;
+    }
+    let head = TableHead::default().texts(["ship", "method"]).numbers(["factor of the others"]);
+    let columns = ["inside 90 %", "scaled", "interval score of the value", "scaled"];
+    let mut table = Table::new(head.numbers(columns).unit("%"));
+    for ((method, name), judged) in &by_ship {
+        let others: Vec<_> = lines.iter().filter(|line| line.method == *method && ship(line) != name).collect();
+        let mut cells = vec![name.clone(), design.methods[*method].label.clone()];
+        match ConformalScaling::from_others(judged, &others) {
+            Some(scaling) => {
+                cells.push(fixed(scaling.factor, 2));
+                cells.extend(scaling.coverage.map(|share| fixed(100.0 * share, 1)));
+                cells.extend(scaling.score.map(|score| significant(100.0 * score, 3)));
+            }
+            None => cells.extend([MISSING; 5].map(str::to_owned)),
+        }
+        table.push(cells);
+    }
+    Some(table)
 }
 
 /// Decisions on every IMO criterion, over all cells; `None` if no characteristic has a limit.
@@ -54,7 +91,7 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
         return None;
     }
     let head = TableHead::default().texts(["criterion", "method"]).counts(["trials", "ships within it"]);
-    let columns = ["told rightly", "lower 95", "upper 95", "told wrongly", "lower 95", "upper 95"];
+    let columns = ["decided rightly", "lower 95", "upper 95", "decided wrongly", "lower 95", "upper 95"];
     let mut table = Table::new(head.numbers(columns).unit("%"));
     for ((name, method), lines) in limited {
         let trials: u64 = lines.iter().map(|(line, _)| line.trials).sum();

@@ -41,7 +41,8 @@ pub fn tint(colour: RGBColor) -> RGBColor {
 }
 
 /// Highlights rows; returns a remark on their colours.
-pub fn of_rows(data: &mut NamedRows, Highlight { series: about, rows, over_bound }: &Highlight) -> Option<String> {
+pub fn of_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
+    let (about, Highlight { rows, over_bound, .. }) = (&highlight.methods(), highlight);
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
         for (item, name) in

@@ -62,6 +62,7 @@ struct StudyPage<'a> {
     trials: Vec<FirstTrial<'a>>,
     named: Option<NamedEffects>,
     coverage: Option<Table>,
+    scaled: Option<Table>,
     criteria: Option<Table>,
     /// All cells together, if there are several.
     overall: Option<Table>,
@@ -117,6 +118,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         trials: showcases.iter().enumerate().map(trial).collect(),
         named: (!tracing.is_empty()).then(named),
         coverage: is_predicted.then(|| coverage_table::pooled(&summary.predictions, design)),
+        scaled: coverage_table::scaled_by_other_ships(&summary.predictions, design),
         criteria: coverage_table::criteria(&summary.predictions, design).filter(|_| is_predicted),
         overall: (design.cells.len() > 1).then(|| tables::overall(summary, design)),
         brief,

@@ -372,11 +372,14 @@ mod tests {
         let text = |row: usize| clean.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
         // Rules with equal counts have one row for each variant.
-        let labels = ["bic, long", "posterior, long", "bic, short", "posterior, short"];
+        let labels = ["bic, long list", "posterior, long list", "bic, short list", "posterior, short list"];
         let design = Design { methods: labels.map(name).into(), ..Design::default() };
         let lines: Vec<TraceSummary> = (0..4).map(|method| line(method, &[], 1, u64::from(method < 2))).collect();
         let clean = false_names(&design, &lines).expect("four rules");
-        assert_eq!((&clean.names[..], clean.columns[0].rows.len()), (&[String::from("long"), "short".into()][..], 2));
+        assert_eq!(
+            (&clean.names[..], clean.columns[0].rows.len()),
+            (&[String::from("long list"), "short list".into()][..], 2)
+        );
     }
 
     /// Few kinds of trial by their names, many by ranges; none if every effect is always named, or if none is missing.
