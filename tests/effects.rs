@@ -7,7 +7,7 @@ use kempf_tests::records::zig_zag;
 use ship::angle::{from_deg, to_deg};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Particulars, Response, ResponseModel};
-use simulate::{Simulated, StreamKey, Vessel};
+use simulate::{SimulatedShip, SimulatedTrial, StreamKey};
 
 /// The identifiers that were published: files of users name them. A new effect needs no line here.
 const IDS: &str = "second_order nonlinear_damping wind_moment speed_loss steering_lag rudder_saturation \
@@ -26,8 +26,8 @@ fn with_effect(effect: &Arc<dyn Effect>, value: fn(&Parameter) -> f64) -> Respon
 }
 
 /// A 10/10 zig-zag of 300 s.
-fn steer(response: Response) -> Simulated {
-    let vessel = Vessel::from_response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
+fn steer(response: Response) -> SimulatedTrial {
+    let vessel = SimulatedShip::from_response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
     zig_zag(vessel, 10.0, 10.0, from_deg(2.5), 300.0)
         .run(&StreamKey { seed: 7, cell: 0, replicate: 0 })
         .expect("a zig-zag with a typical effect comes to its end")

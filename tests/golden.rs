@@ -26,7 +26,7 @@ const WORK: &[(&str, usize, f64, &str)] = &[
 #[test]
 fn every_method_needs_the_evaluations_it_needed() {
     let trial = Case { noise_deg: 0.3, ..Case::default() }.trial(8);
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let method = settings.build().expect("default settings are valid");
         let estimate = method.identify(std::slice::from_ref(&trial)).expect("a zig-zag is identified");
         let (id, found) = (method.id(), estimate.evaluations);

@@ -15,7 +15,7 @@ use trial::{Quantity, Trial};
 const ZIG_ZAGS: [(f64, f64); 3] = [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)];
 
 fn methods() -> Vec<Box<dyn Identifier>> {
-    registry::defaults().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
+    registry::default_settings().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
 }
 
 fn truth() -> FirstOrder {
@@ -82,7 +82,7 @@ fn assert_same(id: &str, left: &FirstOrder, right: &FirstOrder, share: f64) {
 #[test]
 fn every_method_goes_by_its_key_in_a_scenario() {
     let mut ids = Vec::new();
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let method = settings.build().expect("default settings are valid");
         let written = serde_json::to_value(&settings).expect("settings are plain data");
         let key = written.as_object().and_then(|object| object.keys().next()).expect("the key of the variant");

@@ -13,7 +13,7 @@ use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::{Mmg, Parameters, Propeller, Rudder};
-use simulate::{StreamKey, Truth, Vessel};
+use simulate::{SimulatedShip, StreamKey, Truth};
 
 /// Scale of the KVLCC2 model of HSVA; time goes with its square root.
 const FROUDE: f64 = 45.714;
@@ -56,7 +56,7 @@ fn a_first_order_ship_turns_alike_on_any_clock() {
 /// scale.
 #[test]
 fn methods_find_the_same_ship_on_any_clock() {
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let method = settings.build().expect("default settings are valid");
         if method.id() == "fourier-published" {
             continue;
@@ -88,7 +88,7 @@ fn hull_zig_zag(parameters: Parameters, scale: f64) -> Arc<Truth> {
     let (time, speed) = (scale.sqrt().recip(), 7.97 / scale.sqrt());
     let hull = Mmg::at_speed(parameters, speed).expect("the set balances at any size");
     let mut simulation =
-        zig_zag(Vessel::from_dynamics(Arc::new(hull)), 20.0, 20.0, from_deg(2.32) / time, 900.0 * time);
+        zig_zag(SimulatedShip::from_dynamics(Arc::new(hull)), 20.0, 20.0, from_deg(2.32) / time, 900.0 * time);
     simulation.recording.period = time;
     simulation.run(&StreamKey::default()).expect("KVLCC2 reaches its executes").truth
 }
@@ -157,7 +157,7 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
         let (design, rows) = pool.install(|| collect::in_memory(&scenario));
-        let layout = RowLayout::of(&design);
+        let layout = RowLayout::from_design(&design);
         let block = |rows: &[StudyRow]| encode(rows, &label(rows[0].cell as usize), &layout).expect("plain values");
         rows.chunk_by(|one, other| one.cell == other.cell).map(block).collect::<Vec<_>>().concat()
     };

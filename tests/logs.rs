@@ -90,8 +90,8 @@ fn faults_of_instruments_leave_the_overshoots() {
     let swings = |name: &str| -> Vec<Option<f64>> {
         let file = files.iter().find(|file| file.name == name).expect("it is among them");
         let trial = read(file).unwrap_or_else(|error| panic!("{error}")).trial;
-        let zig_zag = ZigZag::of(&trial).unwrap_or_else(|error| panic!("{name}: {error}"));
-        zig_zag.swings().map(|swing| swing.map(|own| to_deg(own.angle.value))).collect()
+        let zig_zag = ZigZag::from_trial(&trial).unwrap_or_else(|error| panic!("{name}: {error}"));
+        zig_zag.overshoots_by_execute().map(|swing| swing.map(|own| to_deg(own.angle.value))).collect()
     };
     let sound = swings("clean.csv");
     for name in ["sentinels.csv", "spike.csv", "frozen.csv", "stale.csv"] {

@@ -9,7 +9,7 @@ use ship::vessel::abkowitz::Abkowitz;
 use ship::vessel::mmg::{BySign, Mmg, Parameters, Wake};
 use ship::{FirstOrder, Particulars, Polyline, Ship};
 use simulate::disturbance::{GaussMarkov, Squall, WaveSpectrum, Wind};
-use simulate::{Disturbances, Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Truth, Vessel};
+use simulate::{Disturbances, Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamKey, Truth};
 use trial::{Channel, Trial, ZigZag};
 
 const KEY: StreamKey = StreamKey { seed: 11, cell: 2, replicate: 5 };
@@ -22,7 +22,7 @@ const EXECUTES: usize = 5;
 
 /// A zig-zag δ = ψ = `angle_deg` of a ship with its own gear, to its fifth execute, in rows of a hundredth of a typical
 /// time.
-fn own_zig_zag(vessel: Vessel, rate: f64, unit: f64, angle_deg: f64, first: Side) -> Simulation {
+fn own_zig_zag(vessel: SimulatedShip, rate: f64, unit: f64, angle_deg: f64, first: Side) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, rate, 1.0);
     simulation.manoeuvre = simulation.manoeuvre.with_first_side(first).until_execute(EXECUTES);
     simulation.recording.duration = None;
@@ -59,7 +59,7 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
             for first in [Side::Starboard, Side::Port] {
                 let what = format!("{} {angle_deg}/{angle_deg} {first:?}", ship.id);
                 let simulation =
-                    own_zig_zag(Vessel::from_ship(&ship), rate_of(&ship), unit_of(&ship), angle_deg, first);
+                    own_zig_zag(SimulatedShip::from_ship(&ship), rate_of(&ship), unit_of(&ship), angle_deg, first);
                 let (trial, truth) = run(&simulation, &what);
                 assert_finite(&what, &truth);
                 assert_eq!(truth.executes.len(), EXECUTES, "{what}");
@@ -75,8 +75,12 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
                 }
                 assert_eq!(trial.particulars(), ship.particulars);
                 // What the record shows is what was done.
-                let read = ZigZag::of(&trial).unwrap_or_else(|error| panic!("{what}: {error}"));
-                assert!(read.pair.is_some_and(|pair| pair.is_deg(angle_deg, angle_deg)), "{what}: {:?}", read.pair);
+                let read = ZigZag::from_trial(&trial).unwrap_or_else(|error| panic!("{what}: {error}"));
+                assert!(
+                    read.nominal_angles.is_some_and(|pair| pair.is_deg(angle_deg, angle_deg)),
+                    "{what}: {:?}",
+                    read.nominal_angles
+                );
                 let read = read.initial_turning_time.map(|time| time.value).expect("the record begins with the trial");
                 assert!((read / truth.executes[1].time - 1.0).abs() < 0.02, "{what}: t_a {read} s");
             }
@@ -102,19 +106,19 @@ fn has_sides(ship: &Ship) -> bool {
 /// tanker, wake and flow straightening of the MMG hulls differ by side.
 #[test]
 fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
-    let mut vessels: Vec<(String, Vessel, f64, f64)> = ships::all()
+    let mut vessels: Vec<(String, SimulatedShip, f64, f64)> = ships::all()
         .iter()
         .filter(|ship| !has_sides(ship))
-        .map(|ship| (ship.id.to_string(), Vessel::from_ship(ship), rate_of(ship), unit_of(ship)))
+        .map(|ship| (ship.id.to_string(), SimulatedShip::from_ship(ship), rate_of(ship), unit_of(ship)))
         .collect();
     let mut derivatives = mariner::DERIVATIVES;
     for side in [&mut derivatives.Y, &mut derivatives.N] {
         (side.zero, side.zero_u, side.zero_uu) = (0.0, 0.0, 0.0);
     }
     let particulars = Particulars { length: 160.93, speed: 7.7175 };
-    let cargo_ship = Vessel::from_dynamics(Arc::new(Abkowitz::new(particulars, derivatives)));
+    let cargo_ship = SimulatedShip::from_dynamics(Arc::new(Abkowitz::new(particulars, derivatives)));
     vessels.push(("mariner, evened".into(), cargo_ship, from_deg(5.0), 20.9));
-    let tanker = Vessel::from_dynamics(Arc::new(tanker::equations().without_thrust_asymmetry()));
+    let tanker = SimulatedShip::from_dynamics(Arc::new(tanker::equations().without_thrust_asymmetry()));
     vessels.push(("tanker, evened".into(), tanker, from_deg(2.33), 37.0));
     for (name, parameters, speed, rate_deg, unit) in [
         ("kvlcc2, evened", kvlcc2::FULL_SCALE, 7.97, 2.32, 40.1),
@@ -122,7 +126,7 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
         ("seiun-like, evened", seiun_like::PARAMETERS, 8.59, 2.5, 12.2),
     ] {
         let hull = Mmg::at_speed(evened(parameters), speed).expect("the evened set balances");
-        vessels.push((name.into(), Vessel::from_dynamics(Arc::new(hull)), from_deg(rate_deg), unit));
+        vessels.push((name.into(), SimulatedShip::from_dynamics(Arc::new(hull)), from_deg(rate_deg), unit));
     }
     assert_eq!(vessels.len(), ships::all().len(), "every ship has its turn");
     for (what, vessel, rate, unit) in vessels {
@@ -143,7 +147,7 @@ fn a_built_in_asymmetry_is_seen() {
     for ship in ships::all().iter().filter(|ship| has_sides(ship)) {
         let overshoot = |side| {
             let (_, truth) =
-                run(&own_zig_zag(Vessel::from_ship(ship), rate_of(ship), unit_of(ship), 10.0, side), &ship.id);
+                run(&own_zig_zag(SimulatedShip::from_ship(ship), rate_of(ship), unit_of(ship), 10.0, side), &ship.id);
             truth.executes[1].time
         };
         let (starboard, port) = (overshoot(Side::Starboard), overshoot(Side::Port));
@@ -153,7 +157,8 @@ fn a_built_in_asymmetry_is_seen() {
 
 fn training_ship(manoeuvre: Manoeuvre) -> Simulation {
     let particulars = Particulars { length: 105.0, speed: 8.59 };
-    let vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0)).with_particulars(particulars);
+    let vessel =
+        SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0)).with_particulars(particulars);
     let mut simulation = Simulation::new(vessel, manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.5));
     simulation

@@ -9,10 +9,10 @@ use document::trace::{Dependence, EffectEntry, Outcome};
 use kempf_tests::records::{mirrored, zig_zag};
 use ship::angle::from_deg;
 use ship::dynamics::{Dynamics, Input, Motion};
-use ship::effects::{self, Effect, listed};
+use ship::effects::{self, Effect, listed_effect};
 use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
-use simulate::{Simulation, StreamKey, Vessel};
+use simulate::{SimulatedShip, Simulation, StreamKey};
 use trace::{Analysis, Selection, Settings, Verdict};
 use trial::{Channel, Columns, Origin, Trial};
 
@@ -31,7 +31,7 @@ fn ship(effects: Vec<Missing>) -> Response {
     ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with_parameters(parameters)
 }
 
-fn steered(vessel: Vessel, angle_deg: f64) -> Simulation {
+fn steered(vessel: SimulatedShip, angle_deg: f64) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, from_deg(2.5), 300.0);
     simulation.sensors.heading_noise = from_deg(0.05);
     simulation
@@ -75,17 +75,17 @@ fn sizes() -> Vec<Missing> {
     use effects::*;
     vec![
         (Arc::new(SecondOrder), vec![2.5, 6.2]),
-        (listed("nonlinear_damping", "r³"), vec![80.0]),
-        (listed("nonlinear_damping", "r|r|"), vec![1.6]),
-        (listed("nonlinear_damping", "r²"), vec![1.0]),
-        (listed("wind_moment", "steady wind"), vec![0.03, 0.02]),
+        (listed_effect("nonlinear_damping", "r³"), vec![80.0]),
+        (listed_effect("nonlinear_damping", "r|r|"), vec![1.6]),
+        (listed_effect("nonlinear_damping", "r²"), vec![1.0]),
+        (listed_effect("wind_moment", "steady wind"), vec![0.03, 0.02]),
         (Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]),
         (Arc::new(SteeringLag::DeadTime), vec![1.0]),
         (Arc::new(SteeringLag::FirstOrder), vec![1.2]),
         (Arc::new(Backlash), vec![from_deg(1.5)]),
-        (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
-        (listed("port_starboard_asymmetry", "moment by drift"), vec![3.0]),
-        (listed("moment_drift", "linear trend"), vec![7e-5]),
+        (listed_effect("port_starboard_asymmetry", "gain by side"), vec![0.2]),
+        (listed_effect("port_starboard_asymmetry", "moment by drift"), vec![3.0]),
+        (listed_effect("moment_drift", "linear trend"), vec![7e-5]),
         (Arc::new(TransientDisturbance::Passing), vec![0.04, 150.0, 30.0]),
         (Arc::new(WaveYaw), vec![from_deg(0.4), 0.6, 0.1]),
     ]
@@ -114,7 +114,8 @@ fn simulated() -> Vec<Missing> {
 fn every_effect_is_named_from_the_csv_alone() {
     for (effect, values) in simulated() {
         let (id, form, parameters) = (effect.id(), effect.form(), effect.parameters());
-        let trial = from_csv(&run(&steered(Vessel::from_response(ship(vec![(effect, values.clone())])), 10.0), 1));
+        let trial =
+            from_csv(&run(&steered(SimulatedShip::from_response(ship(vec![(effect, values.clone())])), 10.0), 1));
         let analysis = analysed(&[trial], &[]);
         assert!(
             is_named(&analysis, id),
@@ -145,7 +146,7 @@ fn every_effect_is_named_from_the_csv_alone() {
 
 /// A record of a ship whose effect acts through a measured channel.
 fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) -> Trial {
-    let helm = run(&steered(Vessel::from_response(ship(Vec::new())), 10.0), 3);
+    let helm = run(&steered(SimulatedShip::from_response(ship(Vec::new())), 10.0), 3);
     let time = helm.time().to_vec();
     let signal = |of: Channel| {
         let found = channels.iter().find(|(channel, _)| *channel == of)?;
@@ -168,7 +169,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
     let noise: Vec<f64> = {
         let quiet = run(
             &{
-                let mut quiet = steered(Vessel::from_response(ship(Vec::new())), 10.0);
+                let mut quiet = steered(SimulatedShip::from_response(ship(Vec::new())), 10.0);
                 quiet.sensors.heading_noise = 0.0;
                 quiet
             },
@@ -208,7 +209,7 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
         ((Arc::new(free_stream), vec![0.5, 1.2]), vec![speed], "inflow share"),
         ((Arc::new(inflow), vec![1.0, 0.5, 0.5]), vec![speed, propeller], "inflow share"),
         ((Arc::new(SpeedLoss::Propeller { approach_rate: 2.0 }), vec![1.5]), vec![propeller], "measured propeller"),
-        ((listed("wind_moment", "measured wind"), vec![4e-4]), wind.to_vec(), "measured wind"),
+        ((listed_effect("wind_moment", "measured wind"), vec![4e-4]), wind.to_vec(), "measured wind"),
     ]
 }
 
@@ -233,7 +234,7 @@ fn measured_channels_are_used_where_they_help() {
 fn a_bank_by_the_lateral_way_is_named() {
     let bank = effects::parse_formula("bank = c * y").expect("a formula");
     let speed: Signal = (Channel::Speed, |t| 8.0 - 0.004 * t);
-    let steered = run(&steered(Vessel::from_response(ship(vec![(bank.clone(), vec![-4e-3])])), 10.0), 4);
+    let steered = run(&steered(SimulatedShip::from_response(ship(vec![(bank.clone(), vec![-4e-3])])), 10.0), 4);
     for (trial, truth) in [(steered, -4e-3), (with_channel(bank.clone(), vec![-5e-4], &[speed]), -5e-4)] {
         let selection = Selection { formulas: vec![Arc::clone(&bank)], ..Selection::default() };
         let settings = Settings { selection, ..Settings::default() };
@@ -251,16 +252,16 @@ fn a_bank_by_the_lateral_way_is_named() {
 fn pairs_are_named() {
     use effects::*;
     let pairs: [[Missing; 2]; 3] = [
-        [(Arc::new(SecondOrder), vec![2.5, 6.2]), (listed("moment_drift", "linear trend"), vec![7e-5])],
+        [(Arc::new(SecondOrder), vec![2.5, 6.2]), (listed_effect("moment_drift", "linear trend"), vec![7e-5])],
         [
-            (listed("nonlinear_damping", "r³"), vec![80.0]),
-            (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
+            (listed_effect("nonlinear_damping", "r³"), vec![80.0]),
+            (listed_effect("port_starboard_asymmetry", "gain by side"), vec![0.2]),
         ],
         [(Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]), (Arc::new(SteeringLag::DeadTime), vec![1.0])],
     ];
     for pair in pairs {
         let ids = pair.each_ref().map(|(effect, _)| effect.id());
-        let trial = run(&steered(Vessel::from_response(ship(pair.into())), 10.0), 2);
+        let trial = run(&steered(SimulatedShip::from_response(ship(pair.into())), 10.0), 2);
         let analysis = analysed(&[from_csv(&trial)], &[]);
         assert!(ids.iter().all(|id| is_named(&analysis, id)), "{ids:?}: named {:?}", names(&analysis));
     }
@@ -268,7 +269,7 @@ fn pairs_are_named() {
 
 #[test]
 fn nothing_is_named_where_nothing_is_missing() {
-    let calm = || steered(Vessel::from_response(ship(Vec::new())), 10.0);
+    let calm = || steered(SimulatedShip::from_response(ship(Vec::new())), 10.0);
     let mut cases: Vec<(&str, Simulation)> = vec![("white noise", calm())];
     let mut add = |name, change: &dyn Fn(&mut Simulation)| {
         let mut simulation = calm();
@@ -305,7 +306,7 @@ fn nothing_is_named_where_nothing_is_missing() {
 
 #[test]
 fn a_squall_of_another_shape_is_located_in_time() {
-    let mut simulation = steered(Vessel::from_response(ship(Vec::new())), 10.0);
+    let mut simulation = steered(SimulatedShip::from_response(ship(Vec::new())), 10.0);
     simulation.disturbances.squall = Some(Squall { start: 130.0, duration: 50.0, edge: 20.0, moment: from_deg(3.0) });
     let analysis = analysed(&[run(&simulation, 5)], &[]);
     let [own] = &analysis.document.effects[..] else { panic!("named {:?}", names(&analysis)) };
@@ -345,7 +346,7 @@ impl Dynamics for NearABank {
 
 #[test]
 fn what_no_candidate_carries_is_seen() {
-    let vessel = Vessel::from_dynamics(Arc::new(NearABank { response: ship(Vec::new()) }));
+    let vessel = SimulatedShip::from_dynamics(Arc::new(NearABank { response: ship(Vec::new()) }));
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     let document = &analysis.document;
     assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
@@ -357,7 +358,7 @@ fn what_no_candidate_carries_is_seen() {
 /// Stall at one amplitude is a smaller K: not observable. At two it is seen, and the next trial says so beforehand.
 #[test]
 fn one_amplitude_is_blind_for_stall_and_two_are_not() {
-    let vessel = || Vessel::from_response(ship(vec![(listed("rudder_saturation", "stall"), vec![0.88])]));
+    let vessel = || SimulatedShip::from_response(ship(vec![(listed_effect("rudder_saturation", "stall"), vec![0.88])]));
     let (small, large) = (run(&steered(vessel(), 10.0), 7), run(&steered(vessel(), 30.0), 8));
     let alone = analysed(std::slice::from_ref(&small), &[]);
     let outcome = |analysis: &Analysis| {
@@ -376,7 +377,7 @@ fn one_amplitude_is_blind_for_stall_and_two_are_not() {
 
 #[test]
 fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted() {
-    let vessel = || Vessel::from_response(ship(vec![(listed("nonlinear_damping", "r³"), vec![40.0])]));
+    let vessel = || SimulatedShip::from_response(ship(vec![(listed_effect("nonlinear_damping", "r³"), vec![40.0])]));
     let (fitted, other) = (run(&steered(vessel(), 10.0), 9), run(&steered(vessel(), 20.0), 10));
     let analysis = analysed(std::slice::from_ref(&fitted), std::slice::from_ref(&other));
     let [own] = &analysis.document.effects[..] else { panic!("named {:?}", names(&analysis)) };
@@ -395,10 +396,10 @@ fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted(
 #[test]
 fn port_and_starboard_are_exchanged_and_nothing_else() {
     let effects: Vec<Missing> = vec![
-        (listed("nonlinear_damping", "r³"), vec![80.0]),
-        (listed("port_starboard_asymmetry", "gain by side"), vec![0.2]),
+        (listed_effect("nonlinear_damping", "r³"), vec![80.0]),
+        (listed_effect("port_starboard_asymmetry", "gain by side"), vec![0.2]),
     ];
-    let trial = run(&steered(Vessel::from_response(ship(effects)), 10.0), 15);
+    let trial = run(&steered(SimulatedShip::from_response(ship(effects)), 10.0), 15);
     let (one, other) = (analysed(std::slice::from_ref(&trial), &[]), analysed(&[mirrored(&trial)], &[]));
     assert_eq!(names(&one), names(&other));
     let odd: Vec<bool> = one.ship().model().parameters().map(|parameter| parameter.odd).collect();
@@ -412,7 +413,8 @@ fn port_and_starboard_are_exchanged_and_nothing_else() {
 
 #[test]
 fn threads_do_not_matter() {
-    let vessel = Vessel::from_response(ship(vec![(Arc::new(effects::SecondOrder) as Arc<dyn Effect>, vec![2.5, 6.2])]));
+    let vessel =
+        SimulatedShip::from_response(ship(vec![(Arc::new(effects::SecondOrder) as Arc<dyn Effect>, vec![2.5, 6.2])]));
     let trial = run(&steered(vessel, 10.0), 16);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
@@ -424,7 +426,7 @@ fn threads_do_not_matter() {
 
 #[test]
 fn every_identifier_is_considered_and_equations_are_given() {
-    let analysis = analysed(&[run(&steered(Vessel::from_response(ship(Vec::new())), 10.0), 17)], &[]);
+    let analysis = analysed(&[run(&steered(SimulatedShip::from_response(ship(Vec::new())), 10.0), 17)], &[]);
     for effect in effects::all() {
         assert!(analysis.document.candidates.iter().any(|one| one.id == effect.id()), "{}", effect.id());
     }

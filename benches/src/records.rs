@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use ship::angle::from_deg;
-use ship::effects::{Effect, listed};
+use ship::effects::{Effect, listed_effect};
 use ship::{FirstOrder, Response, ResponseModel};
-use simulate::{Manoeuvre, Recording, Sensors, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Recording, Sensors, SimulatedShip, Simulation, SteeringGear, StreamKey};
 use trial::Trial;
 
 /// K of the ship, 1/s.
@@ -32,7 +32,7 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
         recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },
         sensors,
         ..Simulation::new(
-            Vessel::from_first_order(FirstOrder::from_indices(K, T, 0.0)),
+            SimulatedShip::from_first_order(FirstOrder::from_indices(K, T, 0.0)),
             Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)),
         )
     }
@@ -40,9 +40,9 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
 
 /// 10/10 zig-zag as in [`first_order_zig_zag`], of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
 pub fn damped_zig_zag(rows: usize) -> Simulation {
-    let effect: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
+    let effect: Arc<dyn Effect> = listed_effect("nonlinear_damping", "r³");
     let ship: Response = ResponseModel::new(vec![effect]).with_parameters(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
-    Simulation { vessel: Vessel::from_response(ship), ..first_order_zig_zag(rows) }
+    Simulation { ship: SimulatedShip::from_response(ship), ..first_order_zig_zag(rows) }
 }
 
 /// Record of a trial.

@@ -21,7 +21,7 @@ fn interpolated_headings_name_no_effect() {
     let document = analysis.document;
     assert!(document.effects.is_empty(), "{:?}", document.effects);
     assert_eq!(document.verdict, Verdict::Unexplained);
-    assert!(!document.noise[0].describes_what_is_left);
+    assert!(!document.noise[0].is_adequate);
     // The rule has something to hold back: the search found effects.
     assert!(document.candidates.iter().any(|own| own.probability > 0.9), "{:?}", document.candidates);
     assert!(document.error.kept_base.is_some_and(|words| words.contains("no effect is named")));

@@ -35,10 +35,10 @@ const SEEN: [Seen; 13] = [
 fn characteristics_are_what_the_samples_show() {
     for (file, (delta_deg, psi_deg), side, first, executes, peaks, rudder_rate_deg_s) in SEEN {
         let Some(trial) = measured(file) else { return };
-        let zigzag = ZigZag::of(&trial).expect("a zig-zag");
-        let pair = zigzag.pair.expect("the headings at the executes agree");
+        let zigzag = ZigZag::from_trial(&trial).expect("a zig-zag");
+        let pair = zigzag.nominal_angles.expect("the headings at the executes agree");
         assert!(pair.is_deg(delta_deg, psi_deg), "{file}: {pair}");
-        assert_eq!(zigzag.side, Some(side), "{file}");
+        assert_eq!(zigzag.first_side, Some(side), "{file}");
         assert_eq!(zigzag.base_course.source, BaseCourseSource::Approach, "{file}");
         let begin = zigzag.executes[0].time.value;
         assert!((begin - first).abs() < 0.1, "{file}: first execute at {begin}");
@@ -76,5 +76,5 @@ fn check_peaks(file: &str, trial: &Trial, zigzag: &ZigZag) {
 #[test]
 fn a_turning_circle_is_refused() {
     let Some(trial) = measured("kvlcc2_marin/turning_35.csv") else { return };
-    assert_eq!(ZigZag::of(&trial), Err(ZigZagError::TooFewReversals { reversals: 0, needed: 2 }));
+    assert_eq!(ZigZag::from_trial(&trial), Err(ZigZagError::TooFewReversals { reversals: 0, needed: 2 }));
 }

@@ -122,7 +122,7 @@ fn every_other_record_gives_a_finite_ship() {
 fn every_method_survives_every_record() {
     for name in OTHERS.into_iter().chain([TWENTY_TEN]) {
         let Some(trial) = measured::record(name) else { return };
-        for settings in registry::defaults() {
+        for settings in registry::default_settings() {
             let method = settings.build().expect("default settings are valid");
             match method.identify(std::slice::from_ref(&trial)) {
                 Ok(estimate) => {

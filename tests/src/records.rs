@@ -3,7 +3,7 @@
 
 use ship::FirstOrder;
 use ship::angle::from_deg;
-use simulate::{Manoeuvre, Side, Simulated, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Side, SimulatedShip, SimulatedTrial, Simulation, SteeringGear, StreamKey};
 use trial::{Channel, Columns, Trial};
 
 /// Beginning of a record.
@@ -59,7 +59,7 @@ impl Case {
     /// Specification of the trial.
     pub fn simulation(&self) -> Simulation {
         let mut simulation = zig_zag(
-            Vessel::from_first_order(self.ship),
+            SimulatedShip::from_first_order(self.ship),
             self.rudder_deg,
             self.heading_deg,
             from_deg(self.rate_deg_s),
@@ -78,7 +78,7 @@ impl Case {
     ///
     /// # Panics
     /// If the ship never reaches its executes: a programming error of the test.
-    pub fn run(&self, replicate: u64) -> Simulated {
+    pub fn run(&self, replicate: u64) -> SimulatedTrial {
         let key = StreamKey { seed: 1957, cell: 0, replicate };
         self.simulation().run(&key).expect("the ship of a case reaches its executes")
     }
@@ -90,7 +90,7 @@ impl Case {
 }
 
 /// Simulation of a zig-zag (angles in deg, `rate` in rad/s), starboard first, recorded once a second for `duration` s.
-pub fn zig_zag(vessel: Vessel, rudder_deg: f64, heading_deg: f64, rate: f64, duration: f64) -> Simulation {
+pub fn zig_zag(vessel: SimulatedShip, rudder_deg: f64, heading_deg: f64, rate: f64, duration: f64) -> Simulation {
     let (rudder, heading) = (from_deg(rudder_deg), from_deg(heading_deg));
     let manoeuvre = Manoeuvre::zig_zag(rudder, heading);
     let mut simulation = Simulation::new(vessel, manoeuvre);

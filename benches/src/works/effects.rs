@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::effects::{
-    Action, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, Targets, listed,
+    Action, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, Targets, listed_effect,
 };
 use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
@@ -17,7 +17,7 @@ struct CubicByHand;
 
 impl Effect for CubicByHand {
     fn description(&self) -> Description {
-        listed("nonlinear_damping", "r³").description()
+        listed_effect("nonlinear_damping", "r³").description()
     }
 
     fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
@@ -60,7 +60,8 @@ pub fn effects() -> WorkGroup {
         let (one, other) = (rudder.clone(), rudder.clone());
         let by_hand = Work::new(format!("by hand, {kind}"), move || go(Arc::new(CubicByHand), &one));
         let by_hand = group.alone(by_hand, None);
-        let formula = Work::new(format!("formula, {kind}"), move || go(listed("nonlinear_damping", "r³"), &other));
+        let formula =
+            Work::new(format!("formula, {kind}"), move || go(listed_effect("nonlinear_damping", "r³"), &other));
         group.beside(formula, &by_hand, Some(Reach::Ratio(3.0)));
     };
     pair("plain", replayed::<f64>);

@@ -63,7 +63,7 @@ pub fn identification() -> WorkGroup {
     let trial = Arc::new(record(&first_order_zig_zag(ROWS)));
     #[cfg(feature = "rivals")]
     by_rivals(&mut group, &trial);
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let id = settings.build().expect("default settings are valid").id();
         group.beside(identifying(id, settings, &trial), RIVAL, reach(id));
     }

@@ -5,7 +5,7 @@ use document::{
 };
 use predict::ShipMixture;
 use ship::angle::from_deg;
-use ship::effects::{Effect, listed};
+use ship::effects::{Effect, listed_effect};
 use simulate::Manoeuvre;
 
 use crate::records::{K, T};
@@ -40,7 +40,7 @@ fn identified_ship(effect: Option<&dyn Effect>, moment: RandomMoment) -> Identif
         noise: HeadingNoise { heading_sd_rad: from_deg(0.1), moment },
         gear: Some(IdentifiedGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
-        seen: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
+        validity_range: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         hulls: Vec::new(),
@@ -68,6 +68,9 @@ pub fn prediction() -> WorkGroup {
     add("first order, calm", identified_ship(None, RandomMoment::None));
     add("first order, gusts", identified_ship(None, gusts));
     add("first order, white moment", identified_ship(None, RandomMoment::White { rudder_rad_root_s: size }));
-    add("cubic damping, calm", identified_ship(Some(listed("nonlinear_damping", "r³").as_ref()), RandomMoment::None));
+    add(
+        "cubic damping, calm",
+        identified_ship(Some(listed_effect("nonlinear_damping", "r³").as_ref()), RandomMoment::None),
+    );
     group
 }

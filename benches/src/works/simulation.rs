@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::ships;
-use simulate::{PreparedSimulation, Purpose, Simulation, Solver, StreamKey, Vessel};
+use simulate::{PreparedSimulation, Purpose, SimulatedShip, Simulation, Solver, StreamKey};
 
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
 use crate::work::{Reach, Work, WorkGroup};
@@ -31,7 +31,7 @@ pub fn simulation() -> WorkGroup {
     let closed_form = first_order_zig_zag(ROWS);
     let integrated = Simulation { solver: Solver::RungeKutta(0.1), ..closed_form.clone() };
     let kvlcc2 = ships::find("kvlcc2").expect("a ship of the registry");
-    let hull = Simulation { vessel: Vessel::from_ship(&kvlcc2), ..closed_form.clone() };
+    let hull = Simulation { ship: SimulatedShip::from_ship(&kvlcc2), ..closed_form.clone() };
     let prepared = PreparedSimulation::new(closed_form.clone()).expect("a zig-zag");
     let of_a_study = Work::new("first order, trial of a study", move || prepared.run(&KEY));
     group.beside(of_a_study, &draws, Some(Reach::Ratio(1.5)));

@@ -42,7 +42,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
 
 fn drawing() -> Drawing {
     let trial = record(&first_order_zig_zag(ROWS));
-    let zigzag = ZigZag::of(&trial).expect("a zig-zag");
+    let zigzag = ZigZag::from_trial(&trial).expect("a zig-zag");
     report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw("A zig-zag", &Theme::screen())
 }
 

@@ -41,7 +41,7 @@ impl Block {
     }
 
     /// Block of a trial.
-    pub fn of(task: TrialId) -> Self {
+    pub fn from_trial_id(task: TrialId) -> Self {
         Self { cell: task.cell, number: task.replicate / Self::REPLICATES }
     }
 

@@ -42,7 +42,7 @@ impl<'a> BlockStore<'a> {
             seed: manifest.seed,
             program: manifest.program_label(),
             design,
-            layout: RowLayout::of(design),
+            layout: RowLayout::from_design(design),
         }
     }
 
@@ -66,7 +66,7 @@ impl<'a> BlockStore<'a> {
         match decode(bytes, &self.label(block), &self.layout) {
             Ok(rows) => Ok(Ok(rows)),
             Err(Damage::Changed(problem)) => Ok(Err(format!("{}: {problem}", path.display()))),
-            Err(Damage::Foreign(label)) => Err(Failure::about(&path, self.foreign(&label))),
+            Err(Damage::Foreign(label)) => Err(Failure::in_file(&path, self.foreign(&label))),
         }
     }
 

@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderSource;
-use simulate::{Simulated, Simulation};
+use simulate::{SimulatedTrial, Simulation};
 use trial::noise_model::{MomentKind, NoiseModel};
 
 use coloured::CompassError;
@@ -24,7 +24,7 @@ use coloured::CompassError;
 /// The information of the records adds; each has its own initial state.
 pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
-    simulated: &[Simulated],
+    simulated: &[SimulatedTrial],
     truth: &FirstOrder,
 ) -> Option<([f64; 3], [[f64; 2]; 2])> {
     let mut records = simulations.zip(simulated).map(|(simulation, record)| of_record(simulation, record, truth));
@@ -47,7 +47,7 @@ pub fn cramer_rao_bound<'a>(
 }
 
 /// Covariance bound of (1/T, K/T, K δ_r/T) for one record with unknown initial state.
-fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<Matrix3<f64>> {
+fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstOrder) -> Option<Matrix3<f64>> {
     let white = simulation.sensors.declared_noise().heading;
     let wander = simulation.sensors.heading_wander.filter(|wander| wander.sd > 0.0);
     let compass = match (white, wander) {

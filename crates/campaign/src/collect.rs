@@ -79,18 +79,18 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     }
     let scenario = Scenario::read(&folder.path().join(files::MANIFEST), None)?;
     check_same_study(&manifest, &Manifest::new(&scenario), folder.path())?;
-    let design = Design::of(&scenario);
+    let design = Design::from_scenario(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let stored = store.stored_trials(|_| true, "its trials count as missing", observer)?;
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
     if let Some(TrialId { cell, replicate }) = plan.peek()? {
-        let path = store.path(Block::of(TrialId { cell, replicate }));
+        let path = store.path(Block::from_trial_id(TrialId { cell, replicate }));
         let problem = format!(
             "trial {replicate} of cell {cell} is not stored; run the study, or the shard that holds it, again, or copy \
              the file here"
         );
-        return Err(Failure::about(&path, problem));
+        return Err(Failure::in_file(&path, problem));
     }
     let trials = plan.trials;
     finish(&scenario, StudyRun { manifest, trials, computed: 0 }, folder)
@@ -114,7 +114,7 @@ fn run(
     observer: &dyn Observer,
 ) -> Result<StudyRun, Failure> {
     let manifest = begin(scenario, folder, restart)?;
-    let design = Design::of(scenario);
+    let design = Design::from_scenario(scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
     let part = blocks_of(scenario, shard);
     let most = max_trials(scenario, &part);
@@ -383,7 +383,7 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
 
 /// Design with the number of trials of every cell, and with the Cramér–Rao bounds of the cells.
 fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
-    let mut design = Design::of(scenario);
+    let mut design = Design::from_scenario(scenario);
     design.cells.iter_mut().zip(trials).for_each(|(cell, trials)| cell.trials = 0..*trials);
     add_bounds(scenario, &mut design);
     design

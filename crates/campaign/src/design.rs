@@ -69,21 +69,21 @@ pub struct JudgedRecord {
     /// Names of the records that were fitted together, joined by commas.
     pub fitted: String,
     /// Name of the validation record; `null` without one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub judge: Option<String>,
+    #[serde(rename = "judge", default, skip_serializing_if = "Option::is_none")]
+    pub validation: Option<String>,
 }
 
 fn judged_records(set: &RecordSet) -> Vec<JudgedRecord> {
     let records = |split: &RecordSplit| JudgedRecord {
         fitted: split.fitted.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
-        judge: split.judge.map(|place| set.name(place).to_owned()),
+        validation: split.validation.map(|place| set.name(place).to_owned()),
     };
     set.splits.iter().map(records).collect()
 }
 
 impl Design {
     /// Design of a scenario, without stored trials and without bounds.
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn from_scenario(scenario: &Scenario) -> Self {
         let predicts = scenario.predictions.is_some();
         let has_limits = predicts && !scenario.draws.iter().any(|key| key.contains("length") || key.contains("speed"));
         let is_stated = scenario.cells.iter().any(DesignCell::states_physics);
@@ -110,7 +110,7 @@ impl Design {
 
     /// Design with cell facts renewed from a scenario; trials and bounds stay.
     pub(crate) fn with_descriptions_of(&self, scenario: &Scenario) -> Self {
-        let mut design = Self::of(scenario);
+        let mut design = Self::from_scenario(scenario);
         for (cell, stored) in design.cells.iter_mut().zip(&self.cells) {
             (cell.trials, cell.bound_percent2) = (stored.trials.clone(), stored.bound_percent2);
         }
@@ -128,7 +128,7 @@ impl Design {
     fn check(&self) -> Result<(), String> {
         let cells = self.cells.iter().flat_map(|cell| &cell.labels);
         for text in self.axes.iter().chain(self.methods.iter().map(|method| &method.label)).chain(cells) {
-            name::check_label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::shown(text)))?;
+            name::check_label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::quoted_beginning(text)))?;
         }
         let mut labels = HashSet::new();
         if let Some(twice) = self.methods.iter().find(|method| !labels.insert(&method.label)) {

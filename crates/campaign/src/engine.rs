@@ -14,7 +14,7 @@ use identify::replay::pooled_response_rms;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
-use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
+use simulate::{PreparedSimulation, SimulateError, SimulatedTrial, StreamKey};
 use trial::{Quantity, Trial};
 
 use crate::identified_ship::{self, RecordFacts};
@@ -49,7 +49,7 @@ pub fn stream_key(scenario: &Scenario, task: TrialId) -> StreamKey {
 }
 
 /// Simulates one trial: its record, and the further records of the same ship that the scenario specifies.
-pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<Simulated>, String> {
+pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<SimulatedTrial>, String> {
     let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
     let records = trial_spec.specification.records(&key).map(|(simulation, key)| simulation.run(&key));
@@ -105,7 +105,7 @@ impl<'a> TrialRunner<'a> {
         cell: usize,
         trial_spec: &TrialSpecification,
         key: &StreamKey,
-    ) -> Result<Vec<Simulated>, SimulateError> {
+    ) -> Result<Vec<SimulatedTrial>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
         let mut records = trial_spec.specification.records(key);
         let (simulation, key) = records.next().expect("a trial has a record");
@@ -148,7 +148,7 @@ impl<'a> TrialRunner<'a> {
         index: usize,
         key: &StreamKey,
         blank: StudyRow,
-        simulated: Vec<Simulated>,
+        simulated: Vec<SimulatedTrial>,
         trial_spec: &TrialSpecification,
     ) -> (Vec<StudyRow>, Vec<Duration>) {
         let cell = &self.scenario.cells[index];
@@ -156,7 +156,7 @@ impl<'a> TrialRunner<'a> {
         let reference = if cell.is_fixed() {
             self.references[index - self.first_cell].get_or_init(|| self.shared(index))
         } else {
-            individual = TrialReference::of(trial_spec, &simulated, key, cell.traces());
+            individual = TrialReference::from_simulated(trial_spec, &simulated, key, cell.traces());
             &individual
         };
         let blank = StudyRow {
@@ -181,7 +181,7 @@ impl<'a> TrialRunner<'a> {
         let key = stream_key(self.scenario, TrialId { cell, replicate: 0 });
         let Ok(trial_spec) = self.scenario.cells[cell].trial_spec(&key) else { return TrialReference::default() };
         match self.simulate(cell, &trial_spec, &key) {
-            Ok(simulated) => TrialReference::of(&trial_spec, &simulated, &key, self.scenario.cells[cell].traces()),
+            Ok(all) => TrialReference::from_simulated(&trial_spec, &all, &key, self.scenario.cells[cell].traces()),
             Err(_) => TrialReference { nearest: trial_spec.specification.truth, ..TrialReference::default() },
         }
     }
@@ -206,16 +206,16 @@ impl TrialInput<'_> {
                 let time = start.elapsed();
                 (
                     answer
-                        .map(|analysis| self.traced_in_a_calm(&blank, &analysis))
+                        .map(|analysis| self.row_of_validated_trace(&blank, &analysis))
                         .map_err(|error| trace_failure_kind(&error).into()),
                     time,
                 )
             }
-            Procedure::StraightOn => (Ok(self.straight_on(&blank)), start.elapsed()),
+            Procedure::StraightOn => (Ok(self.row_of_straight_course(&blank)), start.elapsed()),
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                let row = answer.map(|estimate| self.estimated(&blank, &estimate));
+                let row = answer.map(|estimate| self.row_of_estimate(&blank, &estimate));
                 (row.map_err(|error| error.row_text().into()), time)
             }
         };
@@ -223,7 +223,7 @@ impl TrialInput<'_> {
     }
 
     /// Row of a first-order estimate.
-    pub fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
+    pub fn row_of_estimate(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_response_rms(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
         StudyRow {
@@ -240,7 +240,7 @@ impl TrialInput<'_> {
     }
 
     /// Row of the null model, a ship that keeps her heading; the initial heading is fitted, as in every method.
-    pub fn straight_on(&self, blank: &StudyRow) -> StudyRow {
+    pub fn row_of_straight_course(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
             let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
             let sums = |sums: [f64; 2], moments: Moments| [sums[0] + moments.second, sums[1] + moments.count];
@@ -256,14 +256,14 @@ impl TrialInput<'_> {
     }
 
     /// Row of a trace, validated on the undisturbed second manoeuvre.
-    fn traced_in_a_calm(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
+    fn row_of_validated_trace(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
         let validation = validation.and_then(|trial| analysis.replay_in_calm(trial, [trial.heading()[0], 0.0]));
-        self.traced(blank, analysis, validation.as_ref())
+        self.row_of_trace(blank, analysis, validation.as_ref())
     }
 
     /// Row of a trace: K, T and δ_r of the augmented model, replay errors, and named effects.
-    pub fn traced(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
+    pub fn row_of_trace(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
         let end = self.trials.iter().filter_map(|trial| trial.time().last().copied()).fold(0.0, f64::max);
         let probability =
@@ -280,7 +280,7 @@ impl TrialInput<'_> {
             predicted: self.check.as_ref().map(|check| check.characteristics(identified)),
             traced: Some(Box::new(TraceRow {
                 verdict: document.verdict,
-                named: document.effects.iter().map(NamedEffect::of).collect(),
+                named: document.effects.iter().map(NamedEffect::from_entry).collect(),
                 located: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
                     .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))

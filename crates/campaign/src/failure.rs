@@ -67,7 +67,7 @@ impl Failure {
     }
 
     /// Failure of wrong input in a file of this name.
-    pub fn about(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
+    pub fn in_file(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
         let (file, problem) = (file.as_ref().display().to_string(), problem.to_string());
         let message = format!("{file}: {problem}");
         Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
@@ -92,7 +92,7 @@ impl Failure {
 
     /// Wrong input at a byte range of a text file: the message quotes the line, underlines the range with `expected`,
     /// and ends with `advice`, the remedy.
-    pub fn at(file: &Path, text: &str, span: Range<usize>, problem: &str, expected: &str, advice: &str) -> Self {
+    pub fn in_text(file: &Path, text: &str, span: Range<usize>, problem: &str, expected: &str, advice: &str) -> Self {
         let name = file.display().to_string();
         let span = span.start.min(text.len())..span.end.min(text.len());
         let start = span.start;
@@ -139,15 +139,15 @@ impl Error for Failure {}
 
 /// Conversion of an input/output error on a file of the study.
 pub trait OnPath<T> {
-    /// Failure that names the path and the action: "failed to TRIED PATH: cause".
-    fn on(self, tried: &str, path: &Path) -> Result<T, Failure>;
+    /// Failure of an action on a path: "failed to ACTION PATH: cause".
+    fn on(self, action: &str, path: &Path) -> Result<T, Failure>;
 }
 
 impl<T, E: Error> OnPath<T> for Result<T, E> {
-    fn on(self, tried: &str, path: &Path) -> Result<T, Failure> {
+    fn on(self, action: &str, path: &Path) -> Result<T, Failure> {
         self.map_err(|error| {
             let file = path.display().to_string();
-            let mut failure = Failure::work(format!("failed to {tried} {file}: {}", with_causes(&error)));
+            let mut failure = Failure::work(format!("failed to {action} {file}: {}", with_causes(&error)));
             failure.parts.file = Some(file);
             failure
         })
@@ -181,7 +181,7 @@ mod tests {
         let failures = [
             Failure::input("no such thing"),
             Failure::work("no such thing"),
-            Failure::at(Path::new("a.toml"), "seed = -1\n", 7..9, "no such thing", "expected more", "change it"),
+            Failure::in_text(Path::new("a.toml"), "seed = -1\n", 7..9, "no such thing", "expected more", "change it"),
         ];
         for failure in failures {
             assert!(failure.to_string().starts_with("error: no such thing"), "{failure}");
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_failure_has_the_parts_that_it_tells() {
-        let at = Failure::at(Path::new("a.toml"), "x = 1\nß = -1\n", 11..13, "no such thing", "more", "change it");
+        let at = Failure::in_text(Path::new("a.toml"), "x = 1\nß = -1\n", 11..13, "no such thing", "more", "change it");
         let parts = FailureParts {
             code: ErrorCode::Scenario,
             file: Some("a.toml".into()),
@@ -202,7 +202,7 @@ mod tests {
             help: Some("change it".into()),
         };
         assert_eq!(*at.parts, parts);
-        let about = Failure::about("b.csv", "it is empty");
+        let about = Failure::in_file("b.csv", "it is empty");
         assert_eq!((about.parts.file.as_deref(), about.parts.problem.as_str()), (Some("b.csv"), "it is empty"));
         assert_eq!(about.message, "b.csv: it is empty");
         let io = Err::<(), _>(std::io::Error::other("full")).on("write", Path::new("c")).expect_err("it failed");

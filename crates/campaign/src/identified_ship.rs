@@ -42,8 +42,8 @@ pub struct RecordFacts<'a> {
 
 impl<'a> RecordFacts<'a> {
     /// Facts of the records of one ship, without speed and drift.
-    pub fn of(trials: &'a [Trial]) -> Self {
-        let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::of(trial).ok()).collect();
+    pub fn from_trials(trials: &'a [Trial]) -> Self {
+        let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::from_trial(trial).ok()).collect();
         let particular = |value: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(value));
         Self {
             trials,
@@ -97,7 +97,7 @@ impl<'a> RecordFacts<'a> {
             noise: HeadingNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
             gear: self.gear,
             approach_yaw_rate_rad_s: self.approach_yaw_rate(&rates),
-            seen: ValidityRange {
+            validity_range: ValidityRange {
                 rudder_rad: largest(self.trials.iter().flat_map(|trial| trial.rudder())),
                 yaw_rate_rad_s: largest(rates.into_iter().flatten()),
             },
@@ -132,7 +132,7 @@ impl<'a> RecordFacts<'a> {
                 correlation_s: hull.moment.correlation_time,
             },
             beginning_yaw_rate_rad_s: self.beginning(hull),
-            from: None,
+            trial_hull: None,
         }
     }
 
@@ -315,12 +315,12 @@ mod tests {
     use ship::FirstOrder;
     use ship::angle::from_deg;
     use ship::vessel::prior::HullParticulars;
-    use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+    use simulate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
     use crate::prediction_check::PredictionCheck;
 
     fn record(walk_deg: f64) -> Trial {
-        let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+        let ship = SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
         let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(6);
         let mut simulation = Simulation::new(ship, zig_zag);
         simulation.gear = SteeringGear::with_rate(from_deg(2.32));
@@ -334,7 +334,7 @@ mod tests {
     fn a_ten_ten_predicts_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
         let gear = ship.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(ship.noise.heading_sd_rad) - 0.1).abs() < 0.02 && ship.noise.moment.is_none());
@@ -362,10 +362,10 @@ mod tests {
         };
         let ship = Particulars { length: 105.0, speed: 8.59 };
         let cut = Trial::new("cut", whole.origin().clone(), columns).expect("a record").with_particulars(ship);
-        assert!(ZigZag::of(&cut).is_ok(), "the rest is a zig-zag");
+        assert!(ZigZag::from_trial(&cut).is_ok(), "the rest is a zig-zag");
         let trials = [cut];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &RecordFacts::of(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
         assert_eq!(ship.approach_yaw_rate_rad_s, 0.0);
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let prediction =
@@ -378,8 +378,8 @@ mod tests {
     fn the_moment_of_the_likelihood_is_handed_on() {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
-        let ship =
-            from_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::of(&trials)).expect("a covariance");
+        let ship = from_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::from_trials(&trials))
+            .expect("a covariance");
         assert!(!ship.noise.moment.is_none());
         assert!(ship.noise.moment.size() > 0.0);
     }
@@ -388,7 +388,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let ship = from_analysis(&analysis, &RecordFacts::of(&trials));
+        let ship = from_analysis(&analysis, &RecordFacts::from_trials(&trials));
         assert!((ship.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &ship.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
@@ -402,7 +402,7 @@ mod tests {
     /// KVLCC2 in a manoeuvre, with a gear of 2.34°/s.
     fn tanker(kind: &str) -> Simulation {
         let manoeuvre = predict::standard::with_end(&kind.parse().expect("known"), KVLCC2).expect("steered");
-        let mut simulation = Simulation::new(Vessel::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
+        let mut simulation = Simulation::new(SimulatedShip::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.34));
         simulation.recording.period = 2.0;
         simulation
@@ -429,7 +429,7 @@ mod tests {
     fn zig_zags_of_a_tanker_predict_her_circle() {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
-        let facts = RecordFacts::of(&zig_zags).with_motion(None, &[]);
+        let facts = RecordFacts::from_trials(&zig_zags).with_motion(None, &[]);
         let ship = from_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
         // The ship begins straight: the yaw rate of replays is an error, less than a twentieth of that in the circle.
@@ -438,7 +438,7 @@ mod tests {
             "{:?}",
             facts.hulls
         );
-        let asked = Predictions { kinds: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
+        let asked = Predictions { manoeuvres: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
         let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
         let figures = check.characteristics(|_| Some(ship));
         for name in ["advance_lengths", "tactical_diameter_lengths"] {

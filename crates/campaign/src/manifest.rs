@@ -136,7 +136,7 @@ impl Manifest {
 
     /// Prose and presentation of the scenario.
     pub fn prose(&self) -> Prose {
-        Prose::of(&self.scenario)
+        Prose::from_scenario_text(&self.scenario)
     }
 
     /// Writes the manifest of a folder.
@@ -149,7 +149,7 @@ impl Manifest {
 
     /// Manifest at a path; `None` without a file.
     pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
-        let refuse = |problem: &str| Failure::about(path, format!("{problem}; expected the manifest of a study"));
+        let refuse = |problem: &str| Failure::in_file(path, format!("{problem}; expected the manifest of a study"));
         let Some(bytes) = disk::read(path, MAX_MANIFEST_BYTES).on("read", path)? else { return Ok(None) };
         let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))?;
         toml::from_str(&text).map(Some).map_err(|error| refuse(error.message()))

@@ -9,12 +9,12 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use ship::angle::from_deg;
-use trial::file::{self, Kind};
+use trial::file::{self, FileKind};
 
 use crate::design::Design;
 use crate::failure::Failure;
 use crate::observer::Observer;
-use crate::scenario::name::{shown, slug};
+use crate::scenario::name::{quoted_beginning, slug};
 use crate::scenario::outside_estimates::{OutsideEstimates, TrialNumber};
 use crate::scenario::{Scenario, hex};
 use crate::shard::TrialId;
@@ -38,7 +38,7 @@ pub struct Trials {
 
 impl Trials {
     /// Description of the trials of a scenario.
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn from_scenario(scenario: &Scenario) -> Self {
         let Scenario { name, seed, design_sha256, text, .. } = scenario;
         Self { name: name.clone(), seed: *seed, design_sha256: design_sha256.clone(), scenario: text.clone() }
     }
@@ -66,7 +66,7 @@ pub fn part_name(record: &str, number: usize) -> String {
 }
 
 /// Limits of a table of outside estimates: one line per trial of a large study.
-const TABLE: Kind = Kind { name: "a table of answers", max_bytes: 1 << 30 };
+const TABLE: FileKind = FileKind { name: "a table of answers", max_bytes: 1 << 30 };
 
 /// Known columns: those that are read, and those copied from the list of trials.
 const COLUMNS: &str =
@@ -92,7 +92,7 @@ pub fn read(
     scenario: &Scenario,
     observer: &dyn Observer,
 ) -> Result<IndexMap<Option<String>, OutsideEstimates>, Failure> {
-    let refuse = |problem: String| Failure::about(path, problem);
+    let refuse = |problem: String| Failure::in_file(path, problem);
     let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
     let text = text.trim_start_matches('\u{feff}');
     let head = text.lines().next().unwrap_or_default();
@@ -173,7 +173,7 @@ impl<'a> Records<'a> {
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
         let mut fits: HashMap<String, Vec<TrialNumber>> = HashMap::new();
-        for (cell, facts) in Design::of(scenario).cells.into_iter().enumerate() {
+        for (cell, facts) in Design::from_scenario(scenario).cells.into_iter().enumerate() {
             for (replicate, record) in facts.records.into_iter().enumerate() {
                 fits.entry(record.fitted).or_default().push((cell as u64, replicate as u64));
             }
@@ -225,14 +225,15 @@ impl AnswerColumns {
         }
         let has = |names: &[&str]| names.iter().all(|name| places.contains_key(*name));
         if !has(&["K_per_s", "T_s"]) || !has(&["record"]) && !has(&["cell", "replicate"]) {
-            let names: Vec<String> = head.iter().take(MAX_NAMED_COLUMNS).map(shown).collect();
+            let names: Vec<String> = head.iter().take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
             return Err(format!(
                 "the columns are {}; expected `record`, or `cell` and `replicate`, beside `K_per_s` and `T_s`",
                 names.join(", ")
             ));
         }
         let is_known = |column: &&str| COLUMNS.split(' ').any(|name| name == *column);
-        let ignored = head.iter().filter(|column| !is_known(column)).take(MAX_NAMED_COLUMNS).map(shown).collect();
+        let ignored =
+            head.iter().filter(|column| !is_known(column)).take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
         Ok(Self { places, ignored })
     }
 
@@ -243,17 +244,21 @@ impl AnswerColumns {
 
     fn number(&self, row: &StringRecord, name: &str) -> Result<Option<f64>, String> {
         let Some(text) = self.text(row, name) else { return Ok(None) };
-        let number = text.parse::<f64>().map_err(|_| format!("{name} is {}; expected a number", shown(text)))?;
+        let number =
+            text.parse::<f64>().map_err(|_| format!("{name} is {}; expected a number", quoted_beginning(text)))?;
         Ok(Some(number).filter(|number| number.is_finite()))
     }
 
     fn places(&self, row: &StringRecord, records: &Records) -> Result<Vec<TrialNumber>, String> {
         if let Some(record) = self.text(row, "record") {
-            return records.find(record).ok_or_else(|| format!("{} is not a record of this scenario", shown(record)));
+            return records
+                .find(record)
+                .ok_or_else(|| format!("{} is not a record of this scenario", quoted_beginning(record)));
         }
         let whole = |name: &str| {
             let text = self.text(row, name).unwrap_or_default();
-            text.parse::<u64>().map_err(|_| format!("{name} is {}; expected a whole number from 0", shown(text)))
+            text.parse::<u64>()
+                .map_err(|_| format!("{name} is {}; expected a whole number from 0", quoted_beginning(text)))
         };
         let (cell, replicate) = (whole("cell")?, whole("replicate")?);
         let Scenario { cells, replicates, .. } = records.scenario;

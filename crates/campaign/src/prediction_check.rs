@@ -30,8 +30,8 @@ impl<'a> PredictionCheck<'a> {
     /// Simulates the manoeuvres with the ship, gear and weather of a trial, and random numbers independent of its
     /// records.
     pub fn new(asked: &'a Predictions, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
-        let closed = simulation.vessel.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
-        let of_hull = simulation.vessel.particulars().map(|particulars| particulars.length / particulars.speed);
+        let closed = simulation.ship.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
+        let of_hull = simulation.ship.particulars().map(|particulars| particulars.length / particulars.speed);
         let timescale = closed.or(of_hull).unwrap_or(TIMESCALE_PERIODS * simulation.recording.period);
         let other = StreamKey { seed: !key.seed, ..*key };
         let true_figures = |kind: &Manoeuvre| {
@@ -45,7 +45,11 @@ impl<'a> PredictionCheck<'a> {
             let is_counted = |name: &str| !is_repeated_in_lengths(name, |lengths| all.contains_key(lengths));
             Some(all.iter().filter(|(name, _)| is_counted(name)).map(|(name, value)| (*name, *value)).collect())
         };
-        Self { asked, true_manoeuvres: asked.kinds.iter().map(true_figures).collect(), facts: RecordFacts::of(records) }
+        Self {
+            asked,
+            true_manoeuvres: asked.manoeuvres.iter().map(true_figures).collect(),
+            facts: RecordFacts::from_trials(records),
+        }
     }
 
     /// Predicted and true characteristics of the manoeuvres; those missing on either side are omitted.
@@ -56,7 +60,7 @@ impl<'a> PredictionCheck<'a> {
         let mixture = identified(&self.facts).and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
         let Some(mixture) = mixture else { return Box::default() };
         let mut all = Vec::new();
-        for (kind, truths) in self.asked.kinds.iter().zip(&self.true_manoeuvres) {
+        for (kind, truths) in self.asked.manoeuvres.iter().zip(&self.true_manoeuvres) {
             let Some(truths) = truths else { continue };
             let Ok(prediction) = mixture.predict(kind, self.asked.draws, false) else { continue };
             for (name, figure) in prediction.figures {

@@ -4,7 +4,7 @@ use identify::replay::replay;
 use identify::{Identifier, output_error};
 use ship::FirstOrder;
 use simulate::recording::RudderSource;
-use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
+use simulate::{Disturbances, Recording, Sensors, SimulatedTrial, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::bound;
@@ -28,7 +28,12 @@ pub struct TrialReference {
 
 impl TrialReference {
     /// Reference of the trial with a key; `traces` if a trace is among the methods.
-    pub fn of(trial_spec: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
+    pub fn from_simulated(
+        trial_spec: &TrialSpecification,
+        simulated: &[SimulatedTrial],
+        key: &StreamKey,
+        traces: bool,
+    ) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*trial_spec.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&trial_spec.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use ::trace::Analysis;
 use ::trace::comparison::replay_base as of_base;
 use ::trace::record::PreparedRecord;
-use ::trace::replay_errors::{HORIZONS, ReplayDepth};
+use ::trace::replay_errors::{HORIZONS_S, ReplayDepth};
 use document::IdentifiedShip;
 use identify::Estimate;
 use predict::ShipMixture;
@@ -83,7 +83,7 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutc
     let both = [&set.trials, set.without_spikes()];
     let of_fit = |all: &[Trial]| split(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
     let [fitted, cleaned]: [Vec<Trial>; 2] = both.map(of_fit);
-    let judges = tasks.iter().map(|task| split(task).judge.map(|place| both.map(|all| &all[place]))).collect();
+    let judges = tasks.iter().map(|task| split(task).validation.map(|place| both.map(|all| &all[place]))).collect();
     let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, judges };
     let blank = |task: &TrialId| TrialOutcome {
         rows: Vec::new(),
@@ -164,16 +164,16 @@ impl SharedTrials<'_> {
                 let replayed = |judge| {
                     of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
-                (input.estimated(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+                (input.row_of_estimate(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
-            FitAnswer::StraightOn => (input.straight_on(blank), None),
+            FitAnswer::StraightOn => (input.row_of_straight_course(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
-                (input.traced(blank, analysis, validation), validation.map(|on| on.errors.clone()))
+                (input.row_of_trace(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
-        let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS[1]));
+        let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS_S[1]));
         let predicted = self.scenario.predictions.as_ref().map(|asked| match (&self.judges[trial], &fit.ship) {
             (Some([judge, _]), Some(ship)) => predicted(ship, judge, asked),
             _ => Box::default(),
@@ -188,12 +188,12 @@ impl SharedTrials<'_> {
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
-        identified_ship::from_analysis(analysis, &RecordFacts::of(trials).with_motion(Some(analysis), &[]))
+        identified_ship::from_analysis(analysis, &RecordFacts::from_trials(trials).with_motion(Some(analysis), &[]))
     };
     match answer {
         FitAnswer::StraightOn => None,
         FitAnswer::Response(estimate) => {
-            identified_ship::from_estimate(estimate, &RecordFacts::of(fitted)).filter(sound)
+            identified_ship::from_estimate(estimate, &RecordFacts::from_trials(fitted)).filter(sound)
         }
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
@@ -217,7 +217,7 @@ fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) ->
     let Some(replay) = replay else { return Box::default() };
     let is_counted = |name: &str| !is_repeated_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
     let figures = replay.figures.iter().filter(|(name, _)| is_counted(name));
-    let figure = |(name, compared): (&String, &predict::replay::Compared)| PredictedCharacteristic {
+    let figure = |(name, compared): (&String, &predict::replay::ComparedFigure)| PredictedCharacteristic {
         name: name.as_str().into(),
         truth: compared.measured,
         median: compared.interval.median,

@@ -73,7 +73,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let fits = FourierCurve::of(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
-        trial: ZigZag::of(trial).ok().map(|zigzag| ZigzagTrial {
+        trial: ZigZag::from_trial(trial).ok().map(|zigzag| ZigzagTrial {
             truth: Some(angle_curve_deg(&truth.time, &truth.heading)),
             ..zigzag_figure(trial, &zigzag)
         }),

@@ -40,7 +40,7 @@ impl StoredStudy {
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let manifest = required_manifest(folder)?;
         if !manifest.is_finished() {
-            return Err(Failure::about(folder, "the study in it is not finished; run it again to go on"));
+            return Err(Failure::in_file(folder, "the study in it is not finished; run it again to go on"));
         }
         Self::of(folder, manifest)
     }
@@ -93,7 +93,7 @@ impl StoredStudy {
 
 /// Failure of a file that differs from the file written by the study.
 fn refused(path: &Path, problem: &str) -> Failure {
-    Failure::about(
+    Failure::in_file(
         path,
         format!(
             "{problem}; expected the file that the finished study wrote; restore it, or run the study again; complete \
@@ -108,7 +108,7 @@ fn refused(path: &Path, problem: &str) -> Failure {
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
     let old = folder.join(LEGACY_ROWS);
     if disk::is_there(&old).on("look for", &old)? {
-        return Err(Failure::about(
+        return Err(Failure::in_file(
             &old,
             "these rows were stored by an earlier version of this program; remove the folder, or give another with --out, \
              and run the study again",
@@ -126,7 +126,7 @@ pub fn required_manifest(folder: &Path) -> Result<Manifest, Failure> {
                 "there are no rows in it; expected the folder of a finished study, fit, trace, prediction or benchmark"
             }
         };
-        Failure::about(folder, problem)
+        Failure::in_file(folder, problem)
     })
 }
 

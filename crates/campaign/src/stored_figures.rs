@@ -35,7 +35,7 @@ impl CurveFit {
         let name = if self.fitted_name.is_empty() { "fitted curve" } else { &self.fitted_name };
         let upper = vec![
             Layer::new("measured", self.measured.clone(), LayerKind::Record),
-            Layer::line(name, self.fitted.clone(), self.origin.as_ref().map_or(Pen::new(HEADING), Pen::of)),
+            Layer::line(name, self.fitted.clone(), self.origin.as_ref().map_or(Pen::new(HEADING), Pen::from_origin)),
         ];
         let lower = vec![
             Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
@@ -49,7 +49,7 @@ impl CurveFit {
         let fundamental = finite(self.fundamental_rad_s)
             .map(|value| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(value, 4)));
         let fit_figures = r_squared.into_iter().chain(fundamental).collect();
-        Panels { said: fit_figures, ..Panels::over_time(rows) }
+        Panels { key_texts: fit_figures, ..Panels::over_time(rows) }
     }
 }
 
@@ -82,7 +82,7 @@ impl DerivativeCurves {
         let row = |y: AxisSpec, series: fn(&MotionCurves) -> &PlotCurve| {
             let layer = |motion: &MotionCurves| {
                 let name = motion.name.as_deref().unwrap_or_else(|| motion.origin.label());
-                Layer::line(name, series(motion).clone(), Pen::of(&motion.origin))
+                Layer::line(name, series(motion).clone(), Pen::from_origin(&motion.origin))
             };
             (PanelRow::new(y, 0.2), self.curves.iter().map(layer).collect())
         };
@@ -130,10 +130,11 @@ impl Replays {
     /// others; the title of every panel states the extent of its residual.
     pub fn panels(&self) -> Panels {
         let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
-        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::of(&CurveOrigin::Truth));
+        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::from_origin(&CurveOrigin::Truth));
         upper.extend(self.truth.as_ref().map(truth));
         upper.extend(self.replays.iter().map(|replay| {
-            Layer::line(replay.origin.label(), replay.heading.clone(), Pen::of(&replay.origin)).within(HEADING_ROOM)
+            Layer::line(replay.origin.label(), replay.heading.clone(), Pen::from_origin(&replay.origin))
+                .within(HEADING_ROOM)
         }));
         let below = |replay: &ReplayCurves| {
             let size = |size: f64| format!("{}°", number::significant(size, 2));
@@ -219,7 +220,8 @@ impl Intervals {
                 quantity(estimate).map(mark).into_iter().collect()
             };
             let line = |origin: CurveOrigin, pair: &Option<Reference>| {
-                pair.as_ref().map(|pair| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(pair)))
+                pair.as_ref()
+                    .map(|pair| (origin.label().to_owned(), Pen::from_origin(&origin).width(0.8), reference(pair)))
             };
             let truth = line(CurveOrigin::Truth, &self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);

@@ -76,7 +76,7 @@ impl Timings {
     }
 
     /// Durations from lines; methods outside the design are omitted.
-    pub fn of_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
+    pub fn from_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
         let times = lines.into_iter().filter_map(|line| {
             let place = names(design).position(|name| name == line.method)?;
             let count = line.trials as f64;
@@ -98,7 +98,7 @@ impl Timings {
     /// Durations from the text of `timings.csv`; methods outside the design are omitted. Fails for an invalid text.
     pub fn from_csv(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
-        Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
+        Ok(Self::from_lines(lines.map_err(|error| error.to_string())?, design))
     }
 }
 

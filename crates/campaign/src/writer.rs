@@ -57,7 +57,7 @@ impl<'a> BlockWriter<'a> {
     fn add(&mut self, outcome: TrialOutcome) -> Result<(), Failure> {
         let Some(row) = outcome.rows.first() else { return Ok(()) };
         let task = TrialId { cell: row.cell as usize, replicate: row.replicate };
-        let block = Block::of(task);
+        let block = Block::from_trial_id(task);
         let all = self.range(block);
         if self.block != Some(block) {
             // The first rows of a block begun earlier are already stored.

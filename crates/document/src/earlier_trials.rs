@@ -50,7 +50,8 @@ pub struct PriorCheckEntry {
     /// Probability of a χ² at least as large if the models are right.
     pub p_value: f64,
     /// Coefficients by their keys with their shift in prior standard deviations, in decreasing order.
-    pub moved: Vec<(String, f64)>,
+    #[serde(rename = "moved")]
+    pub shifts: Vec<(String, f64)>,
     /// `true` if the hull is a member of the result.
     pub takes_part: bool,
 }
@@ -69,7 +70,7 @@ pub enum Likeness {
 
 impl Likeness {
     /// Likeness of the ship of earlier trials to another ship.
-    pub fn of(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
+    pub fn from_particulars(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
         match (ship.differing_keys(earlier).is_empty(), ship.has_length_of(earlier)) {
             (false, _) => Self::OtherHull,
             (true, true) => Self::SameShip,

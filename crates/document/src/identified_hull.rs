@@ -27,7 +27,7 @@ pub struct IdentifiedCoefficient {
 
 impl IdentifiedCoefficient {
     /// Distance from the prior mean in prior standard deviations.
-    pub fn departure(&self) -> f64 {
+    pub fn departure_from_prior(&self) -> f64 {
         (self.value - self.expected) / self.expected_sd
     }
 }
@@ -70,7 +70,7 @@ pub struct IdentifiedHull {
     pub beginning_yaw_rate_rad_s: f64,
     /// Hull of the trials, for a hull at another loading; not written to a file.
     #[serde(skip)]
-    pub from: Option<TrialHull>,
+    pub trial_hull: Option<TrialHull>,
 }
 
 /// Hull of the trials, with the regression of a hull at another loading on it.
@@ -81,7 +81,7 @@ pub struct TrialHull {
     /// Gain G of the coefficients at the other loading with respect to those of the hull.
     pub gain: DMatrix<f64>,
     /// Covariance of the coefficients given those of the hull.
-    pub rest: Vec<Vec<f64>>,
+    pub conditional_covariance: Vec<Vec<f64>>,
 }
 
 /// Particulars of a hull by their keys; missing ones are omitted.
@@ -173,14 +173,18 @@ impl IdentifiedHull {
             particulars: by_keys(ship),
             coefficients: expected.iter().enumerate().map(coefficient).collect(),
             covariance: rows_of(&(common + &covariance)),
-            from: Some(TrialHull { hull: Box::new(self.clone()), gain, rest: rows_of(&covariance) }),
+            trial_hull: Some(TrialHull {
+                hull: Box::new(self.clone()),
+                gain,
+                conditional_covariance: rows_of(&covariance),
+            }),
             ..self.scaled_to(self.length_m, ship.speed)
         }
     }
 
     /// `true` if this hull was derived from another one, at any scale.
-    pub fn is_from(&self, other: &Self) -> bool {
+    pub fn is_derived_from(&self, other: &Self) -> bool {
         let is_same = |hull: &Self| hull.coefficients == other.coefficients && hull.covariance == other.covariance;
-        self.from.as_ref().is_some_and(|from| is_same(&from.hull))
+        self.trial_hull.as_ref().is_some_and(|from| is_same(&from.hull))
     }
 }

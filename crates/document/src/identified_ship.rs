@@ -71,7 +71,8 @@ pub struct IdentifiedShip {
     /// Root mean square yaw rate at the end of straight approaches, rad/s; 0 without a straight approach.
     pub approach_yaw_rate_rad_s: f64,
     /// Range of validity.
-    pub seen: ValidityRange,
+    #[serde(rename = "seen")]
+    pub validity_range: ValidityRange,
     /// Length between perpendiculars, m.
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
@@ -172,7 +173,7 @@ impl IdentifiedShip {
             *gear = IdentifiedGear { rate_rad_s: gear.rate_rad_s / second, sd_rad_s: gear.sd_rad_s / second };
         }
         scaled.approach_yaw_rate_rad_s /= second;
-        scaled.seen.yaw_rate_rad_s /= second;
+        scaled.validity_range.yaw_rate_rad_s /= second;
         scaled.hulls = self.hulls.iter().map(|hull| hull.scaled_to(length, speed)).collect();
         scaled.length_m = Some(length);
         scaled.speed_m_s = Some(speed);

@@ -39,7 +39,7 @@ const UNITS: [(&str, &str); 7] = [
 /// Display name of an effect; for a formula its identifier with blanks.
 pub fn effect(id: &str) -> String {
     let listed = EFFECTS.iter().find(|(key, _)| *key == id);
-    listed.map_or_else(|| plain(id), |(_, name)| (*name).to_owned())
+    listed.map_or_else(|| with_blanks(id), |(_, name)| (*name).to_owned())
 }
 
 /// Physics of a listed effect as a sentence without its full stop; `None` for a formula.
@@ -62,18 +62,18 @@ pub fn effect_form(id: &str, form: &str) -> String {
 /// Display name of a record from the stem of its file: `zigzag_20_10_s` becomes `20/10, first to starboard`. A file
 /// name with an extension is not changed.
 pub fn record(stem: &str) -> String {
-    if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| plain(stem)) }
+    if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| with_blanks(stem)) }
 }
 
 /// Display name and unit of a figure of merit from the unit suffix of its identifier; an empty unit without one.
 pub fn figure_of_merit(id: &str) -> (String, &'static str) {
     let known = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
     let (stem, unit) = known.unwrap_or((id, ""));
-    (plain(stem), unit)
+    (with_blanks(stem), unit)
 }
 
 /// Identifier with blanks for underscores.
-pub fn plain(id: &str) -> String {
+pub fn with_blanks(id: &str) -> String {
     id.replace('_', " ")
 }
 

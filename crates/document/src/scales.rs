@@ -29,7 +29,8 @@ pub struct ComparedTerm {
     /// Estimate from the records of all scales.
     pub joint: Quantity,
     /// Estimates from the records of every scale alone; `null` if they do not determine it.
-    pub own: Vec<Option<Quantity>>,
+    #[serde(rename = "own")]
+    pub by_scale: Vec<Option<Quantity>>,
     /// Maximum difference between two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,
     /// `scales`, `does not scale` or `cannot be told`.

@@ -103,8 +103,8 @@ pub struct EffectEntry {
     /// Record in which it acts; `null` for all.
     pub only: Option<String>,
     /// `true` if the effect is included on request; otherwise omitted.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub asked: bool,
+    #[serde(rename = "asked", default, skip_serializing_if = "std::ops::Not::not")]
+    pub required: bool,
     /// Other effects of the group, of which one is present.
     pub aliases: Vec<String>,
     /// Alternative forms of the effect and its group.
@@ -254,7 +254,8 @@ pub struct RecordNoiseEntry {
     /// Frequency of waves.
     pub waves_frequency_rad_s: Option<f64>,
     /// `true` if the noise law describes the residual: innovations white, of constant variance, without outliers.
-    pub describes_what_is_left: bool,
+    #[serde(rename = "describes_what_is_left")]
+    pub is_adequate: bool,
     /// Standard deviation of the measurement noise of the rudder, if there is any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rudder_sd_deg: Option<f64>,

@@ -178,7 +178,7 @@ pub enum WarningSource {
 
 impl WarningSource {
     /// Warnings with this source.
-    pub fn of(&self, warnings: impl IntoIterator<Item = Warning>) -> impl Iterator<Item = Warning> {
+    pub fn attach_to(&self, warnings: impl IntoIterator<Item = Warning>) -> impl Iterator<Item = Warning> {
         warnings.into_iter().map(|warning| Warning { source: self.clone(), ..warning })
     }
 }

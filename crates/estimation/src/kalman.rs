@@ -29,18 +29,21 @@ pub struct Step<const N: usize> {
     /// Transition matrix F.
     pub transition: [[f64; N]; N],
     /// Process-noise covariance Q.
-    pub added: [[f64; N]; N],
+    pub process_noise: [[f64; N]; N],
 }
 
 impl<const N: usize> Step<N> {
     /// Combined step: this step followed by `next`.
-    pub fn then(&self, next: &Self) -> Self {
-        Self { transition: product(&next.transition, &self.transition), added: next.propagate(&self.added) }
+    pub fn followed_by(&self, next: &Self) -> Self {
+        Self {
+            transition: product(&next.transition, &self.transition),
+            process_noise: next.propagate(&self.process_noise),
+        }
     }
 
     /// Covariance after the step, F P Fᵀ + Q.
     pub fn propagate(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
-        sum(&self.added, &congruence(&self.transition, covariance))
+        sum(&self.process_noise, &congruence(&self.transition, covariance))
     }
 }
 
@@ -50,7 +53,7 @@ pub struct Sensor {
     /// Index of the state.
     pub state: usize,
     /// Index of a second state that is added.
-    pub beside: Option<usize>,
+    pub second_state: Option<usize>,
     /// Variance of the noise.
     pub variance: f64,
 }
@@ -59,8 +62,8 @@ impl Sensor {
     /// Reading without noise, for several state vectors at once.
     #[inline(always)]
     fn observe<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
-        match self.beside {
-            Some(beside) => std::array::from_fn(|k| x[self.state % N.max(1)][k] + x[beside % N.max(1)][k]),
+        match self.second_state {
+            Some(second_state) => std::array::from_fn(|k| x[self.state % N.max(1)][k] + x[second_state % N.max(1)][k]),
             None if N == 0 => [0.0; COLUMNS],
             None => x[self.state % N.max(1)],
         }
@@ -116,20 +119,20 @@ pub struct System<const N: usize> {
 }
 
 impl<const N: usize> System<N> {
-    /// System with one reading per row: the first state, or its sum with the state `beside`, with the noise variance of
+    /// System with one reading per row: the first state, or its sum with `second_state`, with the noise variance of
     /// that row. `row_steps` has the index of the time step before every row; the first index is ignored.
     pub fn from_rows(
         steps: Vec<Step<N>>,
         initial: [[f64; N]; N],
         row_steps: &[usize],
         variances: &[f64],
-        beside: Option<usize>,
+        second_state: Option<usize>,
     ) -> Self {
         let mut sensors: Vec<Sensor> = Vec::new();
         let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
             let index = sensors.iter().position(|sensor| sensor.variance == variance);
             let sensor = index.unwrap_or_else(|| {
-                sensors.push(Sensor { state: 0, beside, variance });
+                sensors.push(Sensor { state: 0, second_state, variance });
                 sensors.len() - 1
             });
             Reading::new((row > 0).then_some(step), sensor)
@@ -227,12 +230,12 @@ impl<const N: usize> Filter<N> {
 
 /// Kalman gain of a reading; corrects the covariance by the reading.
 fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> Gain<N> {
-    let seen: [f64; N] = std::array::from_fn(|i| match sensor.beside {
-        Some(beside) => covariance[i][sensor.state] + covariance[i][beside],
+    let seen: [f64; N] = std::array::from_fn(|i| match sensor.second_state {
+        Some(second_state) => covariance[i][sensor.state] + covariance[i][second_state],
         None => covariance[i][sensor.state],
     });
-    let variance = match sensor.beside {
-        Some(beside) => seen[sensor.state] + seen[beside] + sensor.variance,
+    let variance = match sensor.second_state {
+        Some(second_state) => seen[sensor.state] + seen[second_state] + sensor.variance,
         None if N == 0 => sensor.variance,
         None => seen[sensor.state] + sensor.variance,
     };
@@ -321,8 +324,8 @@ impl Whitener {
         for (value, &(reading, gain)) in column.iter_mut().zip(&self.readings).rev() {
             let (gain, weight) = &self.gains[gain as usize];
             *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
-            let Sensor { state, beside, .. } = self.sensors[reading.sensor()];
-            [Some(state), beside].into_iter().flatten().for_each(|state| later[state] -= *value);
+            let Sensor { state, second_state, .. } = self.sensors[reading.sensor()];
+            [Some(state), second_state].into_iter().flatten().for_each(|state| later[state] -= *value);
             if let Some(step) = reading.step() {
                 let f = &self.transitions[step];
                 later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());

@@ -73,7 +73,7 @@ pub enum SearchEnd {
 #[derive(Debug, Clone)]
 pub struct Minimum {
     /// Estimate θ.
-    pub at: DVector<f64>,
+    pub estimate: DVector<f64>,
     /// Value of J.
     pub value: f64,
     /// Normal equations at θ.
@@ -201,7 +201,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
             end = SearchEnd::Converged;
         }
     }
-    Minimum { at, value, normal, steps, end }
+    Minimum { estimate: at, value, normal, steps, end }
 }
 
 #[cfg(test)]
@@ -249,10 +249,10 @@ mod tests {
     fn a_curved_valley_is_followed_to_its_end_and_to_a_bound() {
         let start = || DVector::from_vec(vec![-1.2, 1.0]);
         let minimum = minimise(&mut Valley { max_x: 5.0 }, start(), &RULES);
-        assert_relative_eq!(minimum.at, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
+        assert_relative_eq!(minimum.estimate, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
         let minimum = minimise(&mut Valley { max_x: 0.5 }, start(), &RULES);
-        assert_relative_eq!(minimum.at, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
-        assert!(minimum.normal.is_bound_active(0, minimum.at[0], [-2.0, 0.5]));
+        assert_relative_eq!(minimum.estimate, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
+        assert!(minimum.normal.is_bound_active(0, minimum.estimate[0], [-2.0, 0.5]));
     }
 
     #[test]

@@ -15,38 +15,38 @@ pub type MixtureSummary = (f64, Option<(f64, [f64; 2])>);
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalMixture {
     /// Weight, mean and standard deviation of every component.
-    pub parts: Vec<(f64, f64, f64)>,
+    pub components: Vec<(f64, f64, f64)>,
 }
 
 impl NormalMixture {
     /// Mean, standard deviation and 95 % interval of the mixture; the mean alone if a component has no finite standard
     /// deviation.
     pub fn summary(&self) -> MixtureSummary {
-        let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
-        let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
+        let total: f64 = self.components.iter().map(|(weight, ..)| weight).sum();
+        let mean = self.components.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
         let square = |(weight, component, sd): &(f64, f64, f64)| weight * (sd * sd + (component - mean).powi(2));
-        let sd = (self.parts.iter().map(square).sum::<f64>() / total).sqrt();
+        let sd = (self.components.iter().map(square).sum::<f64>() / total).sqrt();
         (mean, sd.is_finite().then(|| (sd, [0.025, 0.975].map(|probability| self.quantile(probability)))))
     }
 
     /// Quantile of the mixture at a probability.
     pub fn quantile(&self, probability: f64) -> f64 {
         let reach = |sign: f64| move |(_, mean, sd): &(f64, f64, f64)| mean + sign * 10.0 * sd;
-        let low = self.parts.iter().map(reach(-1.0)).fold(f64::INFINITY, f64::min);
-        let high = self.parts.iter().map(reach(1.0)).fold(f64::NEG_INFINITY, f64::max);
+        let low = self.components.iter().map(reach(-1.0)).fold(f64::INFINITY, f64::min);
+        let high = self.components.iter().map(reach(1.0)).fold(f64::NEG_INFINITY, f64::max);
         bisect(low, high, |x| self.cdf(x) < probability)
     }
 
     /// Distribution function of the mixture, P(X < x).
     pub fn cdf(&self, x: f64) -> f64 {
         let law = Normal::standard();
-        let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
+        let total: f64 = self.components.iter().map(|(weight, ..)| weight).sum();
         let part = |(weight, mean, sd): &(f64, f64, f64)| match *sd > 0.0 {
             true => weight * law.cdf((x - mean) / sd),
             false if x > *mean => *weight,
             false => 0.0,
         };
-        self.parts.iter().map(part).sum::<f64>() / total
+        self.components.iter().map(part).sum::<f64>() / total
     }
 }
 
@@ -89,7 +89,7 @@ pub fn ratio_summary(pairs: &[NormalPair]) -> MixtureSummary {
     let Some(best) = best else { return (f64::NAN, None) };
     let value = best.numerator.0 / best.denominator.0;
     let mixture = |part: &dyn Fn(&NormalPair) -> (f64, f64)| NormalMixture {
-        parts: pairs.iter().map(|pair| (pair.weight, part(pair).0, part(pair).1)).collect(),
+        components: pairs.iter().map(|pair| (pair.weight, part(pair).0, part(pair).1)).collect(),
     };
     let below = mixture(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).cdf(0.0);
     if (0.025..=0.975).contains(&below) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
@@ -118,10 +118,10 @@ mod tests {
 
     #[test]
     fn a_mixture_of_one_is_normal() {
-        let (_, error) = NormalMixture { parts: vec![(1.0, 2.0, 0.5)] }.summary();
+        let (_, error) = NormalMixture { components: vec![(1.0, 2.0, 0.5)] }.summary();
         let (sd, [low, high]) = error.expect("a law");
         assert!((low - 1.02).abs() < 1e-3 && (high - 2.98).abs() < 1e-3 && sd == 0.5);
-        let (mean, error) = NormalMixture { parts: vec![(0.5, 0.0, 0.1), (0.5, 1.0, 0.1)] }.summary();
+        let (mean, error) = NormalMixture { components: vec![(0.5, 0.0, 0.1), (0.5, 1.0, 0.1)] }.summary();
         let (_, [low, high]) = error.expect("a law");
         assert!(low < -0.1 && high > 1.1 && (mean - 0.5).abs() < 1e-12);
     }

@@ -154,15 +154,15 @@ pub struct Dual<const DIRECTIONS: usize> {
     /// Value.
     pub value: f64,
     /// Derivatives.
-    pub by: [f64; DIRECTIONS],
+    pub derivatives: [f64; DIRECTIONS],
 }
 
 impl<const N: usize> Dual<N> {
     /// Variable with this value, whose derivative in one direction is `slope` and zero in all other directions.
     pub fn variable(value: f64, direction: usize, slope: f64) -> Self {
-        let mut by = [0.0; N];
-        by[direction] = slope;
-        Self { value, by }
+        let mut derivatives = [0.0; N];
+        derivatives[direction] = slope;
+        Self { value, derivatives }
     }
 }
 
@@ -175,7 +175,7 @@ impl<const N: usize> Default for Dual<N> {
 impl<const N: usize> From<f64> for Dual<N> {
     #[inline(always)]
     fn from(value: f64) -> Self {
-        Self { value, by: [0.0; N] }
+        Self { value, derivatives: [0.0; N] }
     }
 }
 
@@ -271,19 +271,19 @@ impl<const N: usize> Real for Dual<N> {
 
     #[inline(always)]
     fn lift_unary(self, value: f64, slope: f64) -> Self {
-        Self { value, by: self.by.map(|d| slope * d) }
+        Self { value, derivatives: self.derivatives.map(|d| slope * d) }
     }
 
     #[inline(always)]
     fn lift_binary(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
-        Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
+        Self { value, derivatives: std::array::from_fn(|k| by(self.derivatives[k], other.derivatives[k])) }
     }
 
     fn powf(self, exponent: Self) -> Self {
         let power = self.value.powf(exponent.value);
         let by_base = exponent.value * power / self.value;
         // A logarithm costs as much as the power; a constant exponent requires none.
-        let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
+        let by_exponent = if exponent.derivatives == [0.0; N] { 0.0 } else { power * self.value.ln() };
         self.lift_binary(exponent, power, |x, y| by_base * x + by_exponent * y)
     }
 }
@@ -310,9 +310,9 @@ mod tests {
             assert_eq!(dual.value, expression(x, y));
             let by_x = (expression(x + h, y) - expression(x - h, y)) / (2.0 * h);
             let by_y = (expression(x, y + h) - expression(x, y - h)) / (2.0 * h);
-            assert_relative_eq!(dual.by[0], by_x, max_relative = 1e-7, epsilon = 1e-9);
-            assert_relative_eq!(dual.by[3], by_y, max_relative = 1e-7, epsilon = 1e-9);
-            assert_eq!(dual.by[1..3], [0.0; 2]);
+            assert_relative_eq!(dual.derivatives[0], by_x, max_relative = 1e-7, epsilon = 1e-9);
+            assert_relative_eq!(dual.derivatives[3], by_y, max_relative = 1e-7, epsilon = 1e-9);
+            assert_eq!(dual.derivatives[1..3], [0.0; 2]);
         }
     }
 }

@@ -19,11 +19,11 @@ impl<const N: usize> Step<N> {
         let exponential = block.exp();
         let transition = exponential.view((m, m), (m, m)).transpose();
         let added = &transition * exponential.view((0, m), (m, m)) * intensity;
-        let mut step = Self { transition: [[0.0; N]; N], added: [[0.0; N]; N] };
+        let mut step = Self { transition: [[0.0; N]; N], process_noise: [[0.0; N]; N] };
         for i in 0..m {
             for j in 0..m {
                 step.transition[i][j] = transition[(i, j)];
-                step.added[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
+                step.process_noise[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
             }
         }
         step
@@ -31,14 +31,14 @@ impl<const N: usize> Step<N> {
 
     /// Step whose process-noise covariance is multiplied by `level`.
     pub fn scaled(&self, level: f64) -> Self {
-        Self { added: self.added.map(|row| row.map(|x| level * x)), ..*self }
+        Self { process_noise: self.process_noise.map(|row| row.map(|x| level * x)), ..*self }
     }
 }
 
 impl<const N: usize> System<N> {
     /// Sample path: the readings without sensor noise, from standard normal numbers.
     pub fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
-        let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.added)).collect();
+        let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.process_noise)).collect();
         let mut draw = |root: &[[f64; N]; N]| -> [f64; N] {
             let numbers: [f64; N] = std::array::from_fn(|_| normal());
             std::array::from_fn(|i| (0..N).map(|j| root[i][j] * numbers[j]).sum())
@@ -49,7 +49,7 @@ impl<const N: usize> System<N> {
                 let (added, f) = (draw(&roots[step]), &self.steps[step].transition);
                 state = std::array::from_fn(|i| added[i] + (0..N).map(|j| f[i][j] * state[j]).sum::<f64>());
             }
-            let Sensor { state: first, beside, .. } = self.sensors[reading.sensor()];
+            let Sensor { state: first, second_state: beside, .. } = self.sensors[reading.sensor()];
             state[first] + beside.map_or(0.0, |beside| state[beside])
         });
         read.collect()
@@ -66,7 +66,7 @@ impl System<MAX_STATES> {
             };
             let steps = self.steps.iter().map(|step| Step {
                 transition: first(&step.transition),
-                added: first(&step.added),
+                process_noise: first(&step.process_noise),
             });
             let system = System {
                 steps: steps.collect(),

@@ -164,7 +164,7 @@ impl Identifier for CharacteristicPoints {
         };
         let mut diagnostics = fit.diagnostics;
         let count = |number: fn(&Points) -> usize| analysed.iter().map(|trial| number(&trial.points) as f64).sum();
-        diagnostics.push(("instants_without_yaw_rate", count(|points| points.still.len())));
+        diagnostics.push(("instants_without_yaw_rate", count(|points| points.zero_rate_points.len())));
         diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
         diagnostics.push(("half_width_s", analysed[0].points.half_width));
         Ok(Estimate {

@@ -238,7 +238,7 @@ fn range_about(signal: &Polyline, t: f64, reach: f64) -> f64 {
     let place = |t: f64| signal.times().partition_point(|instant| *instant < t);
     let (from, to) = (place(t - reach), place(t + reach));
     let (lo, hi) = extremes(&signal.values()[from..to]);
-    let ends = [signal.at(t - reach), signal.at(t + reach)];
+    let ends = [signal.value_at(t - reach), signal.value_at(t + reach)];
     ends.into_iter().fold(hi, f64::max) - ends.into_iter().fold(lo, f64::min)
 }
 

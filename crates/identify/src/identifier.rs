@@ -23,7 +23,7 @@ use crate::estimate::Estimate;
 /// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// // A zig-zag of a ship with K = 0.1 1/s and T = 16 s, read from a table.
 /// let record = read.trial;
-/// for settings in kempf_identify::registry::defaults() {
+/// for settings in kempf_identify::registry::default_settings() {
 ///     let method = settings.build()?;
 ///     match method.identify(std::slice::from_ref(&record)) {
 ///         Ok(estimate) => println!("{}: K = {:.3} 1/s", method.id(), estimate.K().value),

@@ -25,7 +25,7 @@ use crate::identifier::Identifier;
 use crate::robust::{newey_west_of_three, reported_covariance};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
-use equations::{IntegratedStretch, SHARED, Solution};
+use equations::{IntegratedStretch, SHARED_PARAMETERS, Solution};
 use noise::ResidualNoise;
 
 /// Minimum number of headings of a stretch between gaps that determines more than the initial state.
@@ -143,7 +143,7 @@ impl IntegralLeastSquares {
         }
         let count: usize = all.iter().map(|piece| piece.time.len()).sum();
         // Initial states, the shared parameters, and as many degrees of freedom for their error.
-        let needed = 2 * SHARED + 2 * all.len().max(1);
+        let needed = 2 * SHARED_PARAMETERS + 2 * all.len().max(1);
         if count < needed {
             return Err(IdentifyError::TooFewPoints { what: "headings in stretches without a gap", needed, count });
         }

@@ -66,7 +66,7 @@ pub struct LackOfFit {
 impl LackOfFit {
     /// Lack of fit of a response to its records; `None` if a replay is not finite, or for too few headings to estimate
     /// their noise.
-    pub fn of(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
+    pub fn from_response(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let (mut residual, mut pieces) = (Vec::new(), Vec::new());
         let mut terms: Vec<Vec<f64>> = Vec::new();
         let (mut noise, mut initial) = (0.0, 0);
@@ -244,7 +244,7 @@ mod tests {
     fn an_exact_ship_leaves_noise_on_either_side_of_neutral() {
         for time_constant in [16.3, -40.0] {
             let case = Case { T: time_constant, K: 0.1 * time_constant.signum(), noise_deg: 0.1, ..Case::default() };
-            let lack = LackOfFit::of(&[case.trial()], &case.ship()).expect("a zig-zag");
+            let lack = LackOfFit::from_response(&[case.trial()], &case.ship()).expect("a zig-zag");
             assert!(lack.is_white && lack.unexplained_share().is_none(), "{lack:?}");
             assert!((lack.residual / lack.noise - 1.0).abs() < 0.2, "{lack:?}");
         }
@@ -257,11 +257,11 @@ mod tests {
             let case = Case { T: 40.0, K: 0.05, noise_deg: 0.1, ..Case::default() };
             let sound = case.trial();
             let (time, rudder) = (sound.time(), sound.rudder_signal());
-            let moved = time.iter().map(|t| rudder.at(t + delay)).collect();
+            let moved = time.iter().map(|t| rudder.value_at(t + delay)).collect();
             let trials = [record("moved", time.to_vec(), sound.heading().to_vec(), moved)];
             let method = output_error::Settings::default().build().expect("default settings");
             let answer = method.identify(&trials).expect("an answer");
-            let lack = LackOfFit::of(&trials, &answer.response).expect("a zig-zag");
+            let lack = LackOfFit::from_response(&trials, &answer.response).expect("a zig-zag");
             let reported_delay = lack.rudder_delay();
             let is_right = reported_delay.is_some_and(|reported| (reported / delay - 1.0).abs() < 0.2);
             assert!(is_right || reported_delay.is_none() && delay > 10.0, "{delay} s: {lack:?}");
@@ -273,7 +273,7 @@ mod tests {
     fn what_k_and_t_explain_is_no_lack() {
         let case = Case { noise_deg: 0.01, ..Case::default() };
         let off = FirstOrder { K_over_T: 1.02 * case.ship().K_over_T, ..case.ship() };
-        let lack = LackOfFit::of(&[case.trial()], &off).expect("a zig-zag");
+        let lack = LackOfFit::from_response(&[case.trial()], &off).expect("a zig-zag");
         assert!(lack.residual > 10.0 * lack.noise && lack.with_ship_terms < 1.2 * lack.noise, "{lack:?}");
     }
 }

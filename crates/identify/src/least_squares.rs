@@ -268,7 +268,7 @@ impl MotionRegression {
             for &k in &part.rows {
                 let row = equations.row(equation);
                 equation += 1;
-                let Some((window, weights)) = weights.at(&part.time, k) else { continue };
+                let Some((window, weights)) = weights.weights_at(&part.time, k) else { continue };
                 for (j, &weights) in window.zip(weights) {
                     let (rate_weight, acceleration_weight) = self.rate_and_acceleration(weights);
                     let error_weight = acceleration_weight + a * rate_weight;

@@ -55,7 +55,7 @@ pub struct MaximumLikelihood {
 
 impl MaximumLikelihood {
     /// Most plausible noise laws of some records, with the fit under each.
-    fn chosen(&self, trials: &[Trial]) -> Result<choice::ChosenLaw, IdentifyError> {
+    fn choose_law(&self, trials: &[Trial]) -> Result<choice::ChosenLaw, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
@@ -64,7 +64,7 @@ impl MaximumLikelihood {
 
     /// Maximum log-likelihood of some records; `None` if the method gives no estimate.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
-        let chosen = self.chosen(trials).ok()?;
+        let chosen = self.choose_law(trials).ok()?;
         let log_likelihood = -0.5 * chosen.maxima[0].1.point.deviance;
         answer::estimate(trials, chosen).is_ok().then_some(log_likelihood)
     }
@@ -80,6 +80,6 @@ impl Identifier for MaximumLikelihood {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        answer::estimate(trials, self.chosen(trials)?)
+        answer::estimate(trials, self.choose_law(trials)?)
     }
 }

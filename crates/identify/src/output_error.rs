@@ -78,7 +78,7 @@ struct Goal {
     tolerance: f64,
     /// Maximum number of steps.
     iterations: usize,
-    /// Maximum sum of squares, rad², of a promising valley.
+    /// Sum of squares, rad², above which the refinement of a local minimum ends.
     bar: f64,
 }
 
@@ -108,7 +108,7 @@ const ROUNDING: f64 = 1e-14;
 const MAX_HALVINGS: usize = 12;
 
 /// Number of unknowns that all trials share: 1/T, K/T, δ_r.
-const SHARED: usize = 3;
+const SHARED_PARAMETERS: usize = 3;
 
 /// Maximum condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
 pub(crate) const CONDITION_LIMIT: f64 = 1e6;
@@ -292,7 +292,7 @@ impl RangeScan {
         }
         let information = profile.information(inverse_time);
         let observations = profile.observations();
-        let freedom = observations as f64 - (SHARED + 2 * profile.trials()) as f64;
+        let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trials()) as f64;
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) =
             invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;

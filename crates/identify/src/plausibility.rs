@@ -30,7 +30,7 @@ pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[T
     if let Some(contradiction) = records.iter().find_map(other_scale) {
         return Some(contradiction);
     }
-    let zigzags: Option<Vec<ZigZag>> = records.iter().map(|record| ZigZag::of(record).ok()).collect();
+    let zigzags: Option<Vec<ZigZag>> = records.iter().map(|record| ZigZag::from_trial(record).ok()).collect();
     let zigzags = zigzags?;
     let indices = ship.map(|ship| unusual_indices(estimate, ship));
     let rates = zigzags.iter().zip(records).filter_map(|(zigzag, record)| {

@@ -47,8 +47,12 @@ pub struct Recommendation {
 
 impl Recommendation {
     /// Recommendation from the estimates of output error and maximum likelihood on these records.
-    pub fn of(trials: &[Trial], output_error: Option<&Estimate>, maximum_likelihood: Option<&Estimate>) -> Self {
-        let lack = output_error.and_then(|estimate| LackOfFit::of(trials, &estimate.response));
+    pub fn from_estimates(
+        trials: &[Trial],
+        output_error: Option<&Estimate>,
+        maximum_likelihood: Option<&Estimate>,
+    ) -> Self {
+        let lack = output_error.and_then(|estimate| LackOfFit::from_response(trials, &estimate.response));
         let is_calm = trials.iter().all(Trial::is_calm);
         let is_random =
             !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|share| share >= MIN_RANDOM);
@@ -120,7 +124,7 @@ impl Identifier for Recommended {
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let nearest = self.output_error.identify(trials);
         let likely = self.maximum_likelihood.identify(trials);
-        match Recommendation::of(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
+        match Recommendation::from_estimates(trials, nearest.as_ref().ok(), likely.as_ref().ok()).reason {
             VerdictReason::NearestReplay => nearest,
             VerdictReason::RandomMoment | VerdictReason::RudderNoise | VerdictReason::HeadingJumps => likely,
         }
@@ -170,7 +174,7 @@ mod tests {
     fn jumps_of_the_heading_are_a_reason_without_a_random_moment() {
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial()];
         let base = nearest(&trials);
-        let reason = |other: &Estimate| Recommendation::of(&trials, Some(&base), Some(other)).reason;
+        let reason = |other: &Estimate| Recommendation::from_estimates(&trials, Some(&base), Some(other)).reason;
         let jumping = Estimate { warnings: vec![WarningCode::HeadingJump.warning("it jumps")], ..base.clone() };
         assert_eq!(reason(&base), VerdictReason::NearestReplay);
         assert_eq!(reason(&jumping), VerdictReason::HeadingJumps);
@@ -196,7 +200,7 @@ mod tests {
         let reason = |times: f64| {
             let response = biased((times * times - 1.0).sqrt() / unit);
             assert!((ratio(&response) / times - 1.0).abs() < 0.02, "{} is not {times}", ratio(&response));
-            Recommendation::of(&trials, Some(&base), Some(&Estimate { response, ..in_gusts(&base) })).reason
+            Recommendation::from_estimates(&trials, Some(&base), Some(&Estimate { response, ..in_gusts(&base) })).reason
         };
         assert_eq!(
             [5.0, 29.0, 31.0].map(reason),
@@ -211,7 +215,7 @@ mod tests {
         let outcome = |trial: Trial| {
             let trials = [trial];
             let base = nearest(&trials);
-            let outcome = Recommendation::of(&trials, Some(&base), Some(&in_gusts(&base)));
+            let outcome = Recommendation::from_estimates(&trials, Some(&base), Some(&in_gusts(&base)));
             (outcome.reason, outcome.residual())
         };
         assert_eq!(outcome(windy()), (VerdictReason::RandomMoment, Some(ResidualKind::Random)));
@@ -226,7 +230,7 @@ mod tests {
         let noise = Noise { rudder: Some(0.01), ..Noise::default() };
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial().with_noise(noise)];
         let base = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let reason = |other: &Estimate| Recommendation::of(&trials, Some(&base), Some(other)).reason;
+        let reason = |other: &Estimate| Recommendation::from_estimates(&trials, Some(&base), Some(other)).reason;
         assert_eq!(reason(&base), VerdictReason::RudderNoise);
         let bare = Uncertainty::None { reason: "none" };
         assert_eq!(reason(&Estimate { uncertainty: bare, ..base.clone() }), VerdictReason::NearestReplay);

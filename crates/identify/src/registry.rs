@@ -35,7 +35,7 @@ macro_rules! methods {
         }
 
         /// All methods that do not combine others, with default settings, in the order of reports.
-        pub fn defaults() -> Vec<IdentifierSettings> {
+        pub fn default_settings() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }
     };
@@ -66,8 +66,8 @@ pub const DEFAULT_METHODS: [&str; 6] = [
 ];
 
 /// Methods of [`DEFAULT_METHODS`] with default settings, the best first.
-pub fn usual() -> Vec<Box<dyn Identifier>> {
-    let all = defaults().into_iter().map(|settings| settings.build().expect("default settings are valid"));
+pub fn default_methods() -> Vec<Box<dyn Identifier>> {
+    let all = default_settings().into_iter().map(|settings| settings.build().expect("default settings are valid"));
     let mut methods: Vec<Box<dyn Identifier>> = all.filter(|method| DEFAULT_METHODS.contains(&method.id())).collect();
     methods.sort_by_key(|method| DEFAULT_METHODS.iter().position(|id| *id == method.id()));
     methods

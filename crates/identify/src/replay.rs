@@ -52,7 +52,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let track = Track::new(trial);
     let mut columns = MotionColumns::default();
     track.fill_columns(a, &mut columns);
-    let mut coefficients = Coefficients::of(response);
+    let mut coefficients = Coefficients::from_response(response);
     let forced = columns.rudder.iter().zip(&columns.constant);
     let free: Vec<f64> = track
         .heading

@@ -150,7 +150,8 @@ mod tests {
             record("heading", time.clone(), grown(&heading, 1e200), rudder.clone()),
             record("rudder", time, heading, grown(&rudder, 1e150)),
         ];
-        let methods = registry::defaults().into_iter().map(|settings| settings.build().expect("valid defaults"));
+        let methods =
+            registry::default_settings().into_iter().map(|settings| settings.build().expect("valid defaults"));
         for method in methods {
             for trial in &absurd {
                 let error = method.identify(std::slice::from_ref(trial)).expect_err("no manoeuvre");

@@ -76,7 +76,7 @@ impl<'a> WindowWeights<'a> {
     /// Rows of the window around row `k` with their weights.
     ///
     /// `None` if the window does not fit into the record or the fit is singular.
-    pub fn at(&mut self, time: &[f64], k: usize) -> Option<(Range<usize>, &[[f64; 3]])> {
+    pub fn weights_at(&mut self, time: &[f64], k: usize) -> Option<(Range<usize>, &[[f64; 3]])> {
         let window = self.filter.window(k, time.len())?;
         let times = &time[window.clone()];
         // Rounding errors of times such as 0.1 k are not a change of spacing.
@@ -96,7 +96,7 @@ impl<'a> WindowWeights<'a> {
 
     /// c₀, c₁ and c₂ at row `k`.
     pub fn apply(&mut self, time: &[f64], value: &[f64], k: usize) -> Option<[f64; 3]> {
-        let (window, weights) = self.at(time, k)?;
+        let (window, weights) = self.weights_at(time, k)?;
         Some(
             value[window]
                 .iter()

@@ -24,13 +24,13 @@ const MIN_EXPLAINED_SHARE: f64 = 0.9;
 pub const REFERENCE_METHODS: [&str; 2] = ["output-error", "maximum-likelihood"];
 
 /// Verdict over the estimates of some methods to some records; `None` if no method gives an estimate.
-pub fn of_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+pub fn from_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight =
         pooled_response_rms(trials, &FirstOrder { inverse_T: 0.0, K_over_T: 0.0, rudder_bias: 0.0 }).map(to_deg);
     let [nearest, likely] = REFERENCE_METHODS.map(estimate_of);
-    let mut verdict = taken(&Recommendation::of(trials, nearest, likely), entries, straight)?;
+    let mut verdict = taken(&Recommendation::from_estimates(trials, nearest, likely), entries, straight)?;
     verdict.because = disbelief(&verdict, entries, straight);
     if verdict.because.is_some() {
         verdict.believe = Belief::No;

@@ -24,18 +24,18 @@ fn fit() -> Result<(), Box<dyn Error>> {
     let (records, mut all_warnings) = ([trial], Warnings::default());
     all_warnings.extend(warnings);
     let mut answers = Vec::new();
-    for method in registry::usual() {
+    for method in registry::default_methods() {
         let (entry, estimate) = answer::entry(method.id(), method.identify(&records), &records);
         match &estimate {
             Some(estimate) => {
                 println!("{:24} K = {:.4} 1/s, T = {:.2} s", method.id(), estimate.K().value, estimate.T().value);
-                all_warnings.extend(WarningSource::Method(method.id().to_owned()).of(estimate.warnings.clone()));
+                all_warnings.extend(WarningSource::Method(method.id().to_owned()).attach_to(estimate.warnings.clone()));
             }
             None => println!("{:24} {}", method.id(), entry.reason.as_deref().unwrap_or("no answer")),
         }
         answers.push((entry, estimate));
     }
-    match verdict::of_answers(&records, &answers) {
+    match verdict::from_answers(&records, &answers) {
         None => println!("no method can identify this record"),
         Some(VerdictEntry { because: Some(because), .. }) => println!("no K and T can be taken, because {because}"),
         Some(verdict) => {

@@ -7,13 +7,13 @@ use kempf::prelude::*;
 fn main() -> Result<(), Box<dyn Error>> {
     let truth = FirstOrder::from_indices(0.1, 16.3, from_deg(0.5));
     let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(6);
-    let mut simulation = Simulation::new(Vessel::from_first_order(truth), zig_zag);
+    let mut simulation = Simulation::new(SimulatedShip::from_first_order(truth), zig_zag);
     simulation.gear = SteeringGear::with_rate(from_deg(2.5));
     simulation.sensors.heading_noise = from_deg(0.1);
     let record = simulation.run(&StreamKey { seed: 1957, cell: 0, replicate: 0 })?.trial;
 
     println!("{:24} {:>8} {:>8}  95 % interval of T [s]", "method", "K error", "T error");
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let method = settings.build()?;
         let estimate = match method.identify(std::slice::from_ref(&record)) {
             Ok(estimate) => estimate,

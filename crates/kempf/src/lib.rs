@@ -23,7 +23,7 @@
 //! ```
 //! use kempf::prelude::*;
 //!
-//! let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+//! let ship = SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 //! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(5);
 //! let mut simulation = Simulation::new(ship, zig_zag);
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.5));
@@ -59,7 +59,7 @@ pub mod prelude {
     };
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
-    pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+    pub use simulate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
     pub use trial::{Channel, Log, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
 }
 

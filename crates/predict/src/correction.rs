@@ -49,7 +49,8 @@ pub const FULL_LOAD: &str = "full load";
 
 /// Figure of merit corrected to another loading; the unit is in the name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Corrected {
+#[schemars(rename = "Corrected")]
+pub struct CorrectedFigure {
     /// T: measured in the condition of the trial.
     pub measured: f64,
     /// Standard deviation of T; `None` if the record gives none: T is then treated as exact.
@@ -80,7 +81,7 @@ pub struct Correction {
     /// Files of the models in the condition of the trial.
     pub ballast: Vec<String>,
     /// Corrected figures of merit by name; empty if the record is neither a zig-zag nor a turn.
-    pub figures: IndexMap<String, Corrected>,
+    pub figures: IndexMap<String, CorrectedFigure>,
     /// Warnings on all figures of merit.
     pub warnings: Vec<Warning>,
 }
@@ -164,7 +165,7 @@ pub fn correct(
         let Warning { code, text, .. } = difference_warning("approach speeds", &of_full, &of_trial, loading);
         warnings.push(code.warning(text + "; the ratio F/B includes this difference"));
     }
-    let zigzag = Measured::of(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
+    let zigzag = Measured::from_trial(record).ok().filter(|zigzag| zigzag.executes.len() > 1);
     let paired = match &zigzag {
         Some(zigzag) => zig_zag(full, ballast, record, zigzag, draws),
         None => turned(full, ballast, record, draws)?,
@@ -215,7 +216,7 @@ fn turned(
     draws: usize,
 ) -> Result<Option<PairedManoeuvre>, PredictError> {
     let length = record.particulars().or(ballast.particulars()).map(|particulars| particulars.length);
-    let turn = HeldTurn::of(record).zip(turn::resampled_record(record, ballast.timescale(), length));
+    let turn = HeldTurn::from_trial(record).zip(turn::resampled_record(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
     let measured = turn.figures(&passage).into_iter();
     let shown: Vec<_> =
@@ -248,7 +249,7 @@ fn short(value: f64) -> String {
 }
 
 /// R = T F/B of one figure of merit; `None` if less than half of the pairs of ships have it.
-fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
+fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<CorrectedFigure> {
     let value = |draw: &Option<SampleResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
     let mut columns: [Vec<f64>; 4] = Default::default();
@@ -264,7 +265,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     if share < 0.5 {
         return None;
     }
-    let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::of(&mut column));
+    let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::from_samples(&mut column));
     let (full, ballast, factor, result) = (full?, ballast?, factor?, result?);
     let [low, high] = ballast.ci90.map(short);
     let mut messages = Vec::new();
@@ -287,7 +288,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
         messages.push(format!("only {:.0} % of the pairs of drawn ships get this far", 100.0 * share));
     }
     let warnings = messages.into_iter().map(|text| WarningCode::Correction.warning(text)).collect();
-    Some(Corrected { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
+    Some(CorrectedFigure { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
 }
 
 #[cfg(test)]
@@ -435,7 +436,7 @@ mod tests {
         let first = &correction.figures["first_overshoot_deg"];
         assert!(first.warnings.iter().any(|warning| warning.text.starts_with("F/B is uncertain by ±")), "{first:?}");
         let strange = correct(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
-        let outside = |figure: &Corrected| {
+        let outside = |figure: &CorrectedFigure| {
             figure.warnings.iter().any(|warning| warning.text.contains("outside its 90 % interval ["))
         };
         assert!(strange.figures.values().any(outside), "{:?}", strange.figures);

@@ -61,7 +61,8 @@ pub struct PredictDocument {
     pub load: Option<OtherLoading>,
     /// Range of the records of the ship.
     #[serde(default)]
-    pub seen: ValidityRange,
+    #[serde(rename = "seen")]
+    pub validity_range: ValidityRange,
     /// Parameters of the sampled ships, if requested.
     #[serde(skip)]
     pub drawn: Vec<SampledParameters>,

@@ -53,9 +53,11 @@ impl HullSampler {
             let (what, expected) = ("rows of the covariance of a hull", coefficients.len());
             return Err(IdentifiedShipError::Count { what, expected, found: rows }.into());
         }
-        let root = covariance_root(stored.from.as_ref().map_or(&stored.covariance, |from| &from.rest))?;
+        let root = covariance_root(
+            stored.trial_hull.as_ref().map_or(&stored.covariance, |from| &from.conditional_covariance),
+        )?;
         let from = stored
-            .from
+            .trial_hull
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
         let hull = Self { stored: stored.clone(), form, coefficients, root, from: from.transpose()? };

@@ -48,7 +48,7 @@ impl ShipMixture {
 
 /// Name of a structure, and its parameters by name.
 fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) {
-    let base = ship::response::BASE.iter().map(|parameter| parameter.key.to_owned());
+    let base = ship::response::BASE_PARAMETERS.iter().map(|parameter| parameter.key.to_owned());
     let of_effects = model.effects().iter().flat_map(|effect| {
         effect.parameters().iter().map(move |parameter| format!("{}.{}", effect.id(), parameter.key))
     });

@@ -73,7 +73,7 @@ pub(crate) fn initial_turning(
     particulars: Option<Particulars>,
 ) -> Characteristics {
     let lengths = particulars.map(|Particulars { length, speed }| {
-        turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length)
+        turning.map(|time| passage.distance_sailed(time).unwrap_or(speed * time) / length)
     });
     let lengths = lengths.map(|lengths| ("initial_turning_lengths", lengths));
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()

@@ -40,7 +40,7 @@ impl SteeredZigZag {
     /// Zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of the
     /// ship, rad/s. `None` if the record begins within the trial, or has a single execute.
     pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
-        let side = measured.side?;
+        let side = measured.first_side?;
         let executes = &measured.executes;
         if executes.len() < 2 {
             return None;
@@ -50,7 +50,7 @@ impl SteeredZigZag {
         let rudder = mean(executes.iter().map(|execute| execute.rudder_after.abs()).collect());
         let heading = mean(executes[1..].iter().map(|execute| (execute.heading.value - base).abs()).collect());
         // Angles near the nominal pair are set to it.
-        let [rudder, heading] = match measured.pair {
+        let [rudder, heading] = match measured.nominal_angles {
             Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)]
                 .map(|(mean, nominal)| if (mean - nominal).abs() < TOLERANCE * nominal { nominal } else { mean }),
             None => [rudder, heading],
@@ -64,7 +64,7 @@ impl SteeredZigZag {
             None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
         };
         let kind = Manoeuvre::zig_zag(rudder, heading).with_first_side(side);
-        let turned = measured.pair.map_or(heading, |pair| pair.heading);
+        let turned = measured.nominal_angles.map_or(heading, |pair| pair.heading);
         Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 

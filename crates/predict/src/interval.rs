@@ -26,7 +26,7 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
 
 impl PredictionInterval {
     /// Intervals of some samples, which are sorted in place; `None` without samples.
-    pub fn of(values: &mut [f64]) -> Option<Self> {
+    pub fn from_samples(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
@@ -50,11 +50,11 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_the_numbers() {
-        let interval = PredictionInterval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
+        let interval = PredictionInterval::from_samples(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
         assert_eq!((interval.median, interval.ci50), (2.0, [1.0, 3.0]));
         assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
         assert!(interval.contains_90(0.3) && !interval.contains_90(0.1));
-        assert_eq!(PredictionInterval::of(&mut []), None);
-        assert_eq!(PredictionInterval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
+        assert_eq!(PredictionInterval::from_samples(&mut []), None);
+        assert_eq!(PredictionInterval::from_samples(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
     }
 }

@@ -139,7 +139,7 @@ impl ShipMixture {
     pub fn independent_of(self, other: &Self) -> Self {
         let shares_trial_errors =
             |(ship, other): (&IdentifiedShip, &IdentifiedShip)| match (&ship.hulls[..], &other.hulls[..]) {
-                ([hull], [source]) => hull.is_from(source),
+                ([hull], [source]) => hull.is_derived_from(source),
                 _ => false,
             };
         let shares_trial_errors =
@@ -180,7 +180,7 @@ impl ShipMixture {
         };
         // A negative dead time is an error of the clock; a ship does not respond before its rudder moves.
         part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
-        let mut normals = key.indexed(Purpose::Specification, 1);
+        let mut normals = key.indexed_rng(Purpose::Specification, 1);
         let [gear_normal, approach_normal, start_normal]: [f64; 3] =
             std::array::from_fn(|_| normals.sample(StandardNormal));
         let random_part = |source, value: f64| if has(source) { value } else { 0.0 };
@@ -191,9 +191,9 @@ impl ShipMixture {
         // A hull converted to another loading shares the sampled errors of the trial hull (stream 2) and adds
         // independent conversion errors (stream 3).
         let of_trial = StreamKey { seed: u64::from(self.is_independent && !self.shares_trial_errors), ..key };
-        let mut rng = of_trial.indexed(Purpose::Specification, 2);
+        let mut rng = of_trial.indexed_rng(Purpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
-            true => hull.sample(&mut rng, &mut key.indexed(Purpose::Specification, 3)),
+            true => hull.sample(&mut rng, &mut key.indexed_rng(Purpose::Specification, 3)),
             false => hull.stored.values(),
         });
         let hull =

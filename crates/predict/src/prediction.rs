@@ -31,7 +31,8 @@ const TOLERANCE: f64 = 1.05;
 
 /// Predicted figure of merit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Predicted {
+#[schemars(rename = "Predicted")]
+pub struct PredictedFigure {
     /// Median and intervals of the samples that have it.
     #[serde(flatten)]
     pub interval: PredictionInterval,
@@ -46,7 +47,7 @@ pub struct Predicted {
     pub draws: Vec<Option<f64>>,
 }
 
-impl Predicted {
+impl PredictedFigure {
     /// Share of the sampled ships within a limit; a ship without the figure of merit counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
         let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
@@ -80,7 +81,7 @@ pub struct Prediction {
     #[schemars(with = "String")]
     pub kind: Manoeuvre,
     /// Figures of merit by name; the unit is in the name.
-    pub figures: IndexMap<String, Predicted>,
+    pub figures: IndexMap<String, PredictedFigure>,
     /// Number of samples that did not complete the manoeuvre.
     pub lost: usize,
     /// Sizes of a turning circle whose interval reaches below zero: the records do not determine them.
@@ -206,7 +207,7 @@ impl ShipMixture {
     /// Prediction of the steady turns of a spiral, without disturbances.
     fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
-            SteadyCurve::of(&self.sample_ship(number, sources), kind.max_rudder(), self.timescale())
+            SteadyCurve::from_ship(&self.sample_ship(number, sources), kind.max_rudder(), self.timescale())
         };
         let all: Vec<SteadyCurve> = in_parallel(draws, |number| curve(number, &UncertaintySource::ALL));
         let values: Vec<Option<Characteristics>> =
@@ -225,8 +226,9 @@ impl ShipMixture {
     /// `true` if a rudder (rad) or the median of the maximum yaw rates (rad/s) is beyond the range of the records.
     pub(crate) fn is_extrapolated(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
-        let end =
-            |value: fn(&ValidityRange) -> f64| self.files().iter().map(|ship| value(&ship.seen)).fold(0.0, f64::max);
+        let end = |value: fn(&ValidityRange) -> f64| {
+            self.files().iter().map(|ship| value(&ship.validity_range)).fold(0.0, f64::max)
+        };
         rudder > TOLERANCE * end(|seen| seen.rudder_rad) || rate > TOLERANCE * end(|seen| seen.yaw_rate_rad_s)
     }
 }
@@ -242,7 +244,7 @@ fn predicted(
     extrapolated: bool,
     sources: &[UncertaintySource],
     draw: impl Fn(u64, &[UncertaintySource]) -> Option<Characteristics> + Sync + Send,
-) -> IndexMap<String, Predicted> {
+) -> IndexMap<String, PredictedFigure> {
     let alone =
         |source: &UncertaintySource| in_parallel(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
@@ -251,16 +253,16 @@ fn predicted(
         let of_draws: Vec<Option<f64>> = draws.iter().map(value).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;
-        let interval = PredictionInterval::of(&mut values)?;
+        let interval = PredictionInterval::from_samples(&mut values)?;
         let spread = |few: &[Option<Characteristics>]| {
-            let interval = PredictionInterval::of(&mut few.iter().filter_map(value).collect::<Vec<f64>>());
+            let interval = PredictionInterval::from_samples(&mut few.iter().filter_map(value).collect::<Vec<f64>>());
             interval.map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
         };
         let spreads: Vec<(&str, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
         let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
         let shares = spreads.into_iter().filter(|_| sum > 0.0);
         let shares = shares.map(|(source, spread)| (source.to_owned(), spread / sum)).collect();
-        Some((name.to_owned(), Predicted { interval, extrapolated, defined, shares, draws: of_draws }))
+        Some((name.to_owned(), PredictedFigure { interval, extrapolated, defined, shares, draws: of_draws }))
     };
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }

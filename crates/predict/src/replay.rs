@@ -30,7 +30,8 @@ const MIN_READINGS: usize = 5;
 
 /// Figure of merit of a record with its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Compared {
+#[schemars(rename = "Compared")]
+pub struct ComparedFigure {
     /// Measured value.
     pub measured: f64,
     /// Predicted interval, with the error of the measured value if the record gives it.
@@ -52,7 +53,7 @@ pub struct RecordReplay {
     /// Current removed from the track.
     pub current: Option<Current>,
     /// Figures of merit that the record shows, by name.
-    pub figures: IndexMap<String, Compared>,
+    pub figures: IndexMap<String, ComparedFigure>,
     /// Name of the record.
     #[serde(default)]
     pub name: String,
@@ -151,7 +152,7 @@ impl ShipMixture {
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(x, y)| (x - y).powi(2)).sum();
-        let (figures, tracks) = match Measured::of(trial) {
+        let (figures, tracks) = match Measured::from_trial(trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => (ships.zig_zag(trial, &zigzag, draws)?, None),
             _ => turns(trial, &most_probable, &made, self.timescale(), current),
         };
@@ -221,17 +222,18 @@ impl ShipMixture {
 }
 
 /// Comparisons by name.
-type ByName = IndexMap<String, Compared>;
+type ByName = IndexMap<String, ComparedFigure>;
 
 /// Comparison of measured characteristics with their draws, each draw with the error of the measured characteristic.
 fn compared(drawn: &[Characteristics], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
     let figure = |(number, &name): (usize, &&'static str)| {
         let Quantity { value: measured, sd, .. } = shown(name)?;
-        let mut rng = StreamKey::default().indexed(Purpose::Heading, 1 + number as u32);
+        let mut rng = StreamKey::default().indexed_rng(Purpose::Heading, 1 + number as u32);
         let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
-        let interval = PredictionInterval::of(&mut values).filter(|interval| figures::is_possible(name, interval))?;
-        Some((name.to_owned(), Compared { measured, interval, inside90: interval.contains_90(measured) }))
+        let interval =
+            PredictionInterval::from_samples(&mut values).filter(|interval| figures::is_possible(name, interval))?;
+        Some((name.to_owned(), ComparedFigure { measured, interval, inside90: interval.contains_90(measured) }))
     };
     drawn.first().into_iter().flat_map(|first| first.keys().enumerate()).filter_map(figure).collect()
 }
@@ -247,7 +249,7 @@ fn turns(
     current: Option<Current>,
 ) -> (ByName, Option<TurnTracks>) {
     let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
-    let turn = HeldTurn::of(trial).zip(turn::resampled_record(trial, timescale, length));
+    let turn = HeldTurn::from_trial(trial).zip(turn::resampled_record(trial, timescale, length));
     let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
     let measured = turn.figures(&record);
     let drawn_figures = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
@@ -306,7 +308,7 @@ mod tests {
         let signal = Polyline::new(times.clone(), times.iter().map(|t| angle(*t)).collect()).expect("increasing");
         let thin = simplified(&signal);
         assert!(thin.times().len() <= 8, "{:?}", thin.times());
-        assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT_TOLERANCE_RAD));
+        assert!(times.iter().all(|t| (thin.value_at(*t) - signal.value_at(*t)).abs() <= STRAIGHT_TOLERANCE_RAD));
     }
 
     /// The mean wind of a record acts on a hull relative to the course of the approach, but not on a structure and not

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use ship::vessel::prime::MAX_SPEED;
+use ship::vessel::prime::MAX_PRIME_SPEED;
 use simulate::motion;
-use simulate::simulation::{Simulated, Truth};
-use simulate::vessel::Solver;
-use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
+use simulate::simulated_ship::Solver;
+use simulate::simulation::{SimulatedTrial, Truth};
+use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, SimulatedShip, Simulation, StreamKey};
 use trial::{Channel, Trial};
 
 use crate::mixture::SampledShip;
@@ -75,12 +75,12 @@ pub(crate) fn row_interval(timescale: f64) -> f64 {
 const MAX_CELL_S: f64 = 60.0;
 const MAX_CORRELATION_SHARE: f64 = 0.5;
 
-/// Simulated vessel of a sampled ship.
-fn vessel(ship: &SampledShip) -> Vessel {
+/// Ship of the simulation from a sampled ship.
+fn simulated_ship(ship: &SampledShip) -> SimulatedShip {
     match &ship.hull {
-        Some(hull) => Vessel::from_dynamics(Arc::new(hull.clone()))
+        Some(hull) => SimulatedShip::from_dynamics(Arc::new(hull.clone()))
             .with_particulars(Particulars { length: hull.length, speed: hull.speed }),
-        None => Vessel::from_response(ship.response.clone()),
+        None => SimulatedShip::from_response(ship.response.clone()),
     }
 }
 
@@ -99,7 +99,7 @@ impl SimulatedManoeuvre {
     }
 
     /// Distance through the water until `time` s, m; `None` for a model without speed.
-    pub fn distance(&self, time: f64) -> Option<f64> {
+    pub fn distance_sailed(&self, time: f64) -> Option<f64> {
         let velocity = &self.way.as_ref()?.velocity;
         let speed = |row: usize| velocity[row][0].hypot(velocity[row][1]);
         let rows = ((time / self.period) as usize).min(velocity.len().checked_sub(1)?);
@@ -112,7 +112,7 @@ impl SimulatedManoeuvre {
     /// Fails if the ship does not reach a heading that the helm waits for, turns without end, or exceeds the speeds for
     /// which the equations of a hull are valid.
     pub fn simulate(ship: &SampledShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
-        let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
+        let mut simulation = Simulation::new(simulated_ship(ship), manoeuvre.clone());
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
             simulation.gear = ship.gear;
         }
@@ -130,7 +130,7 @@ impl SimulatedManoeuvre {
             simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
         let passage = Self::from_simulation(simulation, &ship.key, timescale)?;
-        match ship.hull.as_ref().and_then(|hull| passage.runs_away(MAX_SPEED * hull.speed)) {
+        match ship.hull.as_ref().and_then(|hull| passage.runs_away(MAX_PRIME_SPEED * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),
                 heading: passage.heading[row],
@@ -152,9 +152,9 @@ impl SimulatedManoeuvre {
     pub fn from_simulation(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<Self, SimulateError> {
         simulation.recording = Recording::every(row_interval(timescale));
         simulation.longest_wait = MAX_WAIT_TIMESCALES * timescale;
-        let Simulated { trial, truth } = simulation.run(key)?;
+        let SimulatedTrial { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
-        let length = simulation.vessel.particulars().map(|particulars| particulars.length);
+        let length = simulation.ship.particulars().map(|particulars| particulars.length);
         let way = length.and_then(|length| PlanarMotion::of(length, &trial, &heading));
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }

@@ -34,7 +34,7 @@ pub struct InstabilityLoop {
 impl SteadyCurve {
     /// Curve of a ship up to `largest` rad of rudder to either side; `timescale` is the timescale of the ship, s. Rates
     /// without a rudder are left out.
-    pub fn of(ship: &SampledShip, largest: f64, timescale: f64) -> Self {
+    pub fn from_ship(ship: &SampledShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),
@@ -116,10 +116,10 @@ mod tests {
 
     use super::*;
     use ship::ResponseModel;
-    use ship::effects::listed;
+    use ship::effects::listed_effect;
 
     fn curve(inverse_time: f64) -> SteadyCurve {
-        let model = ResponseModel::new(vec![listed("nonlinear_damping", "r³")]);
+        let model = ResponseModel::new(vec![listed_effect("nonlinear_damping", "r³")]);
         let ship = model.with_parameters(vec![inverse_time, 6e-3, 0.0, 300.0]);
         SteadyCurve::of_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
     }

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 use ship::angle::from_deg;
 use ship::vessel::prime::HullForm;
 use ship::vessel::prior::HullParticulars;
-use simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
+use simulate::{Manoeuvre, SimulatedShip, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::mixture::{ShipMixture, UncertaintySource};
@@ -43,7 +43,7 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
         },
         gear: Some(IdentifiedGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
-        seen: ValidityRange { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
+        validity_range: ValidityRange { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         hulls: Vec::new(),
@@ -79,7 +79,7 @@ pub(crate) fn hull(form: &str) -> IdentifiedHull {
         coefficients,
         moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
         beginning_yaw_rate_rad_s: from_deg(0.01),
-        from: None,
+        trial_hull: None,
     }
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64,
     let ship = if number == 0 { mixture.most_probable() } else { mixture.sample_ship(number, &UncertaintySource::ALL) };
     let requested: Manoeuvre = kind.parse().expect("known");
     let manoeuvre = standard::with_end(&requested, mixture.timescale()).expect("steered");
-    let mut simulation = Simulation::new(Vessel::from_response(ship.response), manoeuvre);
+    let mut simulation = Simulation::new(SimulatedShip::from_response(ship.response), manoeuvre);
     simulation.gear = ship.gear;
     simulation.disturbances = ship.disturbances;
     simulation.sensors.heading_noise = noise;

@@ -29,7 +29,7 @@ const DRAWN_TRACKS: usize = 40;
 
 /// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
 pub fn current_of(trial: &Trial) -> Option<Current> {
-    let turn = HeldTurn::of(trial)?;
+    let turn = HeldTurn::from_trial(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
     let has_position = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
     let is_turning = |row: &usize| (turn.execute..=turn.until).contains(&trial.time()[*row]);
@@ -50,7 +50,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
 
 /// Motion of a sampled ship with a random error of the removed current, from the first row on.
 pub(crate) fn with_current_error(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
-    let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
+    let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed_rng(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
     let period = passage.period;
@@ -79,7 +79,7 @@ pub struct HeldTurn {
 
 impl HeldTurn {
     /// Turn with the maximum rudder; `None` for a rudder that never moves.
-    pub fn of(trial: &Trial) -> Option<Self> {
+    pub fn from_trial(trial: &Trial) -> Option<Self> {
         let (times, values) = (trial.rudder_signal().times(), trial.rudder_signal().values());
         let away = |value: f64| value - values[0];
         let largest = values.iter().copied().map(away).max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
@@ -171,12 +171,12 @@ pub struct MeasuredCircle {
 
 impl MeasuredCircle {
     /// Turning circle of a record, with its current removed; `None` for a zig-zag, and for a turn of less than 90°.
-    pub fn of(trial: &Trial) -> Option<Self> {
-        if ZigZag::of(trial).is_ok() {
+    pub fn from_trial(trial: &Trial) -> Option<Self> {
+        if ZigZag::from_trial(trial).is_ok() {
             return None;
         }
         let (trial, _) = without_current(trial.clone(), None);
-        let turn = HeldTurn::of(&trial)?;
+        let turn = HeldTurn::from_trial(&trial)?;
         let ship = trial.particulars();
         let timescale = ship.map_or_else(|| trial.duration() / DEFAULT_TIMESCALES, |ship| ship.length / ship.speed);
         let passage = resampled_record(&trial, timescale, ship.map(|ship| ship.length))?;
@@ -231,7 +231,7 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
             rows.filter(|&row| values[row].is_finite()).map(|row| (trial.time()[row] - trial.time()[0], values[row]));
         let (times, values) = read.unzip();
         let signal = Polyline::new(times, values).ok()?;
-        Some((0..count).map(|row| signal.at(row as f64 * period)).collect())
+        Some((0..count).map(|row| signal.value_at(row as f64 * period)).collect())
     };
     let heading = on_rows(&mut trial.observed_rows(), trial.heading())?;
     let channel = |channel: Channel| on_rows(&mut (0..trial.len()), trial.channel(channel)?);
@@ -274,7 +274,7 @@ mod tests {
         let trial = Trial::new("circle", Origin::Measured { file: "made up".into(), sha256: String::new() }, columns);
         let trial = trial.expect("a record");
         let record = resampled_record(&trial, 10.0, Some(10.0)).expect("headings");
-        let track = HeldTurn::of(&trial).expect("a turn").track(&record).expect("positions");
+        let track = HeldTurn::from_trial(&trial).expect("a turn").track(&record).expect("positions");
         // The heading begins to change a second after the execute.
         let row = |angle: f64| track[((angle / rate + 1.0) / record.period).round() as usize];
         let (quarter, half) = (row(std::f64::consts::FRAC_PI_2), row(std::f64::consts::PI));

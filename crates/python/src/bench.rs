@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use campaign::failure::OnPath;
 use pyo3::prelude::*;
-use study::commands::bench::{BenchRequest, run_benchmark, skipped};
+use study::commands::bench::{BenchRequest, run_benchmark, skipped_record_line};
 
 use crate::options::request;
 use crate::python_method::{PyIdentifier, PythonMethods};
@@ -30,7 +30,7 @@ pub fn bench(
         let entrants = functions.into_iter().map(entrant).collect();
         let results = run_benchmark(&asked, seed, &entrants, None, observer.as_ref())?;
         let text = results.json().on("describe", "bench.json".as_ref())?;
-        Ok((text, results.skipped.iter().map(skipped).collect::<Vec<String>>()))
+        Ok((text, results.skipped.iter().map(skipped_record_line).collect::<Vec<String>>()))
     };
     let (text, skipped) = watched(py, &watch, progress.as_ref(), work)?;
     let [_, warnings] = watch.take_messages();

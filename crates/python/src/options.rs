@@ -2,7 +2,7 @@
 
 use campaign::failure::Failure;
 use clap::{Args, Parser};
-use study::cli::misused;
+use study::cli::usage_failure;
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -15,5 +15,5 @@ struct KeywordOptions<R: Args> {
 ///
 /// Fails with the usage error of the command line.
 pub fn request<R: Args>(options: Vec<String>) -> Result<R, Failure> {
-    KeywordOptions::try_parse_from(options).map(|parsed| parsed.request).map_err(|usage| misused(&usage))
+    KeywordOptions::try_parse_from(options).map(|parsed| parsed.request).map_err(|usage| usage_failure(&usage))
 }

@@ -146,8 +146,8 @@ impl Axis {
         (self.scale == AxisScale::Log { zero: true }).then_some(BREAK_AT)
     }
 
-    /// `true` if a value has a place on the axis or beyond its ends: it is finite, and positive on a logarithmic scale.
-    pub(crate) fn has_place(&self, value: f64) -> bool {
+    /// `true` if a value can be plotted, also beyond the ends of the axis: finite, and positive on a logarithmic scale.
+    pub(crate) fn is_plottable(&self, value: f64) -> bool {
         let is_on_scale = match self.scale {
             AxisScale::Log { zero } => value > 0.0 || (zero && value == 0.0),
             _ => true,
@@ -404,7 +404,7 @@ mod tests {
     fn logarithmic_places_and_labels() {
         let axis = Axis::log_covering(&[1e-6, 1.0]).between(1e-6, 1.0);
         assert!((place(&axis, 1e-3) - 0.5).abs() < 1e-4);
-        assert!(!axis.has_place(0.0) && place(&axis, -1.0) < -10.0);
+        assert!(!axis.is_plottable(0.0) && place(&axis, -1.0) < -10.0);
         assert_eq!(labels(&axis, 8), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         assert_eq!(labels(&axis, 3), ["10⁻⁶", "10⁻³", "10⁰"]);
         assert_eq!(labels(&Axis::log_covering(&[0.05, 0.5, 3.0]), 4), ["0.1", "1"]);

@@ -16,7 +16,7 @@ use crate::palette::{INK, Look, PAPER};
 use crate::theme::Theme;
 
 /// Chart of plotters.
-pub(crate) type Context = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
+pub(crate) type SvgChart = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
 
 /// Distance beyond the frame, units, from which plotters moves elements to the edge. Everything beyond the frame is
 /// clipped, so lines leave the frame at the correct places.
@@ -43,13 +43,13 @@ pub(crate) struct Bar {
 
 impl Chart {
     /// Chart on the page.
-    pub(crate) fn new(context: &Context, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
-        let (across, down) = context.plotting_area().get_pixel_range();
+    pub(crate) fn new(chart: &SvgChart, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
+        let (across, down) = chart.plotting_area().get_pixel_range();
         let [left, right, top, bottom] =
             [across.start, across.end - 1, down.start, down.end - 1].map(|place| f64::from(place) / UNITS);
         let rect = Rect { x: left, y: top, w: right - left, h: bottom - top };
-        let wide = context.plotting_area().strip_coord_spec().margin(-BEYOND, -BEYOND, -BEYOND, -BEYOND);
-        Self { data: wide.apply_coord_spec(context.as_coord_spec().clone()), canvas, rect, x, y }
+        let wide = chart.plotting_area().strip_coord_spec().margin(-BEYOND, -BEYOND, -BEYOND, -BEYOND);
+        Self { data: wide.apply_coord_spec(chart.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
     /// Right end of the data: of the frame, or of the space for numbers in it.
@@ -68,18 +68,18 @@ impl Chart {
     /// Horizontal page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn page_x(&self, x: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS;
-        self.x.has_place(x).then(at)
+        self.x.is_plottable(x).then(at)
     }
 
     /// Vertical page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn page_y(&self, y: f64) -> Option<f64> {
         let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS;
-        self.y.has_place(y).then(at)
+        self.y.is_plottable(y).then(at)
     }
 
     /// Page point of a data point, also outside the frame; `None` if it is not on the scales.
     pub(crate) fn page_point(&self, x: f64, y: f64) -> Option<PagePoint> {
-        self.reach(x, y).filter(|_| self.has_place(&(x, y)))
+        self.reach(x, y).filter(|_| self.is_plottable(&(x, y)))
     }
 
     /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end.
@@ -106,8 +106,8 @@ impl Chart {
         SvgGroup { clip: Some(self.bounds()), ..SvgGroup::named(name) }
     }
 
-    fn has_place(&self, (x, y): &(f64, f64)) -> bool {
-        self.x.has_place(*x) && self.y.has_place(*y)
+    fn is_plottable(&self, (x, y): &(f64, f64)) -> bool {
+        self.x.is_plottable(*x) && self.y.is_plottable(*y)
     }
 
     /// Line through pairs, broken at gaps.
@@ -118,14 +118,14 @@ impl Chart {
         stroke: Stroke,
     ) -> PlotResult {
         let pairs: Vec<(f64, f64)> = pairs.into_iter().collect();
-        let parts = pairs.split(|pair| !self.has_place(pair)).filter(|part| part.len() > 1);
+        let parts = pairs.split(|pair| !self.is_plottable(pair)).filter(|part| part.len() > 1);
         let lines = parts.flat_map(|part| LineSeries::new(part.to_vec(), stroke.style()));
         self.draw(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
     /// Area between two curves.
     pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> PlotResult {
-        let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.has_place(pair)).collect::<Vec<_>>();
+        let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.is_plottable(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
 

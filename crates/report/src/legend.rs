@@ -119,11 +119,11 @@ pub(crate) fn rows<'a>(entries: &'a [LegendEntry], width: f64, theme: &Theme) ->
 
 /// Width of a row of entries with the gaps between them, points.
 pub(crate) fn row_width(row: &[LegendEntry], theme: &Theme) -> f64 {
-    row.iter().map(|entry| entry.width(theme) + gap(theme)).sum::<f64>() - gap(theme)
+    row.iter().map(|entry| entry.width(theme) + entry_gap(theme)).sum::<f64>() - entry_gap(theme)
 }
 
 /// Free space between entries, points.
-pub(crate) fn gap(theme: &Theme) -> f64 {
+pub(crate) fn entry_gap(theme: &Theme) -> f64 {
     1.6 * theme.small_font
 }
 

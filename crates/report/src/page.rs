@@ -56,7 +56,7 @@ impl<P: PartialEq> PlacedFigures<P> {
     }
 
     /// Marks of the figures of a place, for a template.
-    pub fn at(&self, place: P) -> String {
+    pub fn marks_at(&self, place: P) -> String {
         self.0
             .iter()
             .filter(|(other, _)| *other == place)
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn figures_are_numbered_where_the_template_has_them() {
         let figures = PlacedFigures([("b", figure("fit")), ("c", figure("nowhere")), ("a", figure("last"))].to_vec());
-        let [first, next] = ["a", "b"].map(|place| figures.at(place));
+        let [first, next] = ["a", "b"].map(|place| figures.marks_at(place));
         let filled = format!("# Trial\n\n\n\n{first}\n<b>c\n{next}##~ Numbers\n\n- one\n- two\n![none]\n");
         assert!(figures.has("c") && !figures.has("d"));
         let page = Page::new(Ok(filled), figures);

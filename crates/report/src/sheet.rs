@@ -129,7 +129,7 @@ impl Sheet {
             for entry in *row {
                 let place = (x, self.y - MIDDLE * theme.small_font);
                 most = most.max(entry.draw(&self.canvas, place, room + theme.small_font - x, &theme)?);
-                x += entry.width(&theme) + legend::gap(&theme);
+                x += entry.width(&theme) + legend::entry_gap(&theme);
             }
             self.y += LINE_SPACING * theme.small_font * (most - 1) as f64;
         }
@@ -187,7 +187,7 @@ impl Sheet {
     }
 
     /// Distance between panels side by side, points.
-    pub(crate) fn gap(theme: &Theme) -> f64 {
+    pub(crate) fn panel_gap(theme: &Theme) -> f64 {
         2.6 * theme.tick_font
     }
 
@@ -211,7 +211,7 @@ impl Sheet {
     /// Draws mesh, axes and labels of the panels and returns their charts, row by row.
     pub(crate) fn grid(&mut self, grid: Grid) -> PlotResult<Vec<Chart>> {
         let theme = self.theme.clone();
-        let (count, gap) = (grid.columns.len().max(1), Self::gap(&theme));
+        let (count, gap) = (grid.columns.len().max(1), Self::panel_gap(&theme));
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
         let inner = theme.width - left - Self::right_margin(&theme) - gap * (count - 1) as f64;
         let width = (inner / count as f64).max(theme.tick_font);

@@ -37,7 +37,7 @@ impl<'a> RecordedSignals<'a> {
     }
 
     fn measured(&self, t: f64, piece: usize) -> MeasuredChannels {
-        let at = |signal: Option<&Polyline>| signal.map(|signal| signal.at_with_hint(t, piece));
+        let at = |signal: Option<&Polyline>| signal.map(|signal| signal.value_at_with_hint(t, piece));
         MeasuredChannels {
             speed: at(self.speed),
             sway: at(self.sway),

@@ -20,10 +20,10 @@ use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
-pub const BASE_PARAMETERS: usize = 3;
+pub const BASE_PARAMETER_COUNT: usize = 3;
 
 /// Base parameters.
-pub const BASE: [Parameter; BASE_PARAMETERS] = [
+pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
     Parameter::even(["inverse_T", "1/T", "1/s"], [0.05, 0.05], [-10.0, 10.0]),
     Parameter::even(["K_over_T", "K/T", "1/s²"], [5e-3, 5e-3], [0.0, 100.0]),
     Parameter::odd(["rudder_bias", "δ_r", "rad"], [0.0, 0.02], [-0.6, 0.6]),
@@ -72,7 +72,7 @@ struct Instant<R> {
 impl ResponseModel {
     /// First-order base with effects; the rudder passes through them in this order.
     pub fn new(effects: Vec<Arc<dyn Effect>>) -> Self {
-        let (mut parameters, mut states) = (BASE_PARAMETERS, 2);
+        let (mut parameters, mut states) = (BASE_PARAMETER_COUNT, 2);
         let mut places = Vec::with_capacity(effects.len());
         let (mut second_order, mut with_memory) = (None, 0);
         for (index, effect) in effects.iter().enumerate() {
@@ -116,7 +116,7 @@ impl ResponseModel {
 
     /// Parameters in the order of their values, base first.
     pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
-        BASE.iter().chain(self.effects.iter().flat_map(|effect| effect.parameters()))
+        BASE_PARAMETERS.iter().chain(self.effects.iter().flat_map(|effect| effect.parameters()))
     }
 
     /// Response with these parameter values.

@@ -85,12 +85,12 @@ impl Polyline {
     }
 
     /// Value at time `t`.
-    pub fn at(&self, t: f64) -> f64 {
-        self.at_with_hint(t, self.piece_index(t))
+    pub fn value_at(&self, t: f64) -> f64 {
+        self.value_at_with_hint(t, self.piece_index(t))
     }
 
     /// Value at time `t`; the search starts at the piece `hint`, and is O(1) when the hint is near.
-    pub fn at_with_hint(&self, t: f64, hint: usize) -> f64 {
+    pub fn value_at_with_hint(&self, t: f64, hint: usize) -> f64 {
         let last = self.time.len() - 1;
         let mut piece = hint.min(last);
         while piece < last && self.time[piece + 1] <= t {
@@ -115,12 +115,12 @@ mod tests {
     fn interpolates_and_holds_its_ends() {
         let ramp = Polyline::new(vec![1.0, 3.0, 4.0], vec![0.0, 4.0, 4.0]).expect("valid points");
         for hint in 0..4 {
-            assert_eq!(ramp.at_with_hint(0.0, hint), 0.0);
-            assert_eq!(ramp.at_with_hint(2.0, hint), 2.0);
-            assert_eq!(ramp.at_with_hint(3.0, hint), 4.0);
-            assert_eq!(ramp.at_with_hint(9.0, hint), 4.0);
+            assert_eq!(ramp.value_at_with_hint(0.0, hint), 0.0);
+            assert_eq!(ramp.value_at_with_hint(2.0, hint), 2.0);
+            assert_eq!(ramp.value_at_with_hint(3.0, hint), 4.0);
+            assert_eq!(ramp.value_at_with_hint(9.0, hint), 4.0);
         }
-        assert_eq!(ramp.at(2.5), 3.0);
+        assert_eq!(ramp.value_at(2.5), 3.0);
     }
 
     #[test]

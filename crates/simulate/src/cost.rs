@@ -8,8 +8,8 @@ use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 use crate::error::{Check, Expected, SpecificationError};
 use crate::limits::MAX_STEPS;
 use crate::propagate::{ClosedForm, exposed};
+use crate::simulated_ship::Solver;
 use crate::simulation::Simulation;
-use crate::vessel::Solver;
 use crate::wave_path;
 
 /// Upper estimate of the cost of a run.
@@ -111,7 +111,7 @@ impl Simulation {
     }
 
     fn steps_per_second(&self) -> f64 {
-        let dynamics = self.vessel.dynamics();
+        let dynamics = self.ship.dynamics();
         let step = match (self.closed_form(), self.solver) {
             (Some(ship), _) => ClosedForm::longest_step(&ship),
             (None, Solver::RungeKutta(step)) => step,
@@ -121,7 +121,7 @@ impl Simulation {
         let weather = if self.disturbances.are_time_dependent() { 1.0 / self.weather_grid } else { 0.0 };
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
         let declared = self.disturbances.waves.map(|waves| waves.process());
-        let seas = declared.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();
+        let seas = declared.iter().chain(self.ship.random_headings()).map(sea).sum::<f64>();
         // Rows, and readings of the instruments.
         1.0 / step + 2.0 / self.recording.period + display + weather + seas
     }
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::limits::MAX_EXECUTES;
     use crate::tests::{KEY, zig_zag};
-    use crate::{SimulateError, Vessel};
+    use crate::{SimulateError, SimulatedShip};
     use ship::FirstOrder;
 
     /// Error of a run that cannot end: it names the key that causes the cost.
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
         assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {
-            s.vessel = Vessel::from_first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
+            s.ship = SimulatedShip::from_first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
         };
         assert_eq!(refused(&fast), "recording.duration-s");
         let slow = |s: &mut Simulation| {

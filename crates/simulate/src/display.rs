@@ -70,9 +70,9 @@ impl HeadingDisplay {
     pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;
-        let [wave, _] = self.waves.at(time);
+        let [wave, _] = self.waves.heading_and_rate_at(time);
         let noise = self.sensors.heading_noise * normal(&mut self.rng);
-        let wander = self.wander.as_mut().map_or(0.0, |wander| wander.at(time));
+        let wander = self.wander.as_mut().map_or(0.0, |wander| wander.error_at(time));
         let heading = quantise(gyro + wave + self.sensors.heading_bias + wander + noise, self.sensors.heading_quantum);
         self.log.push(DisplayReading { time, heading, wander });
         side * (heading - self.base) >= angle - READING_TOLERANCE

@@ -183,7 +183,7 @@ impl Wind {
 
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
     /// (m/s) and a ship with speed `U` (m/s) ahead; the drift angle is neglected.
-    pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
+    pub fn relative_wind(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
         trial::relative_wind(speed, self.from, U, heading)
     }
 }
@@ -202,11 +202,11 @@ mod tests {
     #[test]
     fn wind_from_ahead_adds_to_the_speed_and_from_abeam_does_not() {
         let wind = Wind { moment: 0.0, from: 0.5, speed: Some(10.0), gusting: None };
-        let (speed, from) = wind.relative(10.0, 5.0, 0.5);
+        let (speed, from) = wind.relative_wind(10.0, 5.0, 0.5);
         assert_relative_eq!(speed, 15.0, max_relative = 1e-12);
         assert_relative_eq!(from, 0.0, epsilon = 1e-12);
         // Heading with the wind on the starboard beam.
-        let (speed, from) = wind.relative(10.0, 5.0, 0.5 - std::f64::consts::FRAC_PI_2);
+        let (speed, from) = wind.relative_wind(10.0, 5.0, 0.5 - std::f64::consts::FRAC_PI_2);
         assert_relative_eq!(speed, 125.0_f64.sqrt(), max_relative = 1e-12);
         assert_relative_eq!(from, 2.0_f64.atan(), max_relative = 1e-12);
     }

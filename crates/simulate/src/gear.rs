@@ -70,7 +70,7 @@ pub struct Segment {
 impl Segment {
     /// Rudder angle, rad, at time `t`, s; also valid just outside the segment, as its smooth continuation.
     #[inline]
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn angle_at(&self, t: f64) -> f64 {
         match self.motion {
             RudderMotion::Hold => self.angle,
             RudderMotion::Ramp { rate } => self.angle + rate * (t - self.start),
@@ -166,7 +166,7 @@ pub struct RudderPath {
 
 impl RudderPath {
     /// Rudder that rests at `angle` (rad) until the first order.
-    pub fn standing(angle: f64) -> Self {
+    pub fn constant(angle: f64) -> Self {
         let mut segments = Vec::with_capacity(64);
         segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         Self { segments }
@@ -174,7 +174,7 @@ impl RudderPath {
 
     /// Rudder that rests at `angle` (rad) until `start` (s) and then follows `signal`, shifted so that its first point
     /// is at `start`.
-    pub fn following(angle: f64, start: f64, signal: &Polyline) -> Self {
+    pub fn from_signal(angle: f64, start: f64, signal: &Polyline) -> Self {
         let (times, values) = (signal.times(), signal.values());
         let shift = start - times[0];
         let mut path = Self { segments: Vec::with_capacity(times.len() + 1) };
@@ -194,7 +194,7 @@ impl RudderPath {
     /// Orders must come in order of time.
     pub fn order(&mut self, t: f64, order: f64, gear: &SteeringGear) {
         let arrival = t + gear.dead_time;
-        let from = self.at(arrival);
+        let from = self.angle_at(arrival);
         while self.segments.len() > 1 && self.segments[self.segments.len() - 1].start >= arrival {
             self.segments.pop();
         }
@@ -210,21 +210,21 @@ impl RudderPath {
     }
 
     /// Rudder angles, rad, at times that do not decrease, s.
-    pub fn at_each(&self, times: impl Iterator<Item = f64>) -> Vec<f64> {
+    pub fn angles_at(&self, times: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut now = 0;
         let angle = |t| {
             while self.segments.get(now + 1).is_some_and(|next| next.start <= t) {
                 now += 1;
             }
-            self.segments[now].at(t)
+            self.segments[now].angle_at(t)
         };
         times.map(angle).collect()
     }
 
     /// Rudder angle at time `t`, rad; at a jump, the angle after the jump.
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn angle_at(&self, t: f64) -> f64 {
         let after = self.segments.partition_point(|segment| segment.start <= t);
-        self.segments[after.saturating_sub(1)].at(t)
+        self.segments[after.saturating_sub(1)].angle_at(t)
     }
 }
 
@@ -236,7 +236,7 @@ mod tests {
     const DEGREE: f64 = ship::angle::DEGREE;
 
     fn answer(gear: &SteeringGear, from: f64, order: f64) -> RudderPath {
-        let mut path = RudderPath::standing(from);
+        let mut path = RudderPath::constant(from);
         path.order(10.0, order, gear);
         path
     }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn without_limits_the_rudder_jumps() {
         let path = answer(&SteeringGear::default(), 0.1, -0.2);
-        assert_eq!((path.at(9.999), path.at(10.0), path.at(50.0)), (0.1, -0.2, -0.2));
+        assert_eq!((path.angle_at(9.999), path.angle_at(10.0), path.angle_at(50.0)), (0.1, -0.2, -0.2));
     }
 
     #[test]
@@ -253,8 +253,8 @@ mod tests {
         let motions: Vec<RudderMotion> = path.segments().iter().map(|segment| segment.motion).collect();
         assert_eq!(motions, [RudderMotion::Hold, RudderMotion::Ramp { rate: -2.5 * DEGREE }, RudderMotion::Hold]);
         assert_eq!(path.segments()[2].start, 18.0);
-        assert_relative_eq!(path.at(12.0), 5.0 * DEGREE, max_relative = 1e-12);
-        assert_eq!(path.at(30.0), -10.0 * DEGREE);
+        assert_relative_eq!(path.angle_at(12.0), 5.0 * DEGREE, max_relative = 1e-12);
+        assert_eq!(path.angle_at(30.0), -10.0 * DEGREE);
     }
 
     #[test]
@@ -266,13 +266,13 @@ mod tests {
         assert_abs_diff_eq!(starts[0], 11.5);
         assert_abs_diff_eq!(starts[1], 17.5, epsilon = 1e-12);
         assert_abs_diff_eq!(starts[2], 17.5 + 2.0 * 10.0_f64.ln(), epsilon = 1e-12);
-        assert_abs_diff_eq!(path.at(100.0), 0.39, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.angle_at(100.0), 0.39, epsilon = 1e-15);
         // The path has no jumps, and no corner between ramp and exponential.
         for pair in path.segments().windows(2) {
-            assert_abs_diff_eq!(pair[0].at(pair[0].end), pair[1].angle, epsilon = 1e-15);
+            assert_abs_diff_eq!(pair[0].angle_at(pair[0].end), pair[1].angle, epsilon = 1e-15);
         }
         let h = 1e-6;
-        let slopes = [17.5 - h, 17.5 + h].map(|t| (path.at(t + 0.5 * h) - path.at(t - 0.5 * h)) / h);
+        let slopes = [17.5 - h, 17.5 + h].map(|t| (path.angle_at(t + 0.5 * h) - path.angle_at(t - 0.5 * h)) / h);
         assert_relative_eq!(slopes[0], slopes[1], max_relative = 1e-5);
     }
 
@@ -284,7 +284,7 @@ mod tests {
         let (mut delta, h) = (0.3, 1e-4);
         for step in 0..100_000 {
             let t = 10.0 + f64::from(step) * h;
-            assert_abs_diff_eq!(path.at(t), delta, epsilon = 2e-5);
+            assert_abs_diff_eq!(path.angle_at(t), delta, epsilon = 2e-5);
             delta += h * ((-0.1 - delta) / gear.lag).clamp(-0.08, 0.08);
         }
     }
@@ -294,18 +294,18 @@ mod tests {
         let gear = SteeringGear { rate: Some(0.1), dead_time: 1.0, ..SteeringGear::default() };
         let mut path = answer(&gear, 0.0, 0.5);
         path.order(12.0, -0.5, &gear);
-        assert_abs_diff_eq!(path.at(13.0), 0.2, epsilon = 1e-15);
-        assert_abs_diff_eq!(path.at(14.0), 0.1, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.angle_at(13.0), 0.2, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.angle_at(14.0), 0.1, epsilon = 1e-15);
         // A later order does not overtake an earlier order within its dead time.
         path.order(12.5, 0.5, &gear);
-        assert_abs_diff_eq!(path.at(13.5), 0.15, epsilon = 1e-15);
-        assert_abs_diff_eq!(path.at(17.0), 0.5, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.angle_at(13.5), 0.15, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.angle_at(17.0), 0.5, epsilon = 1e-15);
     }
 
     #[test]
     fn stops_and_dead_band_hold_the_rudder() {
         let gear = SteeringGear { rate: Some(0.1), dead_band: 0.02, maximum: Some(0.6), ..SteeringGear::default() };
-        assert_abs_diff_eq!(answer(&gear, 0.0, 0.9).at(100.0), 0.58, epsilon = 1e-15);
-        assert_eq!(answer(&gear, 0.3, 0.31).at(100.0), 0.3);
+        assert_abs_diff_eq!(answer(&gear, 0.0, 0.9).angle_at(100.0), 0.58, epsilon = 1e-15);
+        assert_eq!(answer(&gear, 0.3, 0.31).angle_at(100.0), 0.3);
     }
 }

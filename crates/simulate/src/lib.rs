@@ -1,4 +1,4 @@
-//! Simulated sea trials: a record and the corresponding true motion, from a vessel and a manoeuvre.
+//! Simulated sea trials: a record and the corresponding true motion, from a ship and a manoeuvre.
 //!
 //! A [`Simulation`] is an immutable specification. One call of [`Simulation::run`] with a [`StreamKey`] makes one
 //! trial, identical to the last bit in every repetition. The crate is independent of identification.
@@ -6,7 +6,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | the whole specification, and the result | [`simulation`] |
-//! | vessels, and the use of closed forms | [`vessel`] |
+//! | ships, and the use of closed forms | [`simulated_ship`] |
 //! | speed and drift of a turn, tracks, turning circles | [`motion`] |
 //! | zig-zag, turning circle, pull-out, replay | [`trial::manoeuvre`] |
 //! | helmsman | [`helm`] |
@@ -21,11 +21,11 @@
 //!
 //! ```
 //! use ship::{FirstOrder, angle::from_deg};
-//! use kempf_simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+//! use kempf_simulate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
 //!
-//! let vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+//! let ship = SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 //! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(5);
-//! let mut simulation = Simulation::new(vessel, zig_zag);
+//! let mut simulation = Simulation::new(ship, zig_zag);
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.32));
 //! simulation.sensors.heading_noise = from_deg(0.1);
 //! let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 })?;
@@ -59,9 +59,9 @@ pub mod limits;
 pub mod motion;
 pub mod recording;
 pub mod sensor;
+pub mod simulated_ship;
 pub mod simulation;
 pub mod stream;
-pub mod vessel;
 
 pub use assumption::Assumption;
 pub use disturbance::Disturbances;
@@ -70,7 +70,7 @@ pub use gear::SteeringGear;
 pub use helm::{HelmOrder, Helmsman};
 pub use recording::Recording;
 pub use sensor::Sensors;
-pub use simulation::{BeforeExecute, PreparedSimulation, Simulated, Simulation, Truth};
+pub use simulated_ship::{SimulatedShip, Solver};
+pub use simulation::{BeforeExecute, PreparedSimulation, SimulatedTrial, Simulation, Truth};
 pub use stream::{Purpose, StreamKey};
 pub use trial::{Manoeuvre, Side};
-pub use vessel::{Solver, Vessel};

@@ -77,8 +77,8 @@ impl PerfectReadings {
         let rows = || stamps.iter().enumerate();
         let path = &view.run.path;
         let rudder = match view.assumed {
-            None => path.at_each(rows().map(|(row, &stamp)| stamp + jitter(row))),
-            Some(path) => path.at_each(stamps.iter().copied()),
+            None => path.angles_at(rows().map(|(row, &stamp)| stamp + jitter(row))),
+            Some(path) => path.angles_at(stamps.iter().copied()),
         };
         let mut exact = Vec::new();
         if let Some(first) = view.first_order {
@@ -170,7 +170,7 @@ fn compass_and_rate(
         (scene.gyro.clone(), sensors.has_rate_of_turn_indicator().then(|| scene.yaw_rate.clone()));
     if !waves.is_empty() {
         for (row, &instant) in scene.instants.iter().enumerate() {
-            let [wave, wave_rate] = waves.at(instant);
+            let [wave, wave_rate] = waves.heading_and_rate_at(instant);
             heading[row] += wave;
             yaw_rate.iter_mut().for_each(|yaw_rate| yaw_rate[row] += wave_rate);
         }
@@ -232,13 +232,13 @@ fn order_at(executes: &[HelmOrder], first: f64, t: f64) -> f64 {
 
 fn wind_channels(view: &TrueRunView) -> Vec<(Channel, Vec<f64>)> {
     let Some((wind, mean)) = view.wind.and_then(|wind| Some((wind, wind.speed?))) else { return Vec::new() };
-    let speeds: Vec<f64> = view.samples.iter().map(|sample| gusting_speed(mean, sample.gust)).collect();
+    let speeds: Vec<f64> = view.samples.iter().map(|sample| gusting_speed(mean, sample.gust_factor)).collect();
     let ship = |sample: &Sample| sample.motion.speed.or(view.particulars.map(|particulars| particulars.speed));
     let relative: Option<Vec<(f64, f64)>> = view
         .samples
         .iter()
         .zip(&speeds)
-        .map(|(sample, &speed)| ship(sample).map(|U| wind.relative(speed, U, sample.motion.heading)))
+        .map(|(sample, &speed)| ship(sample).map(|U| wind.relative_wind(speed, U, sample.motion.heading)))
         .collect();
     let mut channels = Vec::new();
     if let Some(relative) = relative {

@@ -14,5 +14,5 @@ pub(crate) struct Sample {
     /// Total disturbance as equivalent rudder angle, rad.
     pub disturbance: f64,
     /// Factor 1 + g on the moment of the wind.
-    pub gust: f64,
+    pub gust_factor: f64,
 }

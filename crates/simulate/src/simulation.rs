@@ -24,8 +24,8 @@ use crate::recording::{Recording, RudderSource, Sampler};
 use crate::run::{Run, RunEvent, RunResult};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
+use crate::simulated_ship::{SimulatedShip, Solver};
 use crate::stream::StreamKey;
-use crate::vessel::{Solver, Vessel};
 use crate::wave_path::SeaWaves;
 use crate::weather::{DEFAULT_CELL_S, Weather};
 
@@ -61,10 +61,10 @@ impl BeforeExecute {
 /// Specification of a simulated trial.
 ///
 /// ```
-/// use kempf_simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
+/// use kempf_simulate::{Manoeuvre, SimulatedShip, Simulation, StreamKey};
 /// use ship::{FirstOrder, angle::from_deg};
 ///
-/// let ship = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+/// let ship = SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 /// let zig_zag = Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0));
 /// let mut simulation = Simulation::new(ship, zig_zag);
 /// simulation.recording.duration = Some(200.0);
@@ -80,7 +80,7 @@ pub struct Simulation {
     /// Name of the scenario, included in the origin of the record.
     pub scenario: String,
     /// Ship.
-    pub vessel: Vessel,
+    pub ship: SimulatedShip,
     /// Approach to the first execute.
     pub approach: BeforeExecute,
     /// Manoeuvre.
@@ -128,7 +128,7 @@ pub struct Truth {
 
 /// Simulated trial: record and truth.
 #[derive(Debug, Clone)]
-pub struct Simulated {
+pub struct SimulatedTrial {
     /// Record of the instruments.
     pub trial: Trial,
     /// True motion; shared between records that differ only in instrument errors.
@@ -163,7 +163,7 @@ impl PreparedSimulation {
     /// Trial of `key`.
     ///
     /// Fails if [`Simulation::run`] fails.
-    pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
+    pub fn run(&self, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         match &self.true_run {
             Some(true_run) => self.simulation.record(true_run, key),
             None => self.simulation.record(&self.simulation.sail(key)?, key),
@@ -180,10 +180,10 @@ const MAX_STEP_S: f64 = 60.0;
 
 impl Simulation {
     /// Trial in a calm, with perfect helmsman, gear and instruments, recorded completely at one row a second.
-    pub fn new(vessel: Vessel, manoeuvre: Manoeuvre) -> Self {
+    pub fn new(ship: SimulatedShip, manoeuvre: Manoeuvre) -> Self {
         Self {
             scenario: String::from("simulation"),
-            vessel,
+            ship,
             approach: BeforeExecute::default(),
             manoeuvre,
             helmsman: Helmsman::default(),
@@ -221,7 +221,7 @@ impl Simulation {
             )?;
         }
         // A negative dead time belongs to a record with a late clock, not to a ship.
-        error::check_time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
+        error::check_time("vessel.dead_time", self.ship.dynamics().dead_time())?;
         let end = self.approach.lead_in + self.manoeuvre.duration();
         match (&self.manoeuvre, self.recording.duration) {
             (_, None) if end.is_finite() => {
@@ -262,7 +262,7 @@ impl Simulation {
     ///
     /// Fails if the specification is invalid or too costly, the motion diverges, a heading is never reached, the record
     /// starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
-    pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
+    pub fn run(&self, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         self.check()?;
         self.record(&self.sail(key)?, key)
     }
@@ -271,7 +271,7 @@ impl Simulation {
     fn is_repeatable(&self) -> bool {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
-        let seas = waves.is_some() || !self.vessel.random_headings().is_empty();
+        let seas = waves.is_some() || !self.ship.random_headings().is_empty();
         let compass = self.sensors.heading_noise > 0.0 || self.sensors.heading_wander.is_some();
         let display = self.helmsman.reads_display_every.is_some() && (compass || seas);
         !weather && !display && self.sensors.jitter == 0.0
@@ -289,8 +289,8 @@ impl Simulation {
                     Solver::Automatic => None,
                     Solver::RungeKutta(step) => Some(step),
                 };
-                let (ship, wind, lag) = (self.vessel.dynamics(), self.disturbances.wind, self.sensors.heading_lag);
-                let speed = self.vessel.particulars().map(|particulars| particulars.speed);
+                let (ship, wind, lag) = (self.ship.dynamics(), self.disturbances.wind, self.sensors.heading_lag);
+                let speed = self.ship.particulars().map(|particulars| particulars.speed);
                 let exposed = || ShipInWeather::new(ship, wind, speed, lag, weather());
                 self.drive(key, || Integrated::new(exposed(), approach, step))
             }
@@ -302,18 +302,18 @@ impl Simulation {
         let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
         let exact = rudder_is_linear && moment_is_linear && self.sensors.heading_lag == 0.0;
-        self.vessel.closed_form().filter(|_| exact && self.solver == Solver::Automatic)
+        self.ship.closed_form().filter(|_| exact && self.solver == Solver::Automatic)
     }
 
     fn begin<P: Propagator>(&self, key: &StreamKey, propagator: P) -> Run<'_, P> {
         let BeforeExecute { heading, rudder, lead_in, .. } = self.approach;
         let path = match &self.manoeuvre {
-            Manoeuvre::Replay { rudder: Some(signal), .. } => RudderPath::following(rudder, lead_in, signal),
-            _ => RudderPath::standing(rudder),
+            Manoeuvre::Replay { rudder: Some(signal), .. } => RudderPath::from_signal(rudder, lead_in, signal),
+            _ => RudderPath::constant(rudder),
         };
         let helm = Helm::new(&self.manoeuvre, &self.helmsman, lead_in);
         let display = self.helmsman.reads_display_every.map(|period| {
-            let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
+            let waves = SeaWaves::new(&self.disturbances, &self.ship, key);
             HeadingDisplay::new(period, self.sensors, waves, key, heading)
         });
         Run::new(propagator, path, &self.gear, helm, display, self.longest_wait)
@@ -361,7 +361,7 @@ impl Simulation {
     fn assumed_path(&self, executes: &[HelmOrder]) -> Option<RudderPath> {
         let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
         let gear = SteeringGear::with_rate(rate);
-        let mut path = RudderPath::standing(self.approach.rudder);
+        let mut path = RudderPath::constant(self.approach.rudder);
         executes.iter().for_each(|execute| path.order(execute.time, execute.order, &gear));
         Some(path)
     }
@@ -383,14 +383,14 @@ impl Simulation {
             assumed: assumed.as_ref(),
             first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay { .. })).then_some(self.approach.rudder),
             wind: self.disturbances.wind,
-            particulars: self.vessel.particulars(),
+            particulars: self.ship.particulars(),
         };
         TrueRun { scene: PerfectReadings::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
     /// Record of a run with the random errors of `key`.
-    fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<Simulated, SimulateError> {
-        let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
+    fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
+        let waves = SeaWaves::new(&self.disturbances, &self.ship, key);
         let written = measure::with_sensor_errors(&self.sensors, &true_run.scene, waves, key);
         let truth = match &written.kept {
             None => Arc::clone(&true_run.truth),
@@ -402,10 +402,10 @@ impl Simulation {
         let conditions = Conditions { weather: self.recording.weather, ..Conditions::default() };
         let trial = Trial::new(name, origin, written.columns)?.with_noise(self.sensors.declared_noise());
         let mut trial = trial.with_conditions(conditions);
-        if let Some(particulars) = self.vessel.particulars() {
+        if let Some(particulars) = self.ship.particulars() {
             trial = trial.with_particulars(particulars);
         }
-        Ok(Simulated { trial, truth })
+        Ok(SimulatedTrial { trial, truth })
     }
 }
 
@@ -428,7 +428,7 @@ fn truth(samples: &[Sample], run: &RunResult) -> Truth {
         heading: column(|sample| sample.motion.heading),
         yaw_rate: column(|sample| sample.motion.yaw_rate),
         yaw_acceleration: column(|sample| sample.motion.yaw_acceleration),
-        rudder: run.path.at_each(samples.iter().map(|sample| sample.time)),
+        rudder: run.path.angles_at(samples.iter().map(|sample| sample.time)),
         disturbance: column(|sample| sample.disturbance),
         speed: samples.iter().map(|sample| sample.motion.speed).collect(),
         executes: run.executes.clone(),

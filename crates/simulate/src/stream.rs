@@ -83,11 +83,11 @@ pub struct StreamKey {
 impl StreamKey {
     /// Generator for one purpose, at its beginning.
     pub fn rng(&self, purpose: Purpose) -> ChaCha8Rng {
-        self.indexed(purpose, 0)
+        self.indexed_rng(purpose, 0)
     }
 
     /// Generator for one of several sources with the same purpose, at its beginning.
-    pub fn indexed(&self, purpose: Purpose, index: u32) -> ChaCha8Rng {
+    pub fn indexed_rng(&self, purpose: Purpose, index: u32) -> ChaCha8Rng {
         // The 256-bit key of the cipher is the concatenation of seed, cell and replicate; the stream number contains
         // purpose and index. No hash is used, so no two streams coincide.
         let mut key = [0; 32];
@@ -155,7 +155,7 @@ mod tests {
         let swapped = StreamKey { seed: 2, cell: 1, replicate: 3 };
         let mut first: Vec<u64> = Purpose::ALL
             .iter()
-            .flat_map(|&purpose| [key.rng(purpose), key.indexed(purpose, 1), swapped.rng(purpose)])
+            .flat_map(|&purpose| [key.rng(purpose), key.indexed_rng(purpose, 1), swapped.rng(purpose)])
             .map(|mut rng| rng.random())
             .collect();
         first.sort_unstable();

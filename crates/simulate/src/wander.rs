@@ -37,11 +37,11 @@ pub(crate) struct WanderPath {
 impl WanderPath {
     /// Path at its beginning, for one reader.
     pub fn new(process: GaussMarkov, reader: CompassReader, key: &StreamKey) -> Self {
-        Self { process, rng: key.indexed(Purpose::HeadingWander, reader as u32), last: None }
+        Self { process, rng: key.indexed_rng(Purpose::HeadingWander, reader as u32), last: None }
     }
 
     /// Error at time `t` (s), rad.
-    pub fn at(&mut self, t: f64) -> f64 {
+    pub fn error_at(&mut self, t: f64) -> f64 {
         self.before(t, None)
     }
 
@@ -124,7 +124,7 @@ mod tests {
         let times: Vec<f64> = rows.iter().chain(&readings).copied().collect();
         assert_covariance(&times, 20_000, |replicate| {
             let mut display = path(CompassReader::Display, replicate);
-            let points = readings.map(|time| WanderPoint { time, error: display.at(time) });
+            let points = readings.map(|time| WanderPoint { time, error: display.error_at(time) });
             let errors = path(CompassReader::Record, replicate).through(&rows, &points);
             assert_relative_eq!(errors[2], points[1].error, max_relative = 1e-12);
             errors.into_iter().chain(points.map(|point| point.error)).collect()

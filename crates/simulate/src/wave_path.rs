@@ -6,8 +6,8 @@ use rand::rngs::ChaCha8Rng;
 use ship::narrow_band::{NarrowBand, NarrowBandStep};
 
 use crate::disturbance::Disturbances;
+use crate::simulated_ship::SimulatedShip;
 use crate::stream::{Purpose, StreamKey, normal};
-use crate::vessel::Vessel;
 
 /// Phase ω₀ h of a cell of width h; at 0.2 the cubic is within 10⁻⁵ σ of the smooth part of the path.
 const PHASE_PER_CELL: f64 = 0.2;
@@ -59,13 +59,13 @@ pub(crate) struct SeaWaves {
 
 impl SeaWaves {
     /// Waves of one run.
-    pub fn new(disturbances: &Disturbances, vessel: &Vessel, key: &StreamKey) -> Self {
+    pub fn new(disturbances: &Disturbances, ship: &SimulatedShip, key: &StreamKey) -> Self {
         let declared = disturbances.waves.iter().map(|waves| WavePath::new(&waves.process(), key.rng(Purpose::Waves)));
-        let of_response = vessel
+        let of_response = ship
             .random_headings()
             .iter()
             .enumerate()
-            .map(|(index, waves)| WavePath::new(waves, key.indexed(Purpose::EffectWaves, index as u32)));
+            .map(|(index, waves)| WavePath::new(waves, key.indexed_rng(Purpose::EffectWaves, index as u32)));
         Self { paths: declared.chain(of_response).collect() }
     }
 
@@ -75,7 +75,7 @@ impl SeaWaves {
     }
 
     /// Wave heading ξ (rad) and its rate ξ' (rad/s) at time `t` (s), which must not decrease from call to call.
-    pub fn at(&mut self, t: f64) -> [f64; 2] {
+    pub fn heading_and_rate_at(&mut self, t: f64) -> [f64; 2] {
         self.paths.iter_mut().fold([0.0; 2], |[x, v], path| {
             let [dx, dv] = path.at(t);
             [x + dx, v + dv]

@@ -21,7 +21,7 @@ pub(crate) struct WeatherCell {
     /// Width, s.
     pub width: f64,
     moment: [f64; 2],
-    gust: [f64; 2],
+    gust_factor: [f64; 2],
 }
 
 impl WeatherCell {
@@ -39,8 +39,8 @@ impl WeatherCell {
 
     /// Factor 1 + g on the moment of the wind.
     #[inline]
-    pub fn gust(&self, t: f64) -> f64 {
-        self.gust[0] + (self.gust[1] - self.gust[0]) / self.width * (t - self.start)
+    pub fn gust_factor(&self, t: f64) -> f64 {
+        self.gust_factor[0] + (self.gust_factor[1] - self.gust_factor[0]) / self.width * (t - self.start)
     }
 }
 
@@ -82,7 +82,7 @@ impl Weather {
     pub fn new(disturbances: &Disturbances, grid: f64, key: &StreamKey) -> Self {
         let gusting = disturbances.wind.and_then(|wind| wind.gusting);
         let mut weather = Self {
-            cell: WeatherCell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust: [1.0; 2] },
+            cell: WeatherCell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust_factor: [1.0; 2] },
             index: 0,
             drift: disturbances.drift,
             squall: disturbances.squall,
@@ -99,10 +99,10 @@ impl Weather {
         };
         if disturbances.are_time_dependent() {
             weather.cell.end = grid;
-            let (moment, gust) = (weather.moment(0.0), weather.gust());
+            let (moment, gust) = (weather.moment(0.0), weather.gust_factor());
             weather.step();
             weather.cell.moment = [moment, weather.moment(grid)];
-            weather.cell.gust = [gust, weather.gust()];
+            weather.cell.gust_factor = [gust, weather.gust_factor()];
         }
         weather
     }
@@ -123,7 +123,7 @@ impl Weather {
             end,
             width: self.cell.width,
             moment: [self.cell.moment[1], self.moment(end)],
-            gust: [self.cell.gust[1], self.gust()],
+            gust_factor: [self.cell.gust_factor[1], self.gust_factor()],
         };
     }
 
@@ -138,7 +138,7 @@ impl Weather {
         self.drift * t + self.squall.map_or(0.0, |squall| squall.moment(t)) + value(&self.walk) + value(&self.gusts)
     }
 
-    fn gust(&self) -> f64 {
+    fn gust_factor(&self) -> f64 {
         1.0 + self.gusting.as_ref().map_or(0.0, |chain| chain.value)
     }
 }
@@ -155,7 +155,7 @@ mod tests {
             .map(|_| {
                 let cell = *weather.cell();
                 weather.enter_next();
-                [cell.moment(cell.start), cell.gust(cell.start)]
+                [cell.moment(cell.start), cell.gust_factor(cell.start)]
             })
             .collect()
     }

@@ -131,14 +131,14 @@ fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             usage.exit()
         }
-        _ if failures::is_for_programs() => misused(&usage),
+        _ if failures::is_for_programs() => usage_failure(&usage),
         // Through the same writer as all other messages, because an argument may hold control characters.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })
 }
 
 /// Message of a usage error, without the usage text.
-pub fn misused(usage: &clap::Error) -> Failure {
+pub fn usage_failure(usage: &clap::Error) -> Failure {
     let message = usage.to_string();
     let (message, _) = message.split_once("\n\nUsage:").unwrap_or((&message, ""));
     let (message, _) = message.split_once("\n\nFor more information").unwrap_or((message, ""));

@@ -37,7 +37,7 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
 
 /// Names of the methods of the project.
 pub fn methods() -> Vec<String> {
-    let built = registry::defaults().into_iter().filter_map(|settings| settings.build().ok());
+    let built = registry::default_settings().into_iter().filter_map(|settings| settings.build().ok());
     built.map(|method| method.id().to_owned()).collect()
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ship::effects::Formula;
 use toml::Spanned;
-use trial::file::{Kind, read_text};
+use trial::file::{FileKind, read_text};
 
 /// Effects of a file, `effects = ["NAME = FORMULA", …]`.
 #[derive(Debug, Clone)]
@@ -25,7 +25,7 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
 
 /// Effects read from a file. Fails with the line of the first invalid formula.
 pub fn formulas(path: &str) -> Result<Formulas, String> {
-    const FILE: Kind = Kind { name: "a file of effects", max_bytes: 1 << 20 };
+    const FILE: FileKind = FileKind { name: "a file of effects", max_bytes: 1 << 20 };
     let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;
     let file: EffectFile = toml::from_str(&text).map_err(|error| error.to_string().trim_end().to_owned())?;
     let read = |line_text: &Spanned<String>| {

@@ -251,7 +251,7 @@ pub struct TraceRequest {
     pub reading: ReadingOptions,
     /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
     #[arg(long, value_name = "CHANNEL", value_enum)]
-    pub without: Vec<Withheld>,
+    pub without: Vec<WithheldChannel>,
     /// Effects that are always in the model, by their ids in `study list effects` or their names in `--effect`
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
         value_parser = completed(StringValueParser::new(), completed::effects))]
@@ -305,9 +305,9 @@ impl TraceRequest {
         let (with, without) = (named("with", &self.with)?, named("without-effect", &self.without_effect)?);
         let mut only = named("only", &self.only)?;
         if only.is_empty() {
-            return Ok(Selection { with, without, ..selection });
+            return Ok(Selection { required: with, excluded: without, ..selection });
         }
-        let typed = selection.formulas.iter().map(|formula| EffectId::of(formula));
+        let typed = selection.formulas.iter().map(|formula| EffectId::from_formula(formula));
         let more: Vec<EffectId> = typed.filter(|id| !only.contains(id)).collect();
         only.extend(more);
         Ok(Selection { formulas: selection.formulas, ..Selection::only(only) })
@@ -329,7 +329,7 @@ fn effect(option: &str, name: &str, selection: &Selection) -> Result<EffectId, F
 
 /// Channels that can be withheld from an analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Withheld {
+pub enum WithheldChannel {
     /// Wind, relative and true
     Wind,
     /// Speed and surge velocity
@@ -411,7 +411,7 @@ impl PredictRequest {
 
 /// Files that have a JSON schema.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Described {
+pub enum SchemaSubject {
     /// Scenario of a study
     Scenario,
     /// Sidecar of a record
@@ -462,7 +462,7 @@ pub enum Described {
 
 /// Lists of `study list`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Listed {
+pub enum ListSubject {
     /// Identification methods with their settings
     Identifiers,
     /// Effects that a first-order response may lack

@@ -47,7 +47,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         records.sort();
         if records.is_empty() {
             let endings = ENDINGS.join(", .");
-            return Err(Failure::about(
+            return Err(Failure::in_file(
                 path,
                 format!("this folder holds no record; expected files that end in .{endings}"),
             ));
@@ -72,7 +72,7 @@ pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &m
     name::study_name(display_path(path))?;
     let sidecar = Sidecar::path_for(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
-    warnings.extend(source(display_path(path)).of(std::mem::take(&mut log.warnings)));
+    warnings.extend(source(display_path(path)).attach_to(std::mem::take(&mut log.warnings)));
     Ok(log)
 }
 
@@ -85,7 +85,7 @@ pub fn source(path: &Path) -> WarningSource {
 fn refused(error: ReadError) -> Failure {
     let code = error.code();
     let failure = match error {
-        ReadError::Table { file, problem } => Failure::about(&file, problem),
+        ReadError::Table { file, problem } => Failure::in_file(&file, problem),
         ReadError::Sidecar(error) => {
             let SidecarError { file, line, problem } = &error;
             let (file, problem) = (Some(file.display().to_string()), problem.to_string());
@@ -145,11 +145,11 @@ pub fn trial_from_log(
     let log = if from.is_some() || until.is_some() {
         log.into_interval(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(refused)?
     } else {
-        log.chosen(options.trial).map_err(refused)?
+        log.into_manoeuvre(options.trial).map_err(refused)?
     };
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: reader_warnings } = log.into_trial(ship).map_err(refused)?;
-    warnings.extend(source(path).of(reader_warnings));
+    warnings.extend(source(path).attach_to(reader_warnings));
     with_declared(trial, path, options)
 }
 
@@ -162,20 +162,20 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
         conditions.hull = HullParticulars::default();
         (conditions.trial.draught_fore, conditions.trial.draught_aft) = (None, None);
     }
-    conditions.trial = options.of_trial.or(&conditions.trial);
+    conditions.trial = options.of_trial.completed_by(&conditions.trial);
     let options = &options.ship.form;
     options.apply(&mut conditions.hull);
     conditions.hull.draught = conditions.hull.draught.or(conditions.trial.mean_draught());
     if let Some(draught) = conditions.hull.draught.filter(|draught| !conditions.trial.admits(*draught)) {
         let [fore, aft] = conditions.trial.draughts().unwrap_or_default();
         let text = format!("draught-m = {draught} is not between the draughts fore, {fore} m, and aft, {aft} m");
-        return Err(Failure::about(path, format!("{text}; give --draught-m as well, or leave these out")));
+        return Err(Failure::in_file(path, format!("{text}; give --draught-m as well, or leave these out")));
     }
     let trial = trial.with_conditions(conditions);
     if let Some(key) = options.first() {
         let advice = "give --length-m as well, or declare it under [ship] in a sidecar";
-        let unknown = || Failure::about(path, format!("--{key} needs length and speed of the ship; {advice}"));
-        trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::about(path, error))?;
+        let unknown = || Failure::in_file(path, format!("--{key} needs length and speed of the ship; {advice}"));
+        trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::in_file(path, error))?;
     }
     Ok(trial)
 }
@@ -200,7 +200,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         Some(TimePoint::Clock(stamp, text)) => {
             let time = log.clock.and_then(|clock| clock.time_of(stamp));
             time.map(Some).ok_or_else(|| {
-                Failure::about(
+                Failure::in_file(
                     path,
                     format!("`{text}` is a time of day that the clock of this record does not show; give seconds"),
                 )
@@ -224,7 +224,7 @@ fn ship(
     let speeds = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0);
     let Some(speed) = upper_median(speeds) else {
         let advice = "add --speed-kn or --speed-m-s to --length-m";
-        return Err(Failure::about(path, format!("the record has no speed; {advice}")));
+        return Err(Failure::in_file(path, format!("the record has no speed; {advice}")));
     };
     let text = format!("the approach speed is taken from the record, {} kn in its first tenth", fixed(speed / KNOT, 2));
     warnings.push(WarningCode::Scale, source(path), text);

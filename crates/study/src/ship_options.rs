@@ -74,7 +74,7 @@ fn day(text: &str) -> Result<String, String> {
 
 impl TrialOptions {
     /// Particulars of the options, completed by those of a record.
-    pub fn or(&self, of_record: &TrialParticulars) -> TrialParticulars {
+    pub fn completed_by(&self, of_record: &TrialParticulars) -> TrialParticulars {
         let Self { ship_name, date, draught_fore_m, draught_aft_m } = self.clone();
         TrialParticulars { ship_name, date, draught_fore: draught_fore_m, draught_aft: draught_aft_m }
             .with_missing_from(of_record)

@@ -6,7 +6,7 @@ use campaign::failure::Failure;
 use clap::{Args, ValueEnum};
 use report::Theme;
 use report::theme::{DPI_RANGE, WIDTH_RANGE_MM};
-use trial::file::{Kind, read_text};
+use trial::file::{FileKind, read_text};
 
 /// Style of figures.
 #[derive(Debug, Clone, Args)]
@@ -91,7 +91,7 @@ impl FigureOptions {
         let file = self.style.as_deref();
         let style = file.map(style_of).transpose()?.unwrap_or_default();
         let named = |error: String| match file {
-            Some(file) => Failure::about(file, error),
+            Some(file) => Failure::in_file(file, error),
             None => Failure::input(error),
         };
         let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
@@ -105,12 +105,12 @@ impl FigureOptions {
     }
 }
 
-const STYLE: Kind = Kind { name: "a style", max_bytes: 1 << 20 };
+const STYLE: FileKind = FileKind { name: "a style", max_bytes: 1 << 20 };
 
 /// Style read from its file.
 fn style_of(path: &Path) -> Result<report::Style, Failure> {
-    let text = read_text(path, STYLE).map_err(|error| Failure::about(path, error))?;
-    toml::from_str(&text).map_err(|error| Failure::about(path, error.to_string().trim_end().to_owned()))
+    let text = read_text(path, STYLE).map_err(|error| Failure::in_file(path, error))?;
+    toml::from_str(&text).map_err(|error| Failure::in_file(path, error.to_string().trim_end().to_owned()))
 }
 
 #[cfg(test)]

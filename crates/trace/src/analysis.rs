@@ -30,7 +30,7 @@ use crate::record::PreparedRecord;
 use crate::remainder::{Innovations, Remainder, innovations, sums_of_squares};
 use crate::replay_errors::ReplayDepth;
 use crate::report;
-use crate::rudder::{self, RudderError};
+use crate::rudder::{self, RudderNoise};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::shape::{self, ShapeAnalysis};
@@ -97,7 +97,7 @@ pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
 /// Fails with the reason why a requested effect is no candidate.
 fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
     let is_there = |id: &&EffectId| candidates.iter().any(|term| term.effect.id() == id.as_str());
-    let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
+    let Some(&effect) = selection.required.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = selection.effects().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::missing_message));
     let reason = match forms.iter().any(|form| form.is_random()) {
@@ -159,7 +159,7 @@ fn analyse(
     settings: &Settings,
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
-    let (trials, rudder_errors) = rudder::estimate_rudders(trials);
+    let (trials, rudder_noises) = rudder::estimate_rudders(trials);
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = Base::fit(&trials)?;
@@ -168,12 +168,12 @@ fn analyse(
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
     let problem = FittedRecords::new(records, response.inverse_T, time);
-    let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_errors);
+    let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_noises);
     let members = structures.members();
     let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut keeps_base) = compare(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_errors);
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
     let hulls = hulls::fit(&trials, settings, &identification, &remainder);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
@@ -194,7 +194,7 @@ fn analyse(
         remainder: &remainder,
         location: &location,
         outliers: &outliers,
-        rudder_errors: &rudder_errors,
+        rudder_noises: &rudder_noises,
         keeps_base,
         has_hulls: !hulls.is_empty() && !keeps_base,
         problem: &problem,
@@ -221,12 +221,12 @@ fn weighed(
     candidates: &[Arc<Term>],
     trials: &[Trial],
     settings: &Settings,
-    rudder_errors: &[Option<RudderError>],
+    rudder_noises: &[Option<RudderNoise>],
 ) -> (FullModel, Structures) {
     let has_waves = candidates::has_waves(trials, &settings.selection);
     let choose = |kinds: &[CorrelatedNoise]| {
         let fulls = full::fit(problem, base, candidates, has_waves, kinds);
-        let fulls = rudder::with_rudder_noise(fulls, problem, base.estimate.response.K_over_T, rudder_errors);
+        let fulls = rudder::with_rudder_noise(fulls, problem, base.estimate.response.K_over_T, rudder_noises);
         structures::weigh_structures(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
     };
     let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();

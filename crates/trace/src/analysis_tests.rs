@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use document::trace::Dependence;
 use ship::angle::to_deg;
-use ship::effects::{Effect, Formula, listed};
+use ship::effects::{Effect, Formula, listed_effect};
 use trial::{Conditions, DeclaredWeather, Trial};
 
 use crate::structures::WeighedStructure;
@@ -14,7 +14,7 @@ use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, tra
 
 /// Record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
-    let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
+    let damping: Arc<dyn Effect> = listed_effect("nonlinear_damping", "r³");
     record(&ship(vec![(damping, vec![80.0])]), plan)
 }
 
@@ -123,7 +123,7 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
 /// document follow from them for other odds.
 #[test]
 fn probabilities_move_with_the_prior_odds() {
-    let damping: Arc<dyn Effect> = listed("nonlinear_damping", "r³");
+    let damping: Arc<dyn Effect> = listed_effect("nonlinear_damping", "r³");
     let trial = record(&ship(vec![(damping, vec![25.0])]), TrialPlan { noise_deg: 0.2, ..TrialPlan::default() });
     let analysis = traced(std::slice::from_ref(&trial));
     let (document, all) = (&analysis.document, &analysis.structures.all);
@@ -186,7 +186,7 @@ fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
     };
     let only = with(Selection::only(vec![id("speed_loss")])).expect("a base");
     assert_eq!(named(&only), ["speed_loss"]);
-    let without = with(Selection { without: vec![id("nonlinear_damping")], ..Selection::default() }).expect("a base");
+    let without = with(Selection { excluded: vec![id("nonlinear_damping")], ..Selection::default() }).expect("a base");
     assert!(!named(&without).contains(&"nonlinear_damping"));
     let lacking = with(Selection::only(vec![id("sway_coupling_measured")])).expect_err("no sway");
     assert!(lacking.to_string().contains("sway"), "{lacking}");

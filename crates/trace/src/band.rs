@@ -46,13 +46,13 @@ pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: 
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let smooth = Polyline::new(time, smoothed(&variance)).ok()?;
     let of_hulls: Vec<Polyline> = after.hulls.iter().map(|hull| hull.heading_variance(trial)).collect::<Option<_>>()?;
-    let hulls = |t: f64| share * of_hulls.iter().map(|variance| variance.at(t)).sum::<f64>();
+    let hulls = |t: f64| share * of_hulls.iter().map(|variance| variance.value_at(t)).sum::<f64>();
     let weights: Vec<f64> = after.weights().collect();
     let between = |row: usize| -> f64 {
         let parts = weights.iter().zip(members);
         parts.map(|(weight, member)| weight * (member.heading[row] - mean.heading[row]).powi(2)).sum()
     };
-    let half = |(row, &t): (usize, &f64)| QUANTILE * (smooth.at(t) + hulls(t) + white + between(row)).sqrt();
+    let half = |(row, &t): (usize, &f64)| QUANTILE * (smooth.value_at(t) + hulls(t) + white + between(row)).sqrt();
     let band: Vec<f64> = mean.time.iter().enumerate().map(half).collect();
     band.iter().all(|half| half.is_finite()).then_some(band)
 }

@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(weather(other, &usual), [wind, drift, transient].map(|id| (id, None)));
         assert_eq!(weather(calm, &usual), []);
         assert_eq!(weather(&both, &usual), [(wind, None), (drift, Some(1)), (transient, Some(1))]);
-        let asked = Selection { with: vec![EffectId::find(drift).expect("on the list")], ..usual };
+        let asked = Selection { required: vec![EffectId::find(drift).expect("on the list")], ..usual };
         assert_eq!(weather(calm, &asked), [(drift, None)]);
     }
 

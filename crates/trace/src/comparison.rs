@@ -16,7 +16,8 @@ use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
 use crate::replay_errors::{
-    HORIZONS, ReplayDepth, ReplayErrors, WindowError, duration, has_several_windows, overshoot_error, root_mean_square,
+    HORIZONS_S, ReplayDepth, ReplayErrors, WindowError, duration, has_several_windows, overshoot_error,
+    root_mean_square,
 };
 use crate::settings::TraceError;
 
@@ -91,7 +92,7 @@ impl ReplayResult {
 impl From<&ReplayResult> for ErrorsEntry {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
-        let horizon = HORIZONS.map(|length| (format!("{length:.0}"), errors.restarted_rms(length).map(to_deg)));
+        let horizon = HORIZONS_S.map(|length| (format!("{length:.0}"), errors.restarted_rms(length).map(to_deg)));
         Self {
             heading_rmse_deg: to_deg(errors.heading),
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),

@@ -69,7 +69,7 @@ impl MonomialPowers {
     }
 
     /// Value for r (rad/s), δ and ψ (rad), without magnitudes.
-    pub fn at(&self, factors: [f64; 3]) -> f64 {
+    pub fn value_at(&self, factors: [f64; 3]) -> f64 {
         factors.iter().zip(self.exponents).map(|(factor, power)| factor.powi(power)).product()
     }
 }
@@ -93,7 +93,7 @@ pub fn all() -> &'static [MonomialPowers] {
 }
 
 /// Monomials without magnitudes.
-pub fn plain() -> &'static [MonomialPowers] {
+pub fn without_magnitudes() -> &'static [MonomialPowers] {
     &LIBRARY[..PLAIN.split(' ').count()]
 }
 
@@ -117,7 +117,7 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
 }
 
 /// Prior standard deviation of a coefficient, rad.
-pub const PRIOR_SD: f64 = 0.05;
+pub const PRIOR_SD_RAD: f64 = 0.05;
 
 /// Coefficient of an empirical term: a rudder angle, for factors divided by their scales.
 pub const COEFFICIENT: Parameter = Parameter::even(["c", "c", "rad"], [0.0, 0.02], [-10.0, 10.0]);
@@ -143,7 +143,7 @@ impl Effect for Monomial {
     }
 
     fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
-        Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD))
+        Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD_RAD))
     }
 
     fn targets(&self) -> Targets {
@@ -189,6 +189,6 @@ mod tests {
         assert_eq!(MonomialPowers::from_notation("r²δ").line(), "proposal = c * r^2 * delta");
         assert_eq!(MonomialPowers::from_notation("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
         assert!(all().iter().all(|powers| ship::effects::Formula::parse(&powers.line()).is_ok()));
-        assert_eq!((plain().len(), all().len()), (18, 59));
+        assert_eq!((without_magnitudes().len(), all().len()), (18, 59));
     }
 }

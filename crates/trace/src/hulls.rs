@@ -27,6 +27,6 @@ pub fn fit(
 }
 
 /// Hulls refitted to other records under the same priors.
-pub fn refitted(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
+pub fn refit(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
     hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.expected).ok()).collect()
 }

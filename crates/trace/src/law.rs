@@ -20,7 +20,7 @@ use crate::waves;
 use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Lower bound of the standard deviation of a heading, rad: a thousandth of a degree.
-pub const MIN_HEADING_SD: f64 = 1.75e-5;
+pub const MIN_HEADING_SD_RAD: f64 = 1.75e-5;
 
 /// Share of the rows, with the largest second differences of the rudder, from which the error of the rudder between
 /// rows is estimated.
@@ -49,7 +49,7 @@ pub fn min_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
         bends.sort_by(|a, b| b.total_cmp(a));
         let count = ((bends.len() as f64 * BEND_SHARE) as usize).max(1);
         let square = bends.iter().take(count).sum::<f64>() / count as f64;
-        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(MIN_HEADING_SD).powi(2)
+        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(MIN_HEADING_SD_RAD).powi(2)
     };
     problem.records.iter().map(floor).collect()
 }
@@ -94,7 +94,7 @@ impl<'a> LinearisedFit<'a> {
 
     /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` if the
     /// precision is singular.
-    pub fn solved(&self, weights: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
+    pub fn solve(&self, weights: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
         let (mut normal, _) = self.linear.normal(weights);
         self.add_prior(&mut normal);
         let factor = normal.matrix.cholesky()?;

@@ -53,7 +53,7 @@ pub fn leave_one_out(
             .map(|(log_posterior, fit)| ((log_posterior - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let (hulls, time) = (hulls::refitted(hulls, &without(trials, omitted)), problem.time);
+        let (hulls, time) = (hulls::refit(hulls, &without(trials, omitted)), problem.time);
         let averaged = AveragedModel { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
         averaged.compare(&trials[omitted], &base.estimate.response, true).ok()
     };

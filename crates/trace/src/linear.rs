@@ -58,7 +58,7 @@ pub fn heading_sensitivities(
         let (mut residual, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
         replay_headings(&response, record, [initial[0], initial[1]], |row, heading| {
             residual[row] = record.heading[record.observed[row]] - heading.value;
-            columns.iter_mut().zip(heading.by).for_each(|(column, by)| column[row] = by);
+            columns.iter_mut().zip(heading.derivatives).for_each(|(column, by)| column[row] = by);
         });
         (residual, columns)
     };

@@ -7,9 +7,9 @@ use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{Term, TermName};
 use crate::naming::{EffectNaming, named_effects};
-use crate::rudder::RudderError;
+use crate::rudder::RudderNoise;
 use crate::settings::Settings;
-use crate::shape::{self, MAX_EQUIVALENT_GAIN, MIN_GAIN, MomentSize, ShapeAnalysis};
+use crate::shape::{self, MAX_EQUIVALENT_GAIN_NATS, MIN_GAIN_NATS, MomentSize, ShapeAnalysis};
 use crate::structures::{Structures, chi_square_p_value};
 
 /// Maximum p value (χ²) of a named effect.
@@ -32,7 +32,7 @@ pub struct Location {
 
 impl Location {
     /// Random moment in addition to named effects and shapes; `None` if the rudder noise explains it.
-    pub fn moment(&self, errors: &[Option<RudderError>]) -> Option<MomentSize> {
+    pub fn moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
         let is_of_rudder = moment.white.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
@@ -81,18 +81,18 @@ pub fn locate(
     }
     // Named effects with shapes must also explain more than a random moment without either.
     let [random, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.power]);
-    if current.is_located() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN {
+    if current.is_located() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN_NATS {
         return Location { named: asked, displaced: open, shapes: none };
     }
     current
 }
 
 /// `true` if the residual without an effect is explained better than with it: by shapes with a gain above
-/// [`MAX_EQUIVALENT_GAIN`], by a random law with any gain.
+/// [`MAX_EQUIVALENT_GAIN_NATS`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
     let power = without.as_ref().map_or(1.0, |shapes| shapes.power);
-    power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN } else { 0.0 }
+    power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN_NATS } else { 0.0 }
 }
 
 /// Criterion −2 log p + penalty of the best explanation.

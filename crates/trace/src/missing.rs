@@ -9,7 +9,7 @@ use crate::analysis::Analysis;
 use crate::candidates::is_variant;
 use crate::fit::StoppingRule;
 use crate::full::start_point;
-use crate::law::MIN_HEADING_SD;
+use crate::law::MIN_HEADING_SD_RAD;
 use crate::missing_moment::{MissingMoment, RelativeResponse};
 use crate::model::{Structure, TermName};
 
@@ -58,7 +58,7 @@ impl Analysis {
                 effects: vec![(*id, *form)],
                 heading: difference(&residual[number]),
             }));
-            let sd = self.full.law.variance[number].sqrt().max(MIN_HEADING_SD);
+            let sd = self.full.law.variance[number].sqrt().max(MIN_HEADING_SD_RAD);
             MissingMoment::new(&self.problem.records[number], &self.base.response, sd, explanations)
         };
         (0..self.problem.records.len()).into_par_iter().map(missing).collect()

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use ship::dynamics::Dynamics;
 use ship::effects::{Effect, Parameter, Prior};
 use ship::replay::replay_states;
-use ship::response::{BASE, BASE_PARAMETERS};
+use ship::response::{BASE_PARAMETER_COUNT, BASE_PARAMETERS};
 use ship::{EffectReal, Real, Replayable, Response, ResponseModel};
 
 use crate::record::PreparedRecord;
@@ -50,7 +50,7 @@ impl Term {
 
     /// Parameter values at which the effect is absent; shape parameters at their prior means.
     pub fn neutral(&self) -> Vec<f64> {
-        let value = |(prior, parameter): (&Prior, &Parameter)| match (prior.is_shape, prior.beside) {
+        let value = |(prior, parameter): (&Prior, &Parameter)| match (prior.is_shape, prior.reference) {
             (true, _) => prior.mean,
             (false, Some(_)) => 0.0,
             (false, None) => parameter.neutral,
@@ -111,7 +111,7 @@ impl Structure {
 
     /// Number of parameters of the base.
     pub fn base_count(&self) -> usize {
-        BASE_PARAMETERS + self.deviations()
+        BASE_PARAMETER_COUNT + self.deviations()
     }
 
     /// Number of entries of θ.
@@ -133,12 +133,12 @@ impl Structure {
     /// Entries of θ.
     pub fn entries(&self) -> Vec<ModelParameter> {
         let base = |k: usize, sd: f64, only| ModelParameter {
-            parameter: &BASE[k],
-            prior: Prior::normal(&BASE[k], 0.0, sd),
+            parameter: &BASE_PARAMETERS[k],
+            prior: Prior::normal(&BASE_PARAMETERS[k], 0.0, sd),
             only,
         };
         let scale = [BASE_SD[0] / self.time, BASE_SD[1] / (self.time * self.time), BIAS_SD];
-        let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETERS).map(|k| base(k, scale[k], None)).collect();
+        let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETER_COUNT).map(|k| base(k, scale[k], None)).collect();
         entries.extend((0..self.deviations()).map(|record| base(2, RECORD_BIAS_SD, Some(record))));
         for term in &self.terms {
             let parameters = term.effect.parameters().iter().zip(&term.priors);
@@ -191,7 +191,7 @@ impl Structure {
     /// Entries of θ that are given relative to another one: index, index of the reference.
     fn relative(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.terms.iter().zip(self.term_ranges()).flat_map(|(term, range)| {
-            let reference = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.beside?));
+            let reference = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.reference?));
             range.clone().zip(&term.priors).filter_map(reference).collect::<Vec<_>>()
         })
     }
@@ -213,7 +213,7 @@ impl Structure {
     /// Indices in θ of the parameters of [`response`](Self::response) for a record, base first; with `None` without the
     /// terms of single records.
     pub fn response_indices(&self, record: Option<usize>) -> Vec<usize> {
-        let mut places: Vec<usize> = (0..BASE_PARAMETERS).collect();
+        let mut places: Vec<usize> = (0..BASE_PARAMETER_COUNT).collect();
         for (term, range) in self.terms.iter().zip(self.term_ranges()) {
             if Self::applies(term, record) {
                 places.extend(range);
@@ -228,7 +228,7 @@ impl Structure {
         let terms = kept.map(|term| Arc::new(Term { only: None, ..term.as_ref().clone() })).collect();
         let mut values: Vec<f64> = self.response_indices(record).into_iter().map(|place| theta[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
-            values[2] += theta[BASE_PARAMETERS + record];
+            values[2] += theta[BASE_PARAMETER_COUNT + record];
         }
         (Self { records: 1, time: self.time, terms }, values)
     }
@@ -246,7 +246,7 @@ impl Structure {
         let values = self.physical(theta);
         let mut parameters: Vec<R> = self.response_indices(record).into_iter().map(|place| values[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
-            parameters[2] = parameters[2] + values[BASE_PARAMETERS + record];
+            parameters[2] = parameters[2] + values[BASE_PARAMETER_COUNT + record];
         }
         let effects = self.terms.iter().filter(|term| Self::applies(term, record));
         ResponseModel::new(effects.map(|term| Arc::clone(&term.effect)).collect()).with_parameters(parameters)
@@ -289,7 +289,7 @@ pub fn replay_headings<R: EffectReal>(
 
 #[cfg(test)]
 mod tests {
-    use ship::effects::{all, listed};
+    use ship::effects::{all, listed_effect};
 
     use super::*;
 
@@ -297,7 +297,7 @@ mod tests {
     /// several records were fitted, and no deviation of the rudder bias.
     #[test]
     fn terms_of_one_record_are_not_replayed_on_another() {
-        let damping = listed("nonlinear_damping", "r³");
+        let damping = listed_effect("nonlinear_damping", "r³");
         let of_time: Vec<_> = all().into_iter().filter(|effect| effect.is_time_dependent()).collect();
         let has = |id: &&str| of_time.iter().any(|effect| effect.id() == *id);
         assert!(["moment_drift", "transient_disturbance"].iter().all(has));

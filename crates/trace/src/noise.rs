@@ -269,7 +269,8 @@ impl RecordNoise {
             })
         });
         let of_row: Vec<usize> = of_row.collect();
-        let still = Step { transition: [[0.0; MAX_STATES]; MAX_STATES], added: [[0.0; MAX_STATES]; MAX_STATES] };
+        let still =
+            Step { transition: [[0.0; MAX_STATES]; MAX_STATES], process_noise: [[0.0; MAX_STATES]; MAX_STATES] };
         let step = |&(h, key): &(f64, usize)| {
             let mut step = correlated.map_or(still, |(transition, level)| transition.steps[key].scaled(level));
             if let Some(waves) = &colour.waves {
@@ -292,7 +293,7 @@ fn add_waves(step: &mut Step<MAX_STATES>, first: usize, waves: &NarrowBand, h: f
     for i in 0..2 {
         (step.transition[first + i][first], step.transition[first + i][first + 1]) = (a[i], b[i]);
         for j in 0..2 {
-            step.added[first + i][first + j] = c[i] * c[j] + d[i] * d[j];
+            step.process_noise[first + i][first + j] = c[i] * c[j] + d[i] * d[j];
         }
     }
 }

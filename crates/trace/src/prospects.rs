@@ -21,7 +21,8 @@ use crate::weights::NoiseLaw;
 /// Minimum expected visibility (squared coefficient over its variance) of a distinguishable effect.
 const MIN_VISIBILITY: f64 = 20.0;
 
-/// What one planned trial would separate and reveal. Effects are named with their form: "wind moment (steady wind)".
+/// Value of a planned trial: the aliases it would separate and the effects it would reveal. Effects are named with
+/// their form: "wind moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prospect {
     /// Name of the manoeuvre.

@@ -122,7 +122,7 @@ impl<'a> RecordMoment<'a> {
         let times = (0..KNOTS).map(|k| start + interval * k as f64).collect();
         let moment = Polyline::new(times, moment.to_vec()).ok()?;
         let rudder = &self.record.rudder;
-        let values = rudder.times().iter().zip(rudder.values()).map(|(&t, angle)| angle + moment.at(t)).collect();
+        let values = rudder.times().iter().zip(rudder.values()).map(|(&t, angle)| angle + moment.value_at(t)).collect();
         Polyline::new(rudder.times().to_vec(), values).ok()
     }
 }

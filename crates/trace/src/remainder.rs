@@ -9,7 +9,7 @@ use crate::full::FullModel;
 use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
-use crate::rudder::RudderError;
+use crate::rudder::RudderNoise;
 use crate::signature::{Signature, signature};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
@@ -69,7 +69,7 @@ impl Remainder {
         identification: &[RecordComparison],
         trials: &[Trial],
         location: &Location,
-        rudder_errors: &[Option<RudderError>],
+        rudder_noises: &[Option<RudderNoise>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
             return Self { is_noise: true, is_credible: true, is_unexplained: false, signature: None };
@@ -91,7 +91,7 @@ impl Remainder {
         let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
         // In a calm there is no random yaw moment, so an estimated random moment is unexplained.
-        let is_calm = location.moment(rudder_errors).is_some() && trials.iter().all(Trial::is_calm);
+        let is_calm = location.moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
         let signature = is_left.then(|| worst_signature(identification, trials)).flatten();

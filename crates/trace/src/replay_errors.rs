@@ -19,7 +19,7 @@ use crate::record::PreparedRecord;
 const SOLVER_STEPS: f64 = 4.0;
 
 /// Window lengths of the restarted replays on every record, s.
-pub const HORIZONS: [f64; 2] = [20.0, 60.0];
+pub const HORIZONS_S: [f64; 2] = [20.0, 60.0];
 
 /// Minimum window of [`ReplayDepth::Growth`], s; every further window is twice as long.
 const MIN_WINDOW_S: f64 = 5.0;
@@ -87,9 +87,9 @@ impl ReplayErrors {
 pub enum ReplayDepth {
     /// Heading of the full replay.
     Heading,
-    /// Also yaw rate, overshoots, and replays restarted after each of [`HORIZONS`].
+    /// Heading, yaw rate and overshoots of the full replay, and replays restarted after each of [`HORIZONS_S`].
     Windows,
-    /// Also replays restarted after 5, 10, 20 s and so on, as long as the record holds more than one window.
+    /// All of these, and replays restarted after 5, 10, 20 s and so on, as long as the record holds several windows.
     Growth,
 }
 
@@ -99,8 +99,8 @@ impl ReplayDepth {
         let doubled = std::iter::successors(Some(MIN_WINDOW_S), |length| Some(2.0 * length));
         let mut lengths: Vec<f64> = match self {
             Self::Heading => Vec::new(),
-            Self::Windows => HORIZONS.into(),
-            Self::Growth => doubled.take_while(|length| has_several_windows(*length, time)).chain(HORIZONS).collect(),
+            Self::Windows => HORIZONS_S.into(),
+            Self::Growth => doubled.take_while(|length| has_several_windows(*length, time)).chain(HORIZONS_S).collect(),
         };
         lengths.sort_by(f64::total_cmp);
         lengths.dedup();
@@ -157,12 +157,12 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
         [(Channel::Heading, replayed.heading.clone()), (Channel::Rudder, trial.rudder()[range].to_vec())].into();
     let columns = Columns { time: replayed.time.clone(), channels, unknown: Vec::new() };
     let twin = Trial::new(trial.name(), trial.origin().clone(), columns).ok()?;
-    ZigZag::of(&twin).ok()
+    ZigZag::from_trial(&twin).ok()
 }
 
 /// Mean absolute error of the overshoot angles of a replay, rad; `None` unless record and replay are zig-zags.
 pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
-    let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
+    let (measured, twin) = (ZigZag::from_trial(trial).ok()?, replayed_zigzag(trial, replayed)?);
     // Record and replay have the executes of the recorded rudder; a peak may be missing in one of them.
     let time = |zigzag: &ZigZag, overshoot: &Overshoot| zigzag.executes[overshoot.execute].time.value;
     let replayed = |overshoot: &Overshoot| {
@@ -285,8 +285,8 @@ fn fit_initial_state(
         run(ship, record, rows.clone(), &mut state, |row, heading, _| {
             if record.heading[row].is_finite() {
                 residual.push(record.heading[row] - heading.value);
-                by[0].push(heading.by[0]);
-                by[1].push(heading.by[1] / span);
+                by[0].push(heading.derivatives[0]);
+                by[1].push(heading.derivatives[1] / span);
             }
         });
         InitialStateFit { initial, square: dot(&residual, &residual), residual, by }
@@ -325,7 +325,7 @@ mod tests {
     fn the_ship_of_a_record_is_on_it_in_every_window() {
         let base = ship(Vec::new());
         let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
-        for length in HORIZONS {
+        for length in HORIZONS_S {
             let headings =
                 restarted_headings(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
             let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());

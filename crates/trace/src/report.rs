@@ -23,7 +23,7 @@ use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::record::PreparedRecord;
 use crate::remainder::Remainder;
-use crate::rudder::RudderError;
+use crate::rudder::RudderNoise;
 use crate::sentences;
 use crate::settings::Settings;
 use crate::structures::Structures;
@@ -58,7 +58,7 @@ pub struct TraceParts<'a> {
     /// Times of the removed compass outliers of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
     /// Measurement errors of the rudders of the fitted records.
-    pub rudder_errors: &'a [Option<RudderError>],
+    pub rudder_noises: &'a [Option<RudderNoise>],
     /// `true` if the replay of the base is kept on the fitted records.
     pub keeps_base: bool,
     /// `true` if fitted hulls take part in the replays after.
@@ -169,7 +169,7 @@ impl TraceParts<'_> {
     }
 
     fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
-        let prime = self.ship().map(|ship| PrimeIndices::of([k, t], ship));
+        let prime = self.ship().map(|ship| PrimeIndices::new([k, t], ship));
         Indices { K_per_s: k, T_s: t, delta_r_deg: bias.scaled(to_deg(1.0)), prime }
     }
 
@@ -187,7 +187,7 @@ impl TraceParts<'_> {
         let (k, t) = (ratio_summary(&pairs), ratio_summary(&pairs.iter().map(reciprocal).collect::<Vec<_>>()));
         let bias =
             members.iter().map(|(weight, fit)| (*weight, fit.physical_values()[2].0, fit.physical_values()[2].1));
-        self.with_prime([k, t, NormalMixture { parts: bias.collect() }.summary()].map(quantity))
+        self.with_prime([k, t, NormalMixture { components: bias.collect() }.summary()].map(quantity))
     }
 
     /// Physical parameters of a structure.
@@ -200,7 +200,7 @@ impl TraceParts<'_> {
     /// first structure.
     fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, fitted: f64) -> ParameterEntry {
         let quantity = match entry.prior.is_fitted() {
-            true => quantity(NormalMixture { parts }.summary()),
+            true => quantity(NormalMixture { components: parts }.summary()),
             false => Quantity::without_uncertainty(parts[0].1),
         };
         self.number(entry.parameter, quantity, entry.only, entry.is_at_bound(fitted))
@@ -248,7 +248,7 @@ impl TraceParts<'_> {
                 form: form.into(),
                 equation: self.equation(id, form).into(),
                 only: self.only(only),
-                asked,
+                required: asked,
                 alias_forms,
                 parameters: self.term_parameters(naming.term),
                 probability: naming.probability,
@@ -280,7 +280,7 @@ impl TraceParts<'_> {
             form: waves.form().into(),
             equation: waves.equation().into(),
             only: None,
-            asked: self.settings.selection.requires(waves.id()),
+            required: self.settings.selection.requires(waves.id()),
             aliases: Vec::new(),
             alias_forms: Vec::new(),
             parameters: parameters.collect(),
@@ -433,8 +433,8 @@ impl TraceParts<'_> {
                 moment_correlation_s: correlation,
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
-                describes_what_is_left: self.remainder.is_noise,
-                rudder_sd_deg: self.rudder_errors[number].map(|error| to_deg(error.sd)),
+                is_adequate: self.remainder.is_noise,
+                rudder_sd_deg: self.rudder_noises[number].map(|error| to_deg(error.sd)),
                 outliers_s: self.outliers[number].clone(),
             }
         };

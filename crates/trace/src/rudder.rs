@@ -4,7 +4,7 @@
 //! is flat at large or small angles removes the noise and seems to explain it. A steering gear moves the rudder in
 //! rests and strokes of one rate, which many readings determine far better than one reading ([`pieces`]), so the
 //! recorded rudder is replaced by rests and strokes. The remaining error, ∫ν dt over a stroke with the variance (s h)²
-//! per row of length h, acts on the ship as a white yaw moment of intensity K²/T² times [`RudderError::intensity`], a
+//! per row of length h, acts on the ship as a white yaw moment of intensity K²/T² times [`RudderNoise::intensity`], a
 //! lower bound of the noise law.
 //!
 //! s is first 1.4826 median |δ_(i−1) − 2 δ_i + δ_(i+1)|/√6, which is robust to a few corners, then the standard
@@ -56,7 +56,7 @@ const MAX_ROUNDING_DEG: f64 = 2.0;
 
 /// Measurement error of the rudder of one record.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RudderError {
+pub struct RudderNoise {
     /// Standard deviation of a reading, rad.
     pub sd: f64,
     /// Growth rate of the variance of the integrated error, rad² s.
@@ -64,9 +64,9 @@ pub struct RudderError {
 }
 
 /// Records with the estimated true rudder, and the measurement errors; `None` for a record without measurement error.
-pub fn estimate_rudders(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderError>>) {
-    let clean: Vec<Option<(Trial, RudderError)>> = trials.par_iter().map(smoothed).collect();
-    let errors: Vec<Option<RudderError>> = clean.iter().map(|pair| pair.as_ref().map(|(_, error)| *error)).collect();
+pub fn estimate_rudders(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<RudderNoise>>) {
+    let clean: Vec<Option<(Trial, RudderNoise)>> = trials.par_iter().map(smoothed).collect();
+    let errors: Vec<Option<RudderNoise>> = clean.iter().map(|pair| pair.as_ref().map(|(_, error)| *error)).collect();
     let kept = match errors.iter().all(Option::is_none) {
         true => Cow::Borrowed(trials),
         false => {
@@ -78,7 +78,7 @@ pub fn estimate_rudders(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<Rudde
 }
 
 /// Record with the estimated true rudder, and its measurement error; `None` if the readings are treated as exact.
-fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
+fn smoothed(trial: &Trial) -> Option<(Trial, RudderNoise)> {
     let (time, angle) = (trial.time(), trial.rudder());
     let quantum = quantum(angle);
     let rounding = quantum / 12f64.sqrt();
@@ -91,7 +91,7 @@ fn smoothed(trial: &Trial) -> Option<(Trial, RudderError)> {
         return None;
     }
     let path: Vec<f64> =
-        pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t))).collect();
+        pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t))).collect();
     let error = error_of(time, angle, &path, &pieces, rounding)?;
     let clean = trial.clone().with_rudder(path)?;
     let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + MIN_GAIN;
@@ -137,7 +137,7 @@ fn is_correlated(residual: &[f64]) -> bool {
 }
 
 /// Error of readings about the estimated rudder `path`; `None` if it is a correlated motion and not noise.
-fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], rounding: f64) -> Option<RudderError> {
+fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], rounding: f64) -> Option<RudderNoise> {
     let residual: Vec<f64> = angle.iter().zip(path).map(|(angle, path)| angle - path).collect();
     if rounding == 0.0 && is_correlated(&residual) {
         return None;
@@ -157,7 +157,7 @@ fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], r
             growth += hidden.max(0.0) * lengths.sum::<f64>().powi(2);
         }
     }
-    let error = RudderError { sd: variance.sqrt().max(rounding), intensity: growth / (time[last] - time[0]) };
+    let error = RudderNoise { sd: variance.sqrt().max(rounding), intensity: growth / (time[last] - time[0]) };
     (growth > 0.0).then_some(error)
 }
 
@@ -181,7 +181,7 @@ pub fn with_rudder_noise(
     fulls: Vec<FullModel>,
     problem: &FittedRecords,
     gain: f64,
-    errors: &[Option<RudderError>],
+    errors: &[Option<RudderNoise>],
 ) -> Vec<FullModel> {
     if errors.iter().all(Option::is_none) {
         return fulls;

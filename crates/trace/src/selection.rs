@@ -24,7 +24,7 @@ impl EffectId {
     }
 
     /// Identifier of a formula.
-    pub fn of(formula: &Formula) -> Self {
+    pub fn from_formula(formula: &Formula) -> Self {
         Self(formula.id())
     }
 
@@ -40,9 +40,9 @@ impl EffectId {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
     /// Required effects: in the model whatever their evidence.
-    pub with: Vec<EffectId>,
+    pub required: Vec<EffectId>,
     /// Excluded effects.
-    pub without: Vec<EffectId>,
+    pub excluded: Vec<EffectId>,
     /// `true` if effects that are not required are candidates.
     pub search: bool,
     /// Effects given as formulas, candidates like the listed effects.
@@ -51,20 +51,20 @@ pub struct Selection {
 
 impl Default for Selection {
     fn default() -> Self {
-        Self { with: Vec::new(), without: Vec::new(), search: true, formulas: Vec::new() }
+        Self { required: Vec::new(), excluded: Vec::new(), search: true, formulas: Vec::new() }
     }
 }
 
 impl Selection {
     /// Selection of exactly these effects, without a search.
     pub fn only(with: Vec<EffectId>) -> Self {
-        Self { with, search: false, ..Self::default() }
+        Self { required: with, search: false, ..Self::default() }
     }
 
     /// Search among these listed effects only.
     pub fn among(menu: &[EffectId]) -> Self {
         let without = EffectId::all().into_iter().filter(|id| !menu.contains(id)).collect();
-        Self { without, ..Self::default() }
+        Self { excluded: without, ..Self::default() }
     }
 
     /// Effects in all their forms: the listed effects, then the formulas.
@@ -75,7 +75,7 @@ impl Selection {
 
     /// Identifiers of all effects, in the order of reports.
     pub fn ids(&self) -> Vec<EffectId> {
-        EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::of(formula))).collect()
+        EffectId::all().into_iter().chain(self.formulas.iter().map(|formula| EffectId::from_formula(formula))).collect()
     }
 
     /// Formula of this name; `None` if no formula has it.
@@ -85,7 +85,7 @@ impl Selection {
 
     /// Listed effect or formula of this name; `None` if there is none.
     pub fn find(&self, name: &str) -> Option<EffectId> {
-        EffectId::find(name).or_else(|| self.formula(name).map(EffectId::of))
+        EffectId::find(name).or_else(|| self.formula(name).map(EffectId::from_formula))
     }
 
     /// Fails for an effect that is both required and excluded, and for two formulas of one name.
@@ -94,7 +94,7 @@ impl Selection {
         if let Some(twice) = (1..ids.len()).find(|&place| ids[..place].contains(&ids[place])) {
             return Err(SettingsError::new("effect", ids[twice], "effects with names of their own"));
         }
-        match self.with.iter().find(|id| self.without.contains(id)) {
+        match self.required.iter().find(|id| self.excluded.contains(id)) {
             Some(both) => {
                 let expected = "an effect that `with` does not name";
                 Err(SettingsError::new("without-effect", both.as_str(), expected))
@@ -105,12 +105,12 @@ impl Selection {
 
     /// `true` if an effect is required.
     pub fn requires(&self, id: &str) -> bool {
-        self.with.iter().any(|asked| asked.as_str() == id)
+        self.required.iter().any(|asked| asked.as_str() == id)
     }
 
     /// `true` if an effect is a candidate.
     pub fn allows(&self, id: &str) -> bool {
-        self.requires(id) || self.search && !self.without.iter().any(|excluded| excluded.as_str() == id)
+        self.requires(id) || self.search && !self.excluded.iter().any(|excluded| excluded.as_str() == id)
     }
 }
 
@@ -132,15 +132,15 @@ mod tests {
     #[test]
     fn required_effects_are_allowed_and_excluded_ones_are_not() {
         let usual =
-            Selection { with: vec![id("speed_loss")], without: vec![id("wind_moment")], ..Selection::default() };
+            Selection { required: vec![id("speed_loss")], excluded: vec![id("wind_moment")], ..Selection::default() };
         assert_eq!(usual.check(), Ok(()));
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| usual.allows(id)), [true, false, true]);
         let few = Selection::among(&[id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| few.allows(id)), [true, false, false]);
-        assert!(few.with.is_empty() && few.search && few.check().is_ok());
+        assert!(few.required.is_empty() && few.search && few.check().is_ok());
         let only = Selection::only(vec![id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| only.allows(id)), [true, false, false]);
-        let both = Selection { without: vec![id("speed_loss")], ..usual };
+        let both = Selection { excluded: vec![id("speed_loss")], ..usual };
         assert_eq!(both.check().map_err(|error| error.found), Err(String::from("speed_loss")));
     }
 }

@@ -253,7 +253,7 @@ mod tests {
             form: "r³".into(),
             equation: String::new(),
             only: None,
-            asked: false,
+            required: false,
             aliases: Vec::new(),
             alias_forms: Vec::new(),
             parameters: BTreeMap::new(),

@@ -76,7 +76,7 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
             heading[row] = motion.heading + noise.sample(&mut generator);
         }
     });
-    let rudder = time.iter().map(|&t| signal.at(t)).collect();
+    let rudder = time.iter().map(|&t| signal.value_at(t)).collect();
     of_columns(time, heading, rudder)
 }
 

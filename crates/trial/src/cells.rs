@@ -118,7 +118,7 @@ pub enum Cell {
     CommaNumber(f64),
     /// Empty cell or one of the usual marks of a missing value.
     Missing,
-    /// Anything else.
+    /// Other text.
     Text,
 }
 

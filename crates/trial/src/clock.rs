@@ -267,7 +267,7 @@ pub struct Clock {
 
 impl Clock {
     /// Time of day at time `t` (s) of the record: `14:03:05`.
-    pub fn at(&self, t: f64) -> String {
+    pub fn time_of_day_at(&self, t: f64) -> String {
         let second = (self.second + t).rem_euclid(SECONDS_PER_DAY).floor() as u32;
         format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
     }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// Kind of a file, with its maximum size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Kind {
+pub struct FileKind {
     /// Name in messages, with its article.
     pub name: &'static str,
     /// Maximum size, bytes.
@@ -34,7 +34,7 @@ pub enum FileError {
         "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.max_bytes
     )]
-    TooLarge { kind: Kind, size: Option<u64> },
+    TooLarge { kind: FileKind, size: Option<u64> },
     /// Bytes that are not text.
     #[error("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text; save the file as UTF-8")]
     NotUtf8 { line: usize, byte: u8 },
@@ -45,7 +45,7 @@ pub enum FileError {
 
 impl From<io::Error> for FileError {
     fn from(error: io::Error) -> Self {
-        // The limit of `Limited` arrives wrapped in an input error.
+        // The limit of `LimitedReader` arrives wrapped in an input error.
         match error.downcast::<Self>() {
             Ok(limit) => limit,
             Err(error) if error.kind() == ErrorKind::NotFound => Self::NotFound,
@@ -55,21 +55,21 @@ impl From<io::Error> for FileError {
 }
 
 /// Open file that ends with an error beyond the maximum size of its kind.
-pub struct Limited<'a> {
+pub struct LimitedReader<'a> {
     file: Box<dyn Read + 'a>,
-    kind: Kind,
+    kind: FileKind,
     /// Size in bytes; `None` for a pipe.
     pub size: Option<u64>,
     left: u64,
 }
 
-impl<'a> Limited<'a> {
-    pub(crate) fn new(file: Box<dyn Read + 'a>, kind: Kind, size: Option<u64>) -> Self {
+impl<'a> LimitedReader<'a> {
+    pub(crate) fn new(file: Box<dyn Read + 'a>, kind: FileKind, size: Option<u64>) -> Self {
         Self { file, kind, size, left: kind.max_bytes }
     }
 }
 
-impl Read for Limited<'_> {
+impl Read for LimitedReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
         let Some(left) = self.left.checked_sub(count as u64) else {
@@ -93,9 +93,9 @@ pub fn display_path(path: &Path) -> &Path {
 ///
 /// Fails if there is no such file or its size exceeds that of its kind. A file of unknown size fails in reading,
 /// with an error that is converted back to a [`FileError`].
-pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
+pub fn open(path: &Path, kind: FileKind) -> Result<LimitedReader<'static>, FileError> {
     if path == Path::new(STDIN) {
-        return Ok(Limited::new(Box::new(io::stdin().lock()), kind, None));
+        return Ok(LimitedReader::new(Box::new(io::stdin().lock()), kind, None));
     }
     let about = fs::metadata(path)?;
     let size = match about.file_type() {
@@ -107,7 +107,7 @@ pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
     if size.is_some_and(|size| size > kind.max_bytes) {
         return Err(FileError::TooLarge { kind, size });
     }
-    Ok(Limited::new(Box::new(File::open(path)?), kind, size))
+    Ok(LimitedReader::new(Box::new(File::open(path)?), kind, size))
 }
 
 #[cfg(unix)]
@@ -121,7 +121,7 @@ fn is_pipe(_: fs::FileType) -> bool {
 }
 
 /// Text of a file or a pipe. Fails as [`open`] does, and if it is not UTF-8.
-pub fn read_text(path: &Path, kind: Kind) -> Result<String, FileError> {
+pub fn read_text(path: &Path, kind: FileKind) -> Result<String, FileError> {
     let mut bytes = Vec::new();
     open(path, kind)?.read_to_end(&mut bytes)?;
     String::from_utf8(bytes).map_err(|error| {
@@ -135,7 +135,7 @@ pub fn read_text(path: &Path, kind: Kind) -> Result<String, FileError> {
 mod tests {
     use super::*;
 
-    const SMALL: Kind = Kind { name: "a note", max_bytes: 8 };
+    const SMALL: FileKind = FileKind { name: "a note", max_bytes: 8 };
 
     #[test]
     fn a_file_is_read_up_to_its_limit() {

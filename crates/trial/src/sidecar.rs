@@ -14,17 +14,17 @@ use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
 use crate::conditions::Conditions;
-use crate::file::{Kind, read_text};
+use crate::file::{FileKind, read_text};
 use crate::names::{ColumnMeaning, quantity_unit_meaning};
 use crate::record::Noise;
 use crate::sidecar_error::LocatedProblem;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
-pub use crate::sidecar_keys::{Key, keys, schema};
+pub use crate::sidecar_keys::{SidecarKey, keys, schema};
 use crate::wording::shortened;
 
 /// Kind of file of a sidecar; in use are up to a hundred lines.
-pub const SIDECAR: Kind = Kind { name: "a sidecar", max_bytes: 1 << 20 };
+pub const SIDECAR: FileKind = FileKind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -188,7 +188,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
 /// Checks every value independently.
 fn check_values(text: &str, document: &DeTable) -> Result<(), LocatedProblem> {
     let values: toml::Table = text.parse().map_err(syntax)?;
-    for Key { key: name, value: kind, .. } in keys() {
+    for SidecarKey { key: name, value: kind, .. } in keys() {
         let (table, key) = name.split_once(' ').unwrap_or(("", &name));
         let table = table.trim_matches(['[', ']']);
         let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|keys| keys.get(key)) };
@@ -324,7 +324,7 @@ mod tests {
     /// Every listed key is accepted, though a value may contradict others.
     #[test]
     fn every_listed_key_is_known() {
-        for Key { key, .. } in keys().into_iter().filter(|key| key.key.starts_with('[')) {
+        for SidecarKey { key, .. } in keys().into_iter().filter(|key| key.key.starts_with('[')) {
             let (table, name) = key.split_once(' ').expect("a table and a key");
             let text = format!("{table}\n{name} = {{}}\n");
             let error = parse(&text).expect_err("no key is a table").to_string();

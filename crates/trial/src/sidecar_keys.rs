@@ -202,7 +202,7 @@ pub fn schema() -> Schema {
 
 /// Key of a sidecar.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key {
+pub struct SidecarKey {
     /// Table and key; the key alone if it is above the tables.
     pub key: String,
     /// Kind of the value.
@@ -212,7 +212,7 @@ pub struct Key {
 }
 
 /// All keys, in the order of declaration.
-pub fn keys() -> Vec<Key> {
+pub fn keys() -> Vec<SidecarKey> {
     let schema = schema();
     let properties = |schema: &serde_json::Value| schema["properties"].as_object().cloned().unwrap_or_default();
     let mut keys = Vec::new();
@@ -226,10 +226,10 @@ pub fn keys() -> Vec<Key> {
             let description = entry["description"].as_str().unwrap_or_default();
             let (meaning, value) = description.rsplit_once(" (").unwrap_or((description, ")"));
             let value = value.trim_end_matches(')').to_owned();
-            keys.push(Key { key: format!("{table}{key}"), value, meaning: meaning.to_owned() });
+            keys.push(SidecarKey { key: format!("{table}{key}"), value, meaning: meaning.to_owned() });
         }
     }
     let [key, value, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);
-    keys.push(Key { key, value, meaning });
+    keys.push(SidecarKey { key, value, meaning });
     keys
 }

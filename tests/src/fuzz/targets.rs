@@ -41,7 +41,7 @@ const TABLE: &str = "\n# table\n";
 const PLAIN_TABLE: &str = include_str!("../../fuzz/corpus/record/plain.csv");
 
 static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
-    registry::defaults().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
+    registry::default_settings().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
 });
 
 /// Target of a measured record, read by its header alone and passed to every method.
@@ -107,7 +107,7 @@ pub fn stamp(data: &[u8]) -> bool {
         assert!(seconds.is_finite(), "a time that is not finite");
         assert_eq!(stamps.seconds(stamp), Ok(seconds), "one stamp at two times");
         let clock = stamps.clock().expect("a stamp was read");
-        assert_eq!(clock.at(seconds).len(), 8, "a time of day");
+        assert_eq!(clock.time_of_day_at(seconds).len(), 8, "a time of day");
         assert!(clock.date_at(seconds).is_none_or(|date| date.len() <= 32), "a date");
         assert!(clock.time_of(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
         read = true;
@@ -189,7 +189,7 @@ pub fn cells(data: &[u8]) -> bool {
 }
 
 fn summarised(rows: &[u8], design: &Design) -> bool {
-    let layout = RowLayout::of(design);
+    let layout = RowLayout::from_design(design);
     let mut tally = Tally::new(design);
     let manifest = &seeds::study().manifest;
     let (design_sha256, program) = (manifest.design_sha256.clone(), manifest.program_label());
@@ -266,7 +266,7 @@ pub fn formula(data: &[u8]) -> bool {
             true
         }
         Err(error) => {
-            assert!(error.at <= error.text.chars().count(), "a mark beyond the text");
+            assert!(error.position <= error.text.chars().count(), "a mark beyond the text");
             is_one_message(&error.to_string())
         }
     }

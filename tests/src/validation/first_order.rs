@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use estimation::statistics::median;
 use ship::angle::to_deg;
-use simulate::vessel::Solver;
+use simulate::simulated_ship::Solver;
 use simulate::{Simulation, StreamKey, Truth};
 
 use super::{Check, INDEPENDENT, Section, Tolerance};

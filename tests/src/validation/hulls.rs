@@ -5,7 +5,7 @@ use ship::linear::PrimeSwayYaw;
 use ship::ships::{self, kvlcc2, mariner, seiun_like};
 use ship::vessel::mmg::Mmg;
 use ship::{Particulars, Ship};
-use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
 use super::{Check, Section, Tolerance};
 
@@ -152,7 +152,7 @@ fn straight_approach() -> impl Iterator<Item = Check> {
 fn steady_rate(ship: &Ship, rudder_deg: f64) -> f64 {
     let side = if rudder_deg < 0.0 { Side::Port } else { Side::Starboard };
     let manoeuvre = Manoeuvre::turning_circle(from_deg(rudder_deg.abs())).with_first_side(side).lasting(STEADY);
-    let mut simulation = Simulation::new(Vessel::from_ship(ship), manoeuvre);
+    let mut simulation = Simulation::new(SimulatedShip::from_ship(ship), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.32));
     simulation.recording.period = 100.0;
     let truth = simulation.run(&StreamKey::default()).expect("a hull turns").truth;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::first_order::State;
-use simulate::{Manoeuvre, Simulated, StreamKey};
+use simulate::{Manoeuvre, SimulatedTrial, StreamKey};
 use trial::noise_model::NoiseModel;
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
@@ -31,7 +31,7 @@ struct Bound {
     correlation: f64,
 }
 
-fn bound_of(simulated: &Simulated, ship: &FirstOrder, noise_deg: f64) -> Bound {
+fn bound_of(simulated: &SimulatedTrial, ship: &FirstOrder, noise_deg: f64) -> Bound {
     let truth = &simulated.truth;
     let initial = State { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
     let noise = NoiseModel::compass(from_deg(noise_deg));

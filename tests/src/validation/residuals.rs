@@ -7,9 +7,9 @@ use std::sync::Arc;
 use identify::{Identifier, output_error};
 use rayon::prelude::*;
 use ship::angle::{DEGREE, from_deg, to_deg};
-use ship::effects::{Effect, SecondOrder, SteeringLag, listed};
+use ship::effects::{Effect, SecondOrder, SteeringLag, listed_effect};
 use ship::{Response, ResponseModel};
-use simulate::{StreamKey, Vessel};
+use simulate::{SimulatedShip, StreamKey};
 use trace::candidates;
 use trace::fit::{FittedRecords, StoppingRule, StructureFit};
 use trace::full::start_point;
@@ -73,7 +73,7 @@ fn lines() -> Vec<Line> {
         },
         line(
             "n₂ = 0.2 s/deg",
-            listed("nonlinear_damping", "r|r|"),
+            listed_effect("nonlinear_damping", "r|r|"),
             vec![0.2 * per_degree / 16.3],
             0.047,
             [-12.7, -13.6],
@@ -81,7 +81,7 @@ fn lines() -> Vec<Line> {
         ),
         line(
             "n₃ = 0.2 s²/deg²",
-            listed("nonlinear_damping", "r³"),
+            listed_effect("nonlinear_damping", "r³"),
             vec![0.2 * cubic],
             0.067,
             [-10.1, -11.3],
@@ -89,7 +89,7 @@ fn lines() -> Vec<Line> {
         ),
         line(
             "asymmetry 5 %",
-            listed("port_starboard_asymmetry", "gain by side"),
+            listed_effect("port_starboard_asymmetry", "gain by side"),
             vec![0.05],
             0.026,
             [0.0, 0.0],
@@ -97,7 +97,7 @@ fn lines() -> Vec<Line> {
         ),
         line(
             "drift 0.004 deg/s",
-            listed("moment_drift", "linear trend"),
+            listed_effect("moment_drift", "linear trend"),
             vec![from_deg(0.004)],
             0.774,
             [0.6, -1.9],
@@ -126,7 +126,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let mut parameters = vec![1.0 / line.time, 0.1 / line.time, 0.0];
     parameters.extend(&line.truth);
     let ship: Response = ResponseModel::new(vec![Arc::clone(&line.effect)]).with_parameters(parameters);
-    let mut simulation = zig_zag(Vessel::from_response(ship), 10.0, 10.0, from_deg(2.5), 270.0);
+    let mut simulation = zig_zag(SimulatedShip::from_response(ship), 10.0, 10.0, from_deg(2.5), 270.0);
     simulation.sensors.heading_noise = from_deg(NOISE);
     let trial = simulation.run(&StreamKey { seed: 52, cell: 0, replicate: 0 }).expect("a plain zig-zag").trial;
     let method = output_error::Settings::default().build().expect("default settings are valid");

@@ -11,8 +11,8 @@ use identify::{Identifier, output_error};
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::Mmg;
-use simulate::vessel::Solver;
-use simulate::{Side, Simulated, Simulation, StreamKey, Vessel};
+use simulate::simulated_ship::Solver;
+use simulate::{Side, SimulatedShip, SimulatedTrial, Simulation, StreamKey};
 
 use super::first_order::peak;
 use super::hulls::registered;
@@ -106,9 +106,9 @@ impl Anchor {
         let ship = registered(self.ship);
         let vessel = if way == Way::Stepped && self.ship == "kvlcc2-l7" {
             let parameters = ship::vessel::mmg::Parameters { d: OTHER_DRAUGHT, ..kvlcc2::MODEL_L7 };
-            Vessel::from_dynamics(Arc::new(Mmg::at_speed(parameters, 1.179).expect("the set balances")))
+            SimulatedShip::from_dynamics(Arc::new(Mmg::at_speed(parameters, 1.179).expect("the set balances")))
         } else {
-            Vessel::from_ship(&ship)
+            SimulatedShip::from_ship(&ship)
         };
         let mut simulation = zig_zag(vessel, self.rudder_deg, self.heading_deg, from_deg(self.rate_deg_s), duration);
         simulation.manoeuvre = simulation.manoeuvre.with_first_side(self.first);
@@ -119,7 +119,7 @@ impl Anchor {
         simulation
     }
 
-    fn run(&self, way: Way, duration: f64, period: f64) -> Simulated {
+    fn run(&self, way: Way, duration: f64, period: f64) -> SimulatedTrial {
         let mut simulation = self.simulation(way, duration);
         simulation.recording.period = period;
         simulation.run(&StreamKey::default()).expect("a hull reaches its executes")

@@ -57,23 +57,24 @@ pub struct WilsonShare {
     /// Number of successes.
     pub count: usize,
     /// Number of cases.
-    pub of: usize,
+    #[serde(rename = "of")]
+    pub cases: usize,
     /// 95 % interval.
     pub ci95: [f64; 2],
 }
 
 impl WilsonShare {
-    /// Share of `count` in `of`; `None` for no cases.
-    pub fn new(count: usize, of: usize) -> Option<Self> {
-        let Statistic { ci95, .. } = wilson_share(count as u64, of as u64)?;
-        Some(Self { count, of, ci95: ci95? })
+    /// Share of `count` in `cases`; `None` without cases.
+    pub fn new(count: usize, cases: usize) -> Option<Self> {
+        let Statistic { ci95, .. } = wilson_share(count as u64, cases as u64)?;
+        Some(Self { count, cases, ci95: ci95? })
     }
 }
 
 /// Leaderboards of all tasks that have a score, one per task and study.
 pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
     let scored = by_task_and_study(cases, |task| task.score().is_some());
-    scored.into_iter().map(|((task, field), group)| board(task, field, &group, methods, reference)).collect()
+    scored.into_iter().map(|((task, field), group)| leaderboard(task, field, &group, methods, reference)).collect()
 }
 
 /// Cases of the selected tasks, grouped by task and study.
@@ -116,7 +117,7 @@ impl Scores {
     }
 }
 
-fn board(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
+fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
     let scores = Scores::of(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {

@@ -181,7 +181,7 @@ impl Naming {
     }
 
     /// Correctness of the named groups, if `missing` is the one missing effect, or none.
-    pub fn of(missing: Option<&str>, named: &[Vec<String>]) -> Self {
+    pub fn from_named_effects(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
         let holder = named.iter().find(|group| group.iter().any(|id| id == missing));
         match (holder, named.len()) {
@@ -238,7 +238,7 @@ mod tests {
             (None, groups(&[]), Naming::Right),
             (None, groups(&[&["a"]]), Naming::Wrong),
         ] {
-            assert_eq!(Naming::of(missing, &named), naming, "{missing:?} {named:?}");
+            assert_eq!(Naming::from_named_effects(missing, &named), naming, "{missing:?} {named:?}");
         }
     }
 

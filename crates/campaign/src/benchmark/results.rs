@@ -62,7 +62,7 @@ pub struct StudyFacts {
 
 impl BenchDocument {
     /// Result of studies with all their rows, in order; `tasks` selects tasks, all of them if it is empty.
-    pub fn of(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
+    pub fn from_studies(studies: &[(Scenario, Vec<StudyRow>)], tasks: &[BenchTask]) -> Self {
         let facts = |(scenario, _): &(Scenario, Vec<StudyRow>)| StudyFacts {
             name: scenario.name.clone(),
             question: scenario.prose.question.clone(),

@@ -57,9 +57,9 @@ impl SteeredRecord {
     }
 
     fn measured(trial: &Trial) -> Self {
-        let zig_zag = ZigZag::of(trial).ok().filter(|zig_zag| zig_zag.executes.len() > 1).map(|zig_zag| {
-            let angles = zig_zag.pair.map(|pair| [pair.rudder, pair.heading].map(rounded_deg));
-            (angles, zig_zag.side.unwrap_or_else(|| zig_zag.executes[0].side()))
+        let zig_zag = ZigZag::from_trial(trial).ok().filter(|zig_zag| zig_zag.executes.len() > 1).map(|zig_zag| {
+            let angles = zig_zag.nominal_angles.map(|pair| [pair.rudder, pair.heading].map(rounded_deg));
+            (angles, zig_zag.first_side.unwrap_or_else(|| zig_zag.executes[0].side()))
         });
         let sha256 = match trial.origin() {
             Origin::Measured { sha256, .. } => Some(sha256.clone()),
@@ -119,7 +119,7 @@ impl CellTasks {
         match set.map(|set| &set.splits[replicate as usize]) {
             Some(split) => {
                 let fitted = split.fitted.iter().map(|&place| &self.records[place]).collect();
-                (fitted, split.judge.map(|place| &self.records[place]))
+                (fitted, split.validation.map(|place| &self.records[place]))
             }
             None => (self.records[..self.fitted].iter().collect(), self.records.get(self.fitted)),
         }
@@ -221,7 +221,7 @@ fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str
     let answered = match task {
         BenchTask::Name => row.traced.as_deref().map(|trace| {
             let named = named(trace);
-            CaseAnswer { naming: Some(Naming::of(missing, &named)), named, ..blank() }
+            CaseAnswer { naming: Some(Naming::from_named_effects(missing, &named)), named, ..blank() }
         }),
         BenchTask::Indices => indices(row).map(|answer| CaseAnswer { method: method.label.clone(), ..answer }),
         BenchTask::Identify => row.heading_rmse_deg.map(|error| CaseAnswer { score: Some(rounded(error)), ..blank() }),

@@ -26,7 +26,7 @@ pub struct CompassError {
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &CompassError) -> Option<Matrix3<f64>> {
     let track = Track::new(trial);
     let a = truth.inverse_T;
-    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
+    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::from_response(truth) };
     if is_backward(a) {
         coefficients.anchor = track.last_state_from(a, &coefficients);
     }
@@ -74,13 +74,13 @@ mod tests {
     use identify::maximum_likelihood;
     use nalgebra::DMatrix;
     use ship::angle::from_deg;
-    use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+    use simulate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
     use trial::noise_model::NoiseModel;
 
     fn zig_zag(truth: FirstOrder) -> Trial {
         let angle = from_deg(10.0);
         let manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(200.0);
-        let mut simulation = Simulation::new(Vessel::from_first_order(truth), manoeuvre);
+        let mut simulation = Simulation::new(SimulatedShip::from_first_order(truth), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.5));
         simulation.sensors.drop_out.probability = 0.2;
         simulation.run(&StreamKey::default()).expect("a zig-zag").trial

@@ -35,7 +35,7 @@ enum ColumnSource<'a> {
 
 impl RowLayout {
     /// Layout of a design.
-    pub fn of(design: &Design) -> Self {
+    pub fn from_design(design: &Design) -> Self {
         let axis = |(index, name): (usize, &String)| {
             let numbers: Vec<Option<f64>> = design.cells.iter().map(|cell| cell.values[index]).collect();
             let labels = || design.cells.iter().map(|cell| Some(cell.labels[index].clone())).collect();
@@ -73,7 +73,7 @@ impl RowLayout {
             self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), ColumnSource::Draw(index)));
         let records = self.records.iter().flat_map(|records| {
             let fitted: fn(&JudgedRecord) -> Option<&str> = |record| Some(record.fitted.as_str());
-            let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.judge.as_deref();
+            let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.validation.as_deref();
             [("fitted", fitted), ("judge", judge)]
                 .map(|(name, of)| (name.to_owned(), ColumnSource::Record(of, records.as_slice())))
         });

@@ -31,7 +31,7 @@ pub struct EffectSize {
 
 impl EffectSize {
     /// Size of a parameter of a trace.
-    pub fn of(parameter: &ParameterEntry) -> Self {
+    pub fn from_parameter(parameter: &ParameterEntry) -> Self {
         let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
         let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
         Self { symbol: symbol.into(), value: quantity.value, sd: quantity.sd }
@@ -40,14 +40,14 @@ impl EffectSize {
 
 impl NamedEffect {
     /// Named effect from the entry of a trace.
-    pub fn of(effect: &EffectEntry) -> Self {
+    pub fn from_entry(effect: &EffectEntry) -> Self {
         let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
         let time = effect.parameters.values().find(|parameter| ["t_c", "t_0"].contains(&parameter.key.as_str()));
         Self {
             id: effect.id.as_str().into(),
             aliases: aliases.map(|id| id.as_str().into()).collect(),
             time_s: time.map(|parameter| parameter.quantity.value),
-            sizes: effect.parameters.values().map(EffectSize::of).collect(),
+            sizes: effect.parameters.values().map(EffectSize::from_parameter).collect(),
         }
     }
 

@@ -102,7 +102,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
     let mut design = Design { predicts: true, ..design() };
     design.methods[1].id = crate::scenario::TRACE.into();
     design.cells[1].physics = Some(MissingPhysics::Nothing { disturbed: false });
-    let layout = RowLayout::of(&design);
+    let layout = RowLayout::from_design(&design);
     let effect = |id: &str, aliases: &[&str], time_s| NamedEffect {
         id: id.into(),
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
@@ -135,12 +135,12 @@ fn traces_and_predictions_have_columns_of_their_own() {
     assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
     // Without stated physics no column contains located moments.
     design.cells[1].physics = None;
-    assert_eq!(RowLayout::of(&design).names().count(), layout.names().count() - LOCATED_COLUMNS.len());
+    assert_eq!(RowLayout::from_design(&design).names().count(), layout.names().count() - LOCATED_COLUMNS.len());
 }
 
 #[test]
 fn a_block_is_read_as_it_was_written() {
-    let layout = RowLayout::of(&design());
+    let layout = RowLayout::from_design(&design());
     for count in [0, 1, 100, 256] {
         let rows = trials(count);
         assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
@@ -155,7 +155,7 @@ fn a_block_is_read_as_it_was_written() {
 
 #[test]
 fn blocks_of_something_else_are_told_from_damaged_ones() {
-    let layout = RowLayout::of(&design());
+    let layout = RowLayout::from_design(&design());
     let bytes = written(&trials(2), &layout);
     let labels = [
         BlockLabel { design: "e".into(), ..label() },
@@ -170,7 +170,7 @@ fn blocks_of_something_else_are_told_from_damaged_ones() {
     let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
     let other_method = Design { methods: design().methods.split_off(1), ..design() };
     for other in [other_axis, other_method] {
-        let damage = decode(bytes.clone(), &label(), &RowLayout::of(&other)).expect_err("other columns");
+        let damage = decode(bytes.clone(), &label(), &RowLayout::from_design(&other)).expect_err("other columns");
         assert!(matches!(damage, Damage::Changed(_)), "{damage:?}");
     }
 }
@@ -178,7 +178,7 @@ fn blocks_of_something_else_are_told_from_damaged_ones() {
 /// Any changed or missing byte is found, unless it carries no content.
 #[test]
 fn a_damaged_block_never_gives_other_rows() {
-    let layout = RowLayout::of(&design());
+    let layout = RowLayout::from_design(&design());
     let rows = trials(4);
     let bytes = written(&rows, &layout);
     let mut detected = 0;
@@ -198,7 +198,7 @@ fn a_damaged_block_never_gives_other_rows() {
 
 #[test]
 fn axes_and_draws_are_columns() {
-    let names: Vec<String> = RowLayout::of(&design()).names().collect();
+    let names: Vec<String> = RowLayout::from_design(&design()).names().collect();
     assert_eq!(names[..COLUMNS.len()], COLUMNS.map(|column| column.name));
     assert_eq!(names[COLUMNS.len()..], ["axis.noise [°]", "axis.trial", "draw.ship.first-order.K-per-s"]);
 }

@@ -118,7 +118,7 @@ impl DesignCell {
     pub(crate) fn physics(&self) -> Option<MissingPhysics> {
         let Specification { stated, missing, simulation, .. } = self.specification()?;
         let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
-        stated.clone().or_else(|| MissingPhysics::of_effects(missing, is_disturbed))
+        stated.clone().or_else(|| MissingPhysics::from_effects(missing, is_disturbed))
     }
 
     /// `true` for a first-order base with effects, whose K and T differ from those of the nearest first-order response.
@@ -134,7 +134,7 @@ impl DesignCell {
     /// Length and approach speed of the ship, if known; for random values at the middle of their distributions.
     pub fn particulars(&self) -> Option<Particulars> {
         match &self.source {
-            TrialSource::Simulated { specification, .. } => specification.simulation.vessel.particulars(),
+            TrialSource::Simulated { specification, .. } => specification.simulation.ship.particulars(),
             TrialSource::Measured(set) => set.trials.iter().find_map(|trial| trial.particulars()),
         }
     }
@@ -222,7 +222,7 @@ pub(crate) fn select_parts(document: &Table, parts: &[ScenarioPart]) -> Table {
         ("identifier", Value::Array(Vec::new())),
     ];
     let mut some: Table = empty.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    let kept = document.iter().filter(|(key, _)| parts.contains(&ScenarioPart::of(key)));
+    let kept = document.iter().filter(|(key, _)| parts.contains(&ScenarioPart::from_key(key)));
     some.extend(kept.map(|(key, value)| (key.clone(), value.clone())));
     some
 }
@@ -246,7 +246,7 @@ fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Me
         return Ok(methods);
     }
     Err(KeyFault::value(
-        KeyPath::dotted("identifier"),
+        KeyPath::from_dotted("identifier"),
         "the methods are not the same in every cell",
         "expected the same labels in every cell",
         "sweep only settings of methods, and give every method one [[identifier]]",

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use simulate::Assumption;
 use toml::Table;
-use trial::file::{self, FileError, Kind};
+use trial::file::{self, FileError, FileKind};
 
 use crate::failure::Failure;
 use crate::scenario::cell::{self, DesignCell};
@@ -82,8 +82,8 @@ impl Scenario {
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::check_file_name(&manifest.name).map_err(|unfit| {
                 let KeyFault { key, mark, problem, expected, advice } =
-                    of_text(KeyPath::dotted("name"), &manifest.name, unfit);
-                Failure::at(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
+                    of_text(KeyPath::from_dotted("name"), &manifest.name, unfit);
+                Failure::in_text(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
             let mut document = table_of(path, &text)?;
@@ -105,7 +105,7 @@ impl Scenario {
         let folder = &folder_of(path);
         let scenario = Self::of_document(document, name, folder).map_err(|fault| {
             let span = locate::span(&text, &fault.key, fault.mark);
-            Failure::at(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
+            Failure::in_text(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
         let design = identity::design_of(document);
         let design_sha256 = match document.contains_key(RECORDS) {
@@ -254,8 +254,9 @@ impl Scenario {
 
     /// Scenario with a further method; `identity_text` enters the SHA-256 of the design.
     fn with(mut self, label: &str, procedure: Procedure, identity_text: &str) -> Result<Self, Failure> {
-        name::check_label(label)
-            .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
+        name::check_label(label).map_err(|unfit| {
+            Failure::input(format!("a method is called {}; {unfit}", name::quoted_beginning(label)))
+        })?;
         if self.labels().any(|other| other == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
         }
@@ -315,7 +316,7 @@ fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
         true => "correct the line; a scenario is a TOML file of `key = value` lines under [table] headings",
         false => "give a scenario (a TOML file); a record is identified with `study fit`",
     };
-    Failure::at(path, text, span, "this is not valid TOML", &message, advice)
+    Failure::in_text(path, text, span, "this is not valid TOML", &message, advice)
 }
 
 /// Folder to which relative paths of a scenario refer.
@@ -324,7 +325,7 @@ fn folder_of(path: &Path) -> PathBuf {
 }
 
 /// Limits of a scenario, alone or in a manifest; the longest published scenario has a hundredth of this size.
-const SCENARIO: Kind = Kind { name: "a scenario", max_bytes: 1 << 20 };
+const SCENARIO: FileKind = FileKind { name: "a scenario", max_bytes: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {
     file::read_text(path, SCENARIO).map_err(|error| {

@@ -16,7 +16,7 @@ const MAX_TRIALS: u64 = 1_000_000_000;
 
 /// Checks the number of trials and of methods times cells.
 pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFault> {
-    let key = KeyPath::dotted("replicates");
+    let key = KeyPath::from_dotted("replicates");
     if replicates == 0 {
         return Err(KeyFault::value(
             key,
@@ -27,7 +27,7 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFaul
     }
     if cells * methods > limits::MAX_CELLS_TIMES_METHODS {
         return Err(KeyFault::name(
-            KeyPath::dotted("sweep"),
+            KeyPath::from_dotted("sweep"),
             format!("the sweeps make {cells} cells, each with {methods} methods"),
             format!("expected at most {} cells times methods", limits::MAX_CELLS_TIMES_METHODS),
             "use fewer points or fewer methods, or split the scenario",
@@ -52,7 +52,7 @@ pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
         return Ok(());
     }
     Err(KeyFault::name(
-        KeyPath::dotted("sweep"),
+        KeyPath::from_dotted("sweep"),
         format!("the labels of a cell have up to {characters} characters together"),
         format!("expected at most {MAX_NAME_BYTES}"),
         "shorten the longest labels, or sweep along fewer axes",
@@ -63,9 +63,9 @@ pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
 pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     limits::check_count("draw", draws.len(), limits::MAX_DRAWS)?;
     for (index, draw) in draws.iter().enumerate() {
-        let key = KeyPath::dotted(draw.key());
-        let place = KeyPath::dotted("draw").child(index).child("key");
-        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).is_related(&key));
+        let key = KeyPath::from_dotted(draw.key());
+        let place = KeyPath::from_dotted("draw").child(index).child("key");
+        let by_draw = draws[..index].iter().any(|other| KeyPath::from_dotted(other.key()).is_related(&key));
         let by_sweep =
             axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.is_related(&key));
         if by_draw || by_sweep {
@@ -87,7 +87,7 @@ pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
         return Ok(());
     };
-    let key = KeyPath::dotted("output.detail").child(index);
+    let key = KeyPath::from_dotted("output.detail").child(index);
     let messages = ["no cell is called", "expected labels of points, joined by commas"];
     let fault = place_among(title, &cell_titles[..cell_titles.len().min(20)], key, messages);
     fault.map(|_| ()).map_err(|fault| match cell_titles.is_empty() {
@@ -100,11 +100,11 @@ pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
 pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
-        let key = KeyPath::dotted("output.marks").child(index);
+        let key = KeyPath::from_dotted("output.marks").child(index);
         place_among(&mark.axis, &axis_names, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
-        if !mark.at.is_finite() {
+        if !mark.value.is_finite() {
             let advice = "give the place of the mark on the axis";
-            return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
+            return Err(KeyFault::value(key.child("at"), format!("found {}", mark.value), "expected a number", advice));
         }
         name::check_label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
     }
@@ -124,7 +124,7 @@ pub fn highlight(
     let messages = ["nothing is called", "expected the label of an [[identifier]], of a point of a sweep or of a cell"];
     [("series", series), ("rows", rows)].into_iter().try_for_each(|(part, names)| {
         names.iter().enumerate().try_for_each(|(index, name)| {
-            let key = KeyPath::dotted("output.highlight").child(part).child(index);
+            let key = KeyPath::from_dotted("output.highlight").child(part).child(index);
             place_among(name, &names_in_figures, key, messages).map(|_| ())
         })
     })

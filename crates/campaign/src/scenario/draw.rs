@@ -103,13 +103,13 @@ impl DrawWire {
 
     /// Checks a draw; `index` is its index in the list.
     pub fn resolve(&self, index: usize) -> Result<SampledKey, KeyFault> {
-        let place = KeyPath::dotted("draw").child(index);
-        let key = KeyPath::dotted(&self.key);
+        let place = KeyPath::from_dotted("draw").child(index);
+        let key = KeyPath::from_dotted(&self.key);
         limits::check_depth(&key, &place.child("key"))?;
         let is_of_trial = |first: &String| {
-            ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
+            ScenarioPart::from_key(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
         };
-        if !key.parts().first().is_some_and(is_of_trial) {
+        if !key.names().first().is_some_and(is_of_trial) {
             return Err(KeyFault::value(
                 place.child("key"),
                 format!("the draw changes `{key}`"),
@@ -175,7 +175,7 @@ impl DrawWire {
 impl SampledKey {
     /// Sampled value of the key for the trial of `key`, in the unit of the key.
     pub fn sample(&self, key: &StreamKey) -> f64 {
-        let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
+        let mut rng = StreamKey { cell: 0, ..*key }.indexed_rng(Purpose::Specification, self.index);
         let [low, high] = self.between;
         loop {
             let value = self.shape.sample(&mut rng);
@@ -212,7 +212,7 @@ impl SampledKey {
 
     /// Path of the draw in the file.
     fn place(&self) -> KeyPath {
-        KeyPath::dotted("draw").child(self.index)
+        KeyPath::from_dotted("draw").child(self.index)
     }
 
     /// Probability of the range.

@@ -13,7 +13,7 @@ use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
 
-use crate::scenario::number_table::{self, NamedNumbers, NumberKey, closed};
+use crate::scenario::number_table::{self, NamedNumbers, NumberKey, closed_table_schema};
 use crate::scenario::physics::{self, MissingPhysics, PhysicsWire};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::{limits, reader};
@@ -97,7 +97,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
         Some(Value::String(line)) => line,
         other => {
             let value = other.map_or_else(String::new, |value| value.to_string());
-            return Err(KeyFault::of(key, value, "expected a text in quotes", "write `name = formula` in quotes"));
+            return Err(KeyFault::new(key, value, "expected a text in quotes", "write `name = formula` in quotes"));
         }
     };
     let formula = parse_formula(&line, key)?;
@@ -112,7 +112,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
         if !constant.is_in_range(value) {
             let expected =
                 format!("expected a number from {} to {}", ShortNumber(constant.lowest), ShortNumber(constant.highest));
-            return Err(KeyFault::of(place.child(constant.key), ShortNumber(value), expected, "change the value"));
+            return Err(KeyFault::new(place.child(constant.key), ShortNumber(value), expected, "change the value"));
         }
     }
     let values = formula.parameters().iter().map(|constant| values[constant.key]).collect();
@@ -126,7 +126,7 @@ pub fn stated_physics(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, 
     for (index, EffectWire(entry)) in entries.iter().enumerate() {
         let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
         let keys: Table = of_physics.map(|(name, value)| (name.clone(), value.clone())).collect();
-        let place = KeyPath::dotted("effect").child(index);
+        let place = KeyPath::from_dotted("effect").child(index);
         let Some(first) = keys.keys().next() else { continue };
         if entries.len() > 1 {
             let problem = format!("`{first}` is given for a ship with {} effects", entries.len());
@@ -146,7 +146,7 @@ pub fn stated_physics(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, 
 pub fn parse_formula(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     ship::effects::parse_formula(line).map_err(|error| {
         let advice = "docs/src/howto/own-effect.md says what a formula may hold";
-        KeyFault::within(error.at, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
+        KeyFault::within(error.position, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
     })
 }
 
@@ -172,7 +172,7 @@ pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -
         return Ok(ship);
     }
     limits::check_count("effect", entries.len(), limits::MAX_EFFECTS)?;
-    let list = KeyPath::dotted("effect");
+    let list = KeyPath::from_dotted("effect");
     let places = entries.iter().enumerate().map(|(index, entry)| (&entry.0, list.child(index)));
     let (formulas, listed): (Vec<_>, Vec<_>) = places.partition(|(entry, _)| entry.contains_key(FORMULA));
     let listed = listed.into_iter().map(|(entry, place)| Ok((reader::read_table(entry, &place)?, place)));
@@ -209,7 +209,7 @@ pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -
                 ends.sort_by(|a, b| a.0.total_cmp(&b.0));
                 let expected = format!("expected a number from {} to {}", ends[0], ends[1]);
                 let advice = format!("change the value; the effect is {}", effect.equation());
-                return Err(KeyFault::of(key, ShortNumber(setting.written), expected, advice));
+                return Err(KeyFault::new(key, ShortNumber(setting.written), expected, advice));
             }
         }
         effects.push(effect);
@@ -265,7 +265,7 @@ pub fn schema(generator: &mut SchemaGenerator) -> Schema {
             [form] => (form.clone(), "."),
             _ => (json!({ "oneOf": forms }), "; one of these."),
         };
-        let mut effect = closed(Map::from_iter([(id.to_owned(), below)]), vec![id]);
+        let mut effect = closed_table_schema(Map::from_iter([(id.to_owned(), below)]), vec![id]);
         effect["description"] = (meaning(id).to_owned() + end).into();
         effect
     });

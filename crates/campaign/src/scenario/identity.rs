@@ -17,7 +17,7 @@ use crate::scenario::part::ScenarioPart;
 pub fn design_of(document: &Table) -> Table {
     document
         .iter()
-        .filter(|(key, _)| ScenarioPart::of(key) != ScenarioPart::Prose)
+        .filter(|(key, _)| ScenarioPart::from_key(key) != ScenarioPart::Prose)
         .map(|(key, value)| (key.clone(), value.clone()))
         .collect()
 }

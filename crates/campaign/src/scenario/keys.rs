@@ -23,7 +23,7 @@ pub struct ScenarioKey {
 pub enum KeyDefault {
     /// Not allowed: the key is required in its table.
     Required,
-    /// No default value: the description of the key says what its absence does.
+    /// Absence, whose effect the description of the key states.
     Nothing,
     /// Default, as TOML text.
     Value(String),

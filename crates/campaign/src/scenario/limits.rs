@@ -27,7 +27,7 @@ pub fn check_count(list: &str, count: usize, most: usize) -> Result<(), KeyFault
         return Ok(());
     }
     Err(KeyFault::name(
-        KeyPath::dotted(list),
+        KeyPath::from_dotted(list),
         format!("`{list}` has {count} entries"),
         format!("expected at most {most}"),
         "remove some, or split the scenario",
@@ -36,7 +36,7 @@ pub fn check_count(list: &str, count: usize, most: usize) -> Result<(), KeyFault
 
 /// Refuses a key with too many names, at its `place` in the file.
 pub fn check_depth(key: &KeyPath, place: &KeyPath) -> Result<(), KeyFault> {
-    let names = key.parts().len();
+    let names = key.names().len();
     if names <= MAX_NAMES {
         return Ok(());
     }

@@ -16,8 +16,8 @@ pub fn span(text: &str, path: &KeyPath, mark: FaultMark) -> Range<usize> {
     let mut place = nowhere;
     let mut table = Some(document.get_ref());
     let mut array: Option<&DeArray> = None;
-    let last = path.parts().len().wrapping_sub(1);
-    for (depth, part) in path.parts().iter().enumerate() {
+    let last = path.names().len().wrapping_sub(1);
+    for (depth, part) in path.names().iter().enumerate() {
         let value = match (table, array) {
             (Some(table), _) => {
                 table.iter().find(|(key, _)| key.get_ref() == part).map(|(key, value)| (key.span(), value))
@@ -73,7 +73,7 @@ mod tests {
          [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
 
     fn at(path: &str, mark: FaultMark) -> &str {
-        &TEXT[span(TEXT, &KeyPath::dotted(path), mark)]
+        &TEXT[span(TEXT, &KeyPath::from_dotted(path), mark)]
     }
 
     #[test]
@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(at("sensor.heading-noise-deg", FaultMark::Value), "-0.1");
         assert_eq!(at("sensor.heading-noise-deg", FaultMark::Name), "heading-noise-deg");
         assert_eq!(at("identifier.1.label", FaultMark::Value), "\"x\"");
-        let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
+        let swept = KeyPath::from_dotted("sweep.0.points.0.set").child("a.b");
         assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Value)], "3");
         assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Name)], "\"a.b\"");
     }
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn finds_a_letter_of_a_text() {
         let marked = |text: &str, at: usize| {
-            let span = span(text, &KeyPath::dotted("effect.0.formula"), FaultMark::Within(at));
+            let span = span(text, &KeyPath::from_dotted("effect.0.formula"), FaultMark::Within(at));
             (span.start, text[span].to_owned())
         };
         assert_eq!(marked("[[effect]]\nformula = \"é = c * x\"\n", 8), (31, String::from("x")));

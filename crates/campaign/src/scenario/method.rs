@@ -149,7 +149,7 @@ impl Default for TraceWire {
 /// Methods with unique labels.
 pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> {
     limits::check_count("identifier", wire.len(), limits::MAX_METHODS)?;
-    let list = KeyPath::dotted("identifier");
+    let list = KeyPath::from_dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
@@ -211,7 +211,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFaul
 /// Fault of a refused setting, at its key.
 fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
-    KeyFault::of(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
+    KeyFault::new(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
 /// Settings of a trace, without restarted replays and proposals, which a study does not use.

@@ -18,10 +18,10 @@ pub const MAX_NAME_BYTES: usize = 180;
 /// Reason why a text cannot be used; displayed as the expected text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum InvalidText {
-    /// Empty or blank.
+    /// Empty or blank text.
     #[error("expected a text that is not blank")]
     Blank,
-    /// Too long.
+    /// Text that is too long.
     #[error("expected at most {most} characters, this text has {length}")]
     Long {
         /// Maximum number of characters.
@@ -84,7 +84,7 @@ pub fn study_name(path: &Path) -> Result<String, Failure> {
         Err(unfit) => Err(Failure::input(format!(
             "{}: its results cannot be called {}; {unfit}; rename the file",
             path.display(),
-            shown(&name)
+            quoted_beginning(&name)
         ))),
     }
 }
@@ -103,7 +103,7 @@ pub fn slug(title: &str) -> String {
 }
 
 /// Beginning of a text in quotes, for messages.
-pub fn shown(text: &str) -> String {
+pub fn quoted_beginning(text: &str) -> String {
     const SHOWN: usize = 40;
     match text.char_indices().nth(SHOWN) {
         None => format!("{text:?}"),

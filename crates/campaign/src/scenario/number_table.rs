@@ -81,10 +81,10 @@ pub fn schema(keys: &[NumberKey]) -> Value {
         (entry.key.to_owned(), number)
     };
     let required = keys.iter().filter(|entry| entry.is_required).map(|entry| entry.key).collect();
-    closed(keys.iter().map(number).collect(), required)
+    closed_table_schema(keys.iter().map(number).collect(), required)
 }
 
 /// JSON schema of a table without further keys.
-pub fn closed(properties: Map<String, Value>, required: Vec<&str>) -> Value {
+pub fn closed_table_schema(properties: Map<String, Value>, required: Vec<&str>) -> Value {
     json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
 }

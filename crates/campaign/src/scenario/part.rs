@@ -16,7 +16,7 @@ pub enum ScenarioPart {
 
 impl ScenarioPart {
     /// Part of a top-level key; unknown keys are refused elsewhere.
-    pub fn of(key: &str) -> Self {
+    pub fn from_key(key: &str) -> Self {
         match key {
             "question" | "analysis" | "finding" | "published" | "output" => Self::Prose,
             "seed" | "replicates" | "stop" | "sweep" | "predict" => Self::Study,

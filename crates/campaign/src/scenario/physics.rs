@@ -99,7 +99,7 @@ impl PhysicsWire {
 impl MissingPhysics {
     /// Missing physics of a ship without a statement: one listed effect, or none; `None` for several effects and for
     /// a name outside the list.
-    pub fn of_effects(missing: &[String], disturbed: bool) -> Option<Self> {
+    pub fn from_effects(missing: &[String], disturbed: bool) -> Option<Self> {
         match missing {
             [] => Some(Self::Nothing { disturbed }),
             [id] if effect_ids().contains(&id.as_str()) => Some(Self::Listed { effects: missing.to_vec() }),

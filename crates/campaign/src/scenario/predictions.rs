@@ -28,7 +28,7 @@ const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predictions {
     /// Manoeuvres.
-    pub kinds: Vec<Manoeuvre>,
+    pub manoeuvres: Vec<Manoeuvre>,
     /// Number of ships sampled for every prediction.
     pub draws: usize,
 }
@@ -45,25 +45,25 @@ pub(crate) struct RecordPredictWire {
 impl RecordPredictWire {
     /// Checks the number of draws.
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
-        Ok(Predictions { kinds: Vec::new(), draws: checked(self.draws)? })
+        Ok(Predictions { manoeuvres: Vec::new(), draws: checked(self.draws)? })
     }
 }
 
 /// Checked number of draws.
 fn checked(draws: u64) -> Result<usize, KeyFault> {
-    let key = KeyPath::dotted("predict.draws");
-    let fault = || KeyFault::of(key, draws, "expected 50 to 10000", "200 draws are enough for a 90 % interval");
+    let key = KeyPath::from_dotted("predict.draws");
+    let fault = || KeyFault::new(key, draws, "expected 50 to 10000", "200 draws are enough for a 90 % interval");
     if DRAWS.contains(&draws) { Ok(draws as usize) } else { Err(fault()) }
 }
 
 impl PredictWire {
     /// Checks every value; fails with the first invalid one.
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
-        let key = KeyPath::dotted("predict");
+        let key = KeyPath::from_dotted("predict");
         let draws = checked(self.draws)?;
         if self.manoeuvres.is_empty() {
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(KeyFault::of(key.child("manoeuvres"), "empty", expected, "name one, or leave [predict] out"));
+            return Err(KeyFault::new(key.child("manoeuvres"), "empty", expected, "name one, or leave [predict] out"));
         }
         let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {
@@ -80,7 +80,7 @@ impl PredictWire {
             }
             kinds.push(kind);
         }
-        Ok(Predictions { kinds, draws })
+        Ok(Predictions { manoeuvres: kinds, draws })
     }
 }
 
@@ -95,7 +95,7 @@ mod tests {
             draws,
         };
         let resolved = wire(&["zig-zag:10/10", "turning-circle:35"], 200).resolve().expect("known");
-        assert_eq!((resolved.kinds.len(), resolved.draws), (2, 200));
+        assert_eq!((resolved.manoeuvres.len(), resolved.draws), (2, 200));
         for (wrong, draws) in [
             (&["zig-zag"][..], 200),
             (&[], 200),

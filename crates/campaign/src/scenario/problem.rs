@@ -5,7 +5,7 @@ use std::fmt;
 
 use simulate::SpecificationError;
 
-use crate::scenario::name::{InvalidText, shown};
+use crate::scenario::name::{InvalidText, quoted_beginning};
 
 /// Path of a key from the root of a scenario; list entries count from 0.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
@@ -13,7 +13,7 @@ pub struct KeyPath(Vec<String>);
 
 impl KeyPath {
     /// Path from dotted text, such as "sensor.heading-noise-deg".
-    pub fn dotted(path: &str) -> Self {
+    pub fn from_dotted(path: &str) -> Self {
         Self(path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect())
     }
 
@@ -23,7 +23,7 @@ impl KeyPath {
     }
 
     /// Names from the root on.
-    pub fn parts(&self) -> &[String] {
+    pub fn names(&self) -> &[String] {
         &self.0
     }
 
@@ -33,7 +33,7 @@ impl KeyPath {
     }
 
     /// Path of the table that contains the key.
-    pub fn above(&self) -> Self {
+    pub fn parent(&self) -> Self {
         Self(self.0[..self.0.len().saturating_sub(1)].to_vec())
     }
 
@@ -98,7 +98,7 @@ impl KeyFault {
     }
 
     /// Fault of a value, with the problem "`key` is VALUE".
-    pub fn of(key: KeyPath, value: impl fmt::Display, expected: impl Into<String>, advice: impl Into<String>) -> Self {
+    pub fn new(key: KeyPath, value: impl fmt::Display, expected: impl Into<String>, advice: impl Into<String>) -> Self {
         let problem = format!("`{key}` is {value}");
         Self::value(key, problem, expected, advice)
     }
@@ -124,13 +124,13 @@ impl From<SpecificationError> for KeyFault {
             "longest_wait" | "weather_grid" | "solver.step" => "manoeuvre",
             key => key,
         };
-        Self { key: KeyPath::dotted(key), mark, problem, expected, advice }
+        Self { key: KeyPath::from_dotted(key), mark, problem, expected, advice }
     }
 }
 
 /// Fault of an unusable text.
 pub fn of_text(key: KeyPath, text: &str, unfit: InvalidText) -> KeyFault {
-    KeyFault::of(key, shown(text), unfit.to_string(), "change the text")
+    KeyFault::new(key, quoted_beginning(text), unfit.to_string(), "change the text")
 }
 
 /// Index of a name among `choices`; otherwise a fault with `problem`, `expected` and a suggestion.
@@ -145,7 +145,7 @@ pub fn place_among<S: AsRef<str>>(
 }
 
 /// Names in backquotes, joined by commas.
-pub fn listed<S: AsRef<str>>(names: &[S]) -> String {
+pub fn backquoted_list<S: AsRef<str>>(names: &[S]) -> String {
     names.iter().map(|name| format!("`{}`", name.as_ref())).collect::<Vec<_>>().join(", ")
 }
 
@@ -153,8 +153,8 @@ pub fn listed<S: AsRef<str>>(names: &[S]) -> String {
 pub fn suggestion<S: AsRef<str>>(name: &str, choices: &[S]) -> String {
     match nearest(name, choices) {
         Some(meant) if choices.len() == 1 => format!("did you mean `{meant}`?"),
-        Some(meant) => format!("did you mean `{meant}`? Known here: {}", listed(choices)),
-        None => format!("use one of {}", listed(choices)),
+        Some(meant) => format!("did you mean `{meant}`? Known here: {}", backquoted_list(choices)),
+        None => format!("use one of {}", backquoted_list(choices)),
     }
 }
 
@@ -179,10 +179,10 @@ mod tests {
 
     #[test]
     fn paths_keep_dots_in_names() {
-        let set = KeyPath::dotted("sweep.0.points.1.set").child("recording.sampling-s");
-        assert_eq!(set.parts().len(), 6);
+        let set = KeyPath::from_dotted("sweep.0.points.1.set").child("recording.sampling-s");
+        assert_eq!(set.names().len(), 6);
         assert_eq!(set.last(), "recording.sampling-s");
-        assert!(KeyPath::dotted("a.b.c").is_related(&KeyPath::dotted("a.b")));
-        assert!(!KeyPath::dotted("a.bc").is_related(&KeyPath::dotted("a.b")));
+        assert!(KeyPath::from_dotted("a.b.c").is_related(&KeyPath::from_dotted("a.b")));
+        assert!(!KeyPath::from_dotted("a.bc").is_related(&KeyPath::from_dotted("a.b")));
     }
 }

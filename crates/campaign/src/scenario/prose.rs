@@ -86,7 +86,8 @@ pub struct MarkedValue {
     /// Name of the axis.
     pub axis: String,
     /// Value.
-    pub at: f64,
+    #[serde(rename = "at")]
+    pub value: f64,
     /// Name of the value.
     pub label: String,
 }
@@ -105,7 +106,7 @@ pub struct Published {
 
 impl Prose {
     /// Prose of the text of a scenario; empty for an invalid text.
-    pub fn of(scenario: &str) -> Self {
+    pub fn from_scenario_text(scenario: &str) -> Self {
         let mut document: Table = scenario.parse().unwrap_or_default();
         Presentation::remove_unknown(&mut document);
         let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
@@ -118,11 +119,11 @@ impl Prose {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
         for (key, text) in prose.chain(output.title.iter().map(|title| ("output.title", title))) {
-            name::check_prose(text).map_err(|unfit| of_text(KeyPath::dotted(key), text, unfit))?;
+            name::check_prose(text).map_err(|unfit| of_text(KeyPath::from_dotted(key), text, unfit))?;
         }
-        let figure = output.figure.iter().map(|stem| (KeyPath::dotted("output.figure"), stem));
+        let figure = output.figure.iter().map(|stem| (KeyPath::from_dotted("output.figure"), stem));
         let figures = output.figures.iter().flatten().enumerate();
-        let figures = figures.map(|(index, stem)| (KeyPath::dotted("output.figures").child(index), stem));
+        let figures = figures.map(|(index, stem)| (KeyPath::from_dotted("output.figures").child(index), stem));
         for (key, stem) in figure.chain(figures) {
             name::check_file_name(stem).map_err(|unfit| of_text(key, stem, unfit))?;
         }
@@ -135,8 +136,8 @@ impl Published {
     pub(crate) fn check(&self) -> Result<(), KeyFault> {
         for (name, value) in [("K-per-s", self.K_per_s), ("T-s", self.T_s)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
-                let key = KeyPath::dotted("published").child(name);
-                return Err(KeyFault::of(
+                let key = KeyPath::from_dotted("published").child(name);
+                return Err(KeyFault::new(
                     key,
                     value,
                     "expected a finite number",
@@ -158,7 +159,8 @@ mod tests {
         let schema = schemars::schema_for!(Presentation);
         let keys = schema.as_value()["properties"].as_object().expect("a table");
         assert!(keys.keys().eq(Presentation::KEYS), "{keys:?}");
-        let words = Prose::of("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
+        let words =
+            Prose::from_scenario_text("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
         assert_eq!((words.question.as_str(), words.output.figure.as_deref()), ("Which?", Some("errors")));
     }
 }

@@ -9,8 +9,8 @@ use serde::{Deserialize, forward_to_deserialize_any};
 use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
-use crate::scenario::name::shown;
-use crate::scenario::problem::{KeyFault, KeyPath, listed, suggestion};
+use crate::scenario::name::quoted_beginning;
+use crate::scenario::problem::{KeyFault, KeyPath, backquoted_list, suggestion};
 
 /// Value of a whole document.
 ///
@@ -122,8 +122,11 @@ pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
 pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, choices: &[&str]) -> KeyFault {
     let names: Vec<&String> = names.collect();
     let (problem, advice) = match names.len() {
-        0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(choices))),
-        several => (format!("`{table}` names {several} things at once: {}", listed(&names)), "keep one of them".into()),
+        0 => (format!("`{table}` names nothing"), format!("use one of {}", backquoted_list(choices))),
+        several => (
+            format!("`{table}` names {several} things at once: {}", backquoted_list(&names)),
+            "keep one of them".into(),
+        ),
     };
     KeyFault::name(table, problem, "expected exactly one name below it", advice)
 }
@@ -173,7 +176,7 @@ impl de::Error for ReadFault {
 impl ReadFault {
     /// Fault at a key with its value; without a value, that of the whole document.
     fn at(self, key: KeyPath, value: Option<&Value>) -> KeyFault {
-        let called = |key: &KeyPath| match key.parts() {
+        let called = |key: &KeyPath| match key.names() {
             [] => "a scenario".to_owned(),
             _ => format!("`{key}`"),
         };
@@ -181,7 +184,7 @@ impl ReadFault {
         let text = value.and_then(Value::as_str);
         match self {
             Self::UnknownKey(name, names) => {
-                let problem = format!("{} has no key `{name}`", called(&key.above()));
+                let problem = format!("{} has no key `{name}`", called(&key.parent()));
                 KeyFault::name(key, problem, "no such key here", suggestion(&name, names))
             }
             Self::UnknownName(name, names) if text == Some(&name) => KeyFault::value(
@@ -219,7 +222,7 @@ impl ReadFault {
                 let expected = in_toml(&expected);
                 let advice = match (expected, text) {
                     (SETTINGS, Some(name)) => format!("write `{}.{name} = {{}}`", key.last()),
-                    (A_TABLE, _) if key.parts() == ["ship"] => "write [ship.yukun] on a line of its own".to_owned(),
+                    (A_TABLE, _) if key.names() == ["ship"] => "write [ship.yukun] on a line of its own".to_owned(),
                     (A_LIST, _) if value.is_some_and(Value::is_table) => format!("write [[{key}]] with two brackets"),
                     _ => "change the value".to_owned(),
                 };
@@ -256,7 +259,7 @@ fn in_toml(expected: &str) -> &str {
 /// Description of a value in a message.
 fn described(value: &Value) -> String {
     match value {
-        Value::String(text) => format!("the text {}", shown(text)),
+        Value::String(text) => format!("the text {}", quoted_beginning(text)),
         Value::Table(_) => "a table".to_owned(),
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Datetime(date) => format!("the date {date}"),
@@ -268,7 +271,7 @@ fn described(value: &Value) -> String {
 
 /// Kind of object that the names at a key denote.
 fn kind_of(key: &KeyPath) -> &'static str {
-    match key.parts() {
+    match key.names() {
         [manoeuvre, _] if manoeuvre == "manoeuvre" => "manoeuvre",
         [effect, _, _] if effect == "effect" => "effect",
         [_, _, method, _] if method == "method" => "method",

@@ -136,7 +136,7 @@ pub struct RecordSplit {
     /// Indices of the records fitted together.
     pub fitted: Vec<usize>,
     /// Index of the validation record.
-    pub judge: Option<usize>,
+    pub validation: Option<usize>,
 }
 
 /// Records of a cell, with the splits of the trials.
@@ -170,7 +170,7 @@ impl RecordSet {
     ///
     /// Fails if a file is missing or is not a record, and if no split is left.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
-        let key = KeyPath::dotted("records");
+        let key = KeyPath::from_dotted("records");
         let ListedFiles { paths, absent } = files(wire, folder, &key)?;
         let mut digest = Sha256::new();
         let (mut trials, mut warnings) = (Vec::new(), Vec::new());
@@ -287,7 +287,7 @@ fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, Str
 fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -> Result<Vec<RecordSplit>, KeyFault> {
     let all = 0..names.len();
     let without = |excluded: usize| all.clone().filter(|place| *place != excluded).collect::<Vec<usize>>();
-    let split = |fitted: Vec<usize>, judge| RecordSplit { fitted, judge };
+    let split = |fitted: Vec<usize>, judge| RecordSplit { fitted, validation: judge };
     let splits: Vec<RecordSplit> = match judge {
         JudgeWire::Rule(HoldOutRule::None) => all.map(|record| split(vec![record], None)).collect(),
         JudgeWire::Rule(HoldOutRule::Others) => {
@@ -405,10 +405,10 @@ mod tests {
     #[test]
     fn records_are_shared_out_by_rules_and_lists() {
         let names = ["a", "b", "c"];
-        let key = KeyPath::dotted("records.judge");
+        let key = KeyPath::from_dotted("records.judge");
         let of = |judge: &JudgeWire| -> Vec<(Vec<usize>, Option<usize>)> {
             let all = splits(judge, &names, &[], &key).unwrap_or_else(|fault| panic!("{}", fault.problem));
-            all.into_iter().map(|split| (split.fitted, split.judge)).collect()
+            all.into_iter().map(|split| (split.fitted, split.validation)).collect()
         };
         let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
         assert_eq!(of(&JudgeWire::default()), pairs);

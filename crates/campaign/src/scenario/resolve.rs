@@ -7,7 +7,7 @@ use std::sync::Arc;
 use ::ship::ships::Model;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
 use simulate::motion::{Planar, PlanarShip};
-use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
+use simulate::{Disturbances, Manoeuvre, Recording, Sensors, SimulatedShip, Simulation};
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 use crate::scenario::specification::{HULL, Specification};
@@ -25,25 +25,25 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         recording: wire.recording,
         sensors: wire.sensor,
         disturbances: wire.disturbance,
-        ..Simulation::new(vessel(&ship, wire)?, manoeuvre(&wire.manoeuvre, folder)?)
+        ..Simulation::new(simulated_ship(&ship, wire)?, manoeuvre(&wire.manoeuvre, folder)?)
     };
     simulation.check()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
     let also = wire.also.iter().enumerate().map(|(index, entry)| {
         let context = format!("in the further record {}", index + 1);
         let record = Simulation { recording: entry.recording.unwrap_or(wire.recording), ..simulation.clone() };
-        further(entry, record, KeyPath::dotted("also").child(index), &context, folder)
+        further(entry, record, KeyPath::from_dotted("also").child(index), &context, folder)
     });
     let also = also.collect::<Result<_, _>>()?;
     // A validation is in a calm and without measurement error, so that the error of a replay is that of the response.
     let validation = wire.validation.as_ref().map(|entry| {
         let record = Simulation {
-            recording: entry.recording.unwrap_or_else(|| of_validation(&wire.recording)),
+            recording: entry.recording.unwrap_or_else(|| validation_recording(&wire.recording)),
             disturbances: Disturbances::default(),
             sensors: Sensors::default(),
             ..simulation.clone()
         };
-        further(entry, record, KeyPath::dotted("validation"), "in the validation manoeuvre", folder)
+        further(entry, record, KeyPath::from_dotted("validation"), "in the validation manoeuvre", folder)
     });
     let validation = validation.transpose()?;
     let base = match &ship.model {
@@ -63,13 +63,13 @@ fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
     has.into_iter().filter(|(_, is_there)| !is_there).map(|(channel, _)| channel).collect()
 }
 
-/// Vessel of the simulation: the ship, with speed and sway added to its yaw response if the scenario has them.
+/// Ship of the simulation: the ship, with speed and sway added to its yaw response if the scenario has them.
 ///
 /// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
-fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
-    let vessel = Vessel::from_ship(ship);
-    let Some(coefficients) = wire.speed_and_sway else { return Ok(vessel) };
-    let key = KeyPath::dotted("speed-and-sway");
+fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, KeyFault> {
+    let simulated = SimulatedShip::from_ship(ship);
+    let Some(coefficients) = wire.speed_and_sway else { return Ok(simulated) };
+    let key = KeyPath::from_dotted("speed-and-sway");
     let (Model::Response(response), Some(Particulars { length, speed })) = (&ship.model, ship.particulars) else {
         let expected = "expected a response model with length and speed";
         let advice = "leave the table out, or use yukun, or first-order with `length-m` and `speed-kn`";
@@ -77,12 +77,12 @@ fn vessel(ship: &Ship, wire: &ScenarioWire) -> Result<Vessel, KeyFault> {
     };
     if let Some((symbol, value, [low, high])) = coefficients.first_out_of_bounds() {
         let expected = format!("expected a number from {} to {}", ShortNumber(low), ShortNumber(high));
-        return Err(KeyFault::of(key.child(symbol), ShortNumber(value), expected, "change the number"));
+        return Err(KeyFault::new(key.child(symbol), ShortNumber(value), expected, "change the number"));
     }
     let planar = Planar::new(coefficients, length, speed).map_err(|error| {
         KeyFault::name(key, error.to_string(), "not accepted", "change length and speed of the ship")
     })?;
-    Ok(vessel.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
+    Ok(simulated.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
 }
 
 /// Identifiers of the effects missing from a first-order base in a trial: those of the ship, and those equal to a
@@ -106,7 +106,7 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 }
 
 /// Default recording of a validation.
-pub fn of_validation(trial: &Recording) -> Recording {
+pub fn validation_recording(trial: &Recording) -> Recording {
     Recording { duration: trial.duration, ..Recording::every(trial.period) }
 }
 
@@ -125,7 +125,7 @@ fn further(
         Ok(simulation)
     });
     checked.map_err(|fault| KeyFault {
-        key: fault.key.parts().iter().fold(place, |key, part| key.child(part)),
+        key: fault.key.names().iter().fold(place, |key, part| key.child(part)),
         problem: format!("{context}, {}", fault.problem),
         ..fault
     })
@@ -136,7 +136,7 @@ fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, KeyFault
     let Manoeuvre::Replay { file, .. } = manoeuvre else { return Ok(manoeuvre.clone()) };
     let path = folder.join(file);
     let refuse = |problem: String| {
-        let key = KeyPath::dotted("manoeuvre.replay.file");
+        let key = KeyPath::from_dotted("manoeuvre.replay.file");
         let advice =
             "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
         KeyFault::value(key, format!("the record to replay: {problem}"), "expected a record with a rudder", advice)

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use crate::scenario::keys::{KeyDefault, ScenarioKey, keys};
 use crate::scenario::method::Method;
 use crate::scenario::problem::KeyFault;
-use crate::scenario::resolve::of_validation;
+use crate::scenario::resolve::validation_recording;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{effect, reader, ship};
 
@@ -26,7 +26,7 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
         also.recording.get_or_insert(wire.recording);
     }
     if let Some(validation) = &mut wire.validation {
-        validation.recording.get_or_insert(of_validation(&wire.recording));
+        validation.recording.get_or_insert(validation_recording(&wire.recording));
     }
     let complete = Table::try_from(&wire).expect("what was read can be written");
     let mut lines = ResolvedText { keys: keys(), text: String::new() };

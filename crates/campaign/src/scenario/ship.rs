@@ -74,7 +74,7 @@ fn numbers_of(id: &str) -> &'static [NumberKey] {
 /// Fails with the invalid name or number.
 pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
     let ids: Vec<&str> = REGISTRY.iter().map(|ship| &*ship.id).chain([FIRST_ORDER, SECOND_ORDER, USER_HULL]).collect();
-    let (id, key, numbers) = number_table::single_entry(named, &KeyPath::dotted("ship"), &ids)?;
+    let (id, key, numbers) = number_table::single_entry(named, &KeyPath::from_dotted("ship"), &ids)?;
     let keys = numbers_of(id);
     if !keys.is_empty() {
         refuse_unknown(numbers, keys, &key)?;
@@ -189,7 +189,7 @@ impl UserShip<'_> {
         };
         let written = self.numbers.iter().find(|(key, _)| key.split('-').next() == Some(symbol));
         let (name, value) = written.map_or((BIAS.key, bias_deg), |(key, value)| (key, *value));
-        KeyFault::of(self.key.child(name), sweep::toml_text(&toml::Value::Float(value)), expected, "change the number")
+        KeyFault::new(self.key.child(name), sweep::toml_text(&toml::Value::Float(value)), expected, "change the number")
     }
 
     fn particulars(&self) -> Result<Option<Particulars>, KeyFault> {
@@ -203,7 +203,7 @@ impl UserShip<'_> {
             true => Ok(value),
             false => {
                 let expected = "expected a finite number above 0";
-                Err(KeyFault::of(key.child(name), ShortNumber(value), expected, "change the number"))
+                Err(KeyFault::new(key.child(name), ShortNumber(value), expected, "change the number"))
             }
         };
         match (self.number(LENGTH.key), self.number(SPEED.key)) {

@@ -69,11 +69,11 @@ impl StopFigure {
 impl StopRule {
     /// Checks the rule against the existing methods.
     pub(crate) fn check(&self, methods: &[Method]) -> Result<(), KeyFault> {
-        let key = KeyPath::dotted("stop");
+        let key = KeyPath::from_dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
             let expected = "expected a finite number above 0";
-            return Err(KeyFault::of(key.child("standard-error"), ShortNumber(self.standard_error), expected, advice));
+            return Err(KeyFault::new(key.child("standard-error"), ShortNumber(self.standard_error), expected, advice));
         }
         let labels: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
         let messages = ["`stop.method` is", "no such method in this scenario"];

@@ -99,8 +99,8 @@ impl SweepSetting {
     /// Checks that a sweep may change the key.
     fn check(&self) -> Result<(), KeyFault> {
         limits::check_depth(&self.key, &self.key_place)?;
-        let first = self.key.parts().first().map_or("", String::as_str);
-        if first.is_empty() || matches!(ScenarioPart::of(first), ScenarioPart::Prose | ScenarioPart::Study) {
+        let first = self.key.names().first().map_or("", String::as_str);
+        if first.is_empty() || matches!(ScenarioPart::from_key(first), ScenarioPart::Prose | ScenarioPart::Study) {
             let problem = match first {
                 "" => "the sweep names no key".to_owned(),
                 _ => format!("the sweep changes `{}`, which is the same for the whole study", self.key),
@@ -126,7 +126,7 @@ impl SweepSetting {
             FaultMark::Name => (self.key_place.clone(), FaultMark::Value),
             FaultMark::Value => (self.value_place.clone(), FaultMark::Value),
             FaultMark::Within(_) => {
-                let below = fault.key.parts().strip_prefix(self.key.parts()).unwrap_or_default();
+                let below = fault.key.names().strip_prefix(self.key.names()).unwrap_or_default();
                 (below.iter().fold(self.value_place.clone(), |key, part| key.child(part)), fault.mark)
             }
         };
@@ -143,7 +143,7 @@ impl SweepSetting {
 impl AxisWire {
     /// Checks an axis; `index` is its index in `[[sweep]]`.
     pub fn resolve(&self, index: usize) -> Result<SweepAxis, KeyFault> {
-        let place = KeyPath::dotted("sweep").child(index);
+        let place = KeyPath::from_dotted("sweep").child(index);
         let mut points = self.points(&place)?;
         if points.is_empty() {
             return Err(KeyFault::name(
@@ -160,7 +160,7 @@ impl AxisWire {
         if let (Some(index), true) = (odd, self.points.is_some()) {
             let key = place.child("points").child(index).child("value");
             let value = points[index].value.unwrap_or(f64::NAN);
-            return Err(KeyFault::of(
+            return Err(KeyFault::new(
                 key,
                 value,
                 "expected a finite number",
@@ -237,7 +237,7 @@ impl PointWire {
         let set = self.set.iter().map(|(key, value)| {
             let place = place.child("set").child(key);
             SweepSetting {
-                key: KeyPath::dotted(key),
+                key: KeyPath::from_dotted(key),
                 value: value.clone(),
                 key_place: place.clone(),
                 value_place: place,
@@ -292,7 +292,7 @@ impl SweepPoint {
             (Value::String(text), None) => text.clone(),
             (other, None) => other.to_string(),
         };
-        let set = vec![SweepSetting { key: KeyPath::dotted(key), value, key_place, value_place }];
+        let set = vec![SweepSetting { key: KeyPath::from_dotted(key), value, key_place, value_place }];
         Self { label, value: number, set }
     }
 }
@@ -345,7 +345,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
     if count > MAX_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
         return Err(KeyFault::name(
-            KeyPath::dotted("sweep"),
+            KeyPath::from_dotted("sweep"),
             format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
             format!("expected at most {MAX_CELLS} cells"),
             "use fewer points, or fewer sweeps",
@@ -356,7 +356,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
         let keys = || axis.points.iter().flat_map(|point| &point.set).map(|setting| &setting.key);
         if let Some(again) = keys().find(|key| before.contains(key)) {
             return Err(KeyFault::name(
-                KeyPath::dotted("sweep").child(index),
+                KeyPath::from_dotted("sweep").child(index),
                 format!("two sweeps change `{again}`"),
                 "expected every sweep to change keys of its own",
                 "remove one of them, or join them into one sweep with `points`",
@@ -380,7 +380,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
 pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
     let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
-    let mut parts = key.parts().iter().peekable();
+    let mut parts = key.names().iter().peekable();
     while let Some(part) = parts.next() {
         if parts.peek().is_none() {
             place.insert(part.clone(), value);

@@ -12,7 +12,7 @@ pub struct DetectionCount {
     /// Number of trials.
     pub trials: u64,
     /// Number of trials with a detection.
-    pub seen: u64,
+    pub detections: u64,
 }
 
 /// Prior standard deviation of the slope per unit of the logarithm: the ridge, which keeps the slope finite if sizes
@@ -70,7 +70,7 @@ impl ShareLine<'_> {
     fn points(&self, place: f64, slope: f64) -> impl Iterator<Item = [f64; 4]> {
         self.tried.iter().map(move |level| {
             let after = level.size.ln() - place;
-            [after, level.trials as f64, level.seen as f64, self.logit + slope * after]
+            [after, level.trials as f64, level.detections as f64, self.logit + slope * after]
         })
     }
 
@@ -112,7 +112,10 @@ mod tests {
     use super::*;
 
     fn tried(seen: [u64; 5], trials: u64) -> Vec<DetectionCount> {
-        seen.iter().zip([0.25, 0.5, 1.0, 2.0, 4.0]).map(|(&seen, size)| DetectionCount { size, trials, seen }).collect()
+        seen.iter()
+            .zip([0.25, 0.5, 1.0, 2.0, 4.0])
+            .map(|(&seen, size)| DetectionCount { size, trials, detections: seen })
+            .collect()
     }
 
     fn sizes(seen: [u64; 5], trials: u64) -> [f64; 3] {

@@ -34,7 +34,7 @@ pub const MIN_INTERVAL_VALUES: u64 = 6;
 /// Minimum number of values that are summarised by a median and a range; fewer are shown individually.
 pub const MIN_SUMMARISED: usize = 5;
 
-/// Share of `count` in `of` with its interval (Wilson 1927); `None` without cases.
+/// Share of `count` in `cases` with its interval (Wilson 1927); `None` without cases.
 pub fn wilson_share(count: u64, cases: u64) -> Option<Statistic> {
     if cases == 0 {
         return None;

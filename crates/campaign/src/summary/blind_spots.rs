@@ -15,19 +15,19 @@ pub struct BlindSpot {
     /// Unit of the sizes.
     pub unit: String,
     /// Labels of the other axes.
-    pub place: Vec<String>,
+    pub conditions: Vec<String>,
     /// Index of the method, a trace.
     pub method: usize,
     /// Trials by size, with the number that name the effect.
-    pub tried: Vec<DetectionCount>,
+    pub counts: Vec<DetectionCount>,
     /// Size at which 90 % of the trials name the effect; extrapolated beyond the tried sizes.
     pub size: Statistic,
 }
 
 impl BlindSpot {
     /// Minimum and maximum tried size.
-    pub fn tried_range(&self) -> [f64; 2] {
-        let sizes = || self.tried.iter().map(|level| level.size);
+    pub fn size_range(&self) -> [f64; 2] {
+        let sizes = || self.counts.iter().map(|level| level.size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
     }
 }
@@ -51,14 +51,14 @@ pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
         let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
         let mut place = cell.labels.clone();
         place.remove(axis);
-        let level = DetectionCount { size, trials: line.trials, seen: line.complete };
+        let level = DetectionCount { size, trials: line.trials, detections: line.complete };
         Some(((effect, unit, place, line.method, &line.missing), level))
     });
     let groups = grouped(sized, |(kind, _)| kind.clone());
     let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, DetectionCount)>)| {
         let tried: Vec<DetectionCount> = levels.into_iter().map(|(_, level)| level).collect();
         let size = detection_size(&tried, MIN_NAMED_SHARE)?;
-        Some(BlindSpot { effect, unit, place, method, tried, size })
+        Some(BlindSpot { effect, unit, conditions: place, method, counts: tried, size })
     };
     groups.into_iter().filter_map(spot).collect()
 }
@@ -121,9 +121,10 @@ mod tests {
         };
         let lines: Vec<TraceSummary> = (0..design.cells.len()).map(line).collect();
         let spots = blind_spots(&lines, &design);
-        let names: Vec<_> = spots.iter().map(|spot| format!("{} {}", spot.effect, spot.place.join(", "))).collect();
+        let names: Vec<_> =
+            spots.iter().map(|spot| format!("{} {}", spot.effect, spot.conditions.join(", "))).collect();
         assert_eq!(names, ["wind tanker", "wind ferry", "waves tanker", "waves ferry"]);
-        assert!(spots.iter().all(|spot| spot.tried_range() == [0.25, 2.0] && spot.unit == "°"));
+        assert!(spots.iter().all(|spot| spot.size_range() == [0.25, 2.0] && spot.unit == "°"));
         assert!((0.5..1.0).contains(&spots[0].size.value) && spots[2].size.value > 2.0, "{spots:?}");
         assert_eq!(effect_size_axis(&Design::default()), None);
     }

@@ -53,7 +53,7 @@ impl Judgement {
     ];
 
     /// Judgement of a trace of a ship with this missing physics.
-    pub fn of(answer: &TraceRow, physics: &MissingPhysics) -> Self {
+    pub fn from_trace_row(answer: &TraceRow, physics: &MissingPhysics) -> Self {
         if answer.named.is_empty() && answer.located.is_empty() {
             return match answer.verdict {
                 Verdict::Unexplained => Self::Unexplained,
@@ -172,7 +172,10 @@ mod tests {
             ..NamedEffect::default()
         };
         let (named, located) = (names.iter().map(effect).collect(), located.into_iter().collect());
-        Judgement::of(&TraceRow { verdict: Verdict::Traced, named, located, ..TraceRow::default() }, physics)
+        Judgement::from_trace_row(
+            &TraceRow { verdict: Verdict::Traced, named, located, ..TraceRow::default() },
+            physics,
+        )
     }
 
     fn timed(changes_s: &[f64], period_s: Option<[f64; 2]>) -> MissingPhysics {
@@ -190,7 +193,7 @@ mod tests {
         assert_eq!(judged(&[right, alias], None, &physics), Alias);
         assert_eq!(judged(&[right, wrong], None, &physics), Wrong);
         assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, Elsewhere]);
-        let silent = |verdict| Judgement::of(&TraceRow { verdict, ..TraceRow::default() }, &physics);
+        let silent = |verdict| Judgement::from_trace_row(&TraceRow { verdict, ..TraceRow::default() }, &physics);
         let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
         assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
         let nothing = [true, false].map(|disturbed| MissingPhysics::Nothing { disturbed });

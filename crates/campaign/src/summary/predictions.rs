@@ -62,7 +62,7 @@ impl ConformalScaling {
     /// Scaling of the `judged` predictions by the factor of the `others`, every figure with the same weight.
     ///
     /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
-    /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ in their noise alone.
+    /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
     pub fn from_others(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
             lines.iter().map(|line| line.scaled_coverage(place)).sum::<f64>() / lines.len() as f64

@@ -26,7 +26,8 @@ pub struct RecordSummary {
     /// Median over fits of the heading error on the fitted records, deg.
     pub fitted_deg: Option<Statistic>,
     /// Median over trials of the heading error on the validation record, deg.
-    pub judged_deg: Option<Statistic>,
+    #[serde(rename = "judged_deg")]
+    pub validation_deg: Option<Statistic>,
     /// Median over trials of the ratio of that error to the error of the first method; `None` for the first method.
     pub ratio: Option<Statistic>,
     /// Median over trials of that ratio with replays restarted every 60 s.
@@ -79,7 +80,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         fits: fits.len(),
         failed: fits.iter().filter(|row| row.failure.is_some()).count(),
         fitted_deg: grouped(&mut fits.iter().map(|row| (group(row), row.heading_rmse_deg))),
-        judged_deg: grouped(&mut method_rows.iter().map(|row| (group(row), row.validation_rmse_deg))),
+        validation_deg: grouped(&mut method_rows.iter().map(|row| (group(row), row.validation_rmse_deg))),
         ratio: ratio(|row| row.validation_rmse_deg),
         window_ratio: ratio(|row| row.validation_windows_deg),
         named,
@@ -114,7 +115,7 @@ mod tests {
     fn design() -> Design {
         let name = |number: usize| format!("r{number}");
         let pairs = (0..7).flat_map(|fit| (0..7).filter(move |judge| *judge != fit).map(move |judge| (fit, judge)));
-        let records = pairs.map(|(fit, judge)| JudgedRecord { fitted: name(fit), judge: Some(name(judge)) });
+        let records = pairs.map(|(fit, judge)| JudgedRecord { fitted: name(fit), validation: Some(name(judge)) });
         let method = |label: &str| MethodName { label: label.into(), id: label.into() };
         Design {
             methods: vec![method("output-error"), method("trace")],
@@ -142,10 +143,10 @@ mod tests {
         let rows: Vec<StudyRow> = rows.collect();
         let [first, trace] = &record_summaries(&rows, &design())[..] else { panic!("two methods") };
         assert_eq!((first.fits, first.failed, first.ratio), (7, 0, None));
-        assert_eq!(first.judged_deg.map(|figure| figure.value), Some(21.5));
+        assert_eq!(first.validation_deg.map(|figure| figure.value), Some(21.5));
         assert!((first.fitted_deg.expect("fitted").value - 0.4).abs() < 1e-12);
         assert_eq!(trace.ratio, Some(Statistic { value: 0.25, ci95: Some([0.25, 0.25]) }));
-        let [low, high] = first.judged_deg.and_then(|figure| figure.ci95).expect("seven fits");
+        let [low, high] = first.validation_deg.and_then(|figure| figure.ci95).expect("seven fits");
         assert!(low < 15.0 && high > 28.0, "fits are drawn and not trials: {low} {high}");
         assert_eq!(trace.named, BTreeMap::from([("speed_loss".to_owned(), 7)]));
     }

@@ -27,8 +27,8 @@ pub struct TraceSummary {
     /// Identifiers of the missing effects.
     pub missing: Vec<String>,
     /// Number of trials by judgement, in a study that states the missing physics.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub judged: BTreeMap<Judgement, u64>,
+    #[serde(rename = "judged", default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub judgements: BTreeMap<Judgement, u64>,
     /// Number of trials.
     pub trials: u64,
     /// Number of trials by verdict.
@@ -155,8 +155,8 @@ impl TraceTally {
     pub(super) fn add(&mut self, answer: &TraceRow) {
         let Self { summary, physics, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
-        let judgement = physics.as_ref().map(|physics| Judgement::of(answer, physics));
-        judgement.into_iter().for_each(|judgement| *summary.judged.entry(judgement).or_default() += 1);
+        let judgement = physics.as_ref().map(|physics| Judgement::from_trace_row(answer, physics));
+        judgement.into_iter().for_each(|judgement| *summary.judgements.entry(judgement).or_default() += 1);
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
         summary.silent += u64::from(answer.named.is_empty());

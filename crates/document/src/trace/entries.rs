@@ -35,7 +35,7 @@ pub struct PrimeIndices {
 
 impl PrimeIndices {
     /// K' and T' from K and T of a ship of these particulars.
-    pub fn of([k, t]: [Quantity; 2], ship: Particulars) -> Self {
+    pub fn new([k, t]: [Quantity; 2], ship: Particulars) -> Self {
         Self { K: k.scaled(ship.prime_factor([-1, 0])), T: t.scaled(ship.prime_factor([1, 0])) }
     }
 }
@@ -210,7 +210,8 @@ pub struct MissingMomentEntry {
     /// Effects inside the bands of all significant curves.
     pub inside_all: Vec<String>,
     /// Curves over the channels, the most likely first.
-    pub over: Vec<PanelEntry>,
+    #[serde(rename = "over")]
+    pub channel_curves: Vec<PanelEntry>,
 }
 
 /// Curve of a missing moment over one channel.
@@ -223,7 +224,8 @@ pub struct PanelEntry {
     /// Share of the variance of the walk that the curve explains.
     pub variance_share: Option<f64>,
     /// `true` if the curve is significant: its band excludes zero somewhere.
-    pub shows: bool,
+    #[serde(rename = "shows")]
+    pub is_significant: bool,
     /// Effects inside the band everywhere.
     pub inside: Vec<String>,
 }

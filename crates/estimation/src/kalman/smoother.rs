@@ -33,8 +33,9 @@ impl<const N: usize> Smoother<N> {
                 x = std::array::from_fn(|i| (0..N).map(|j| f[i][j] * x[j]).sum::<f64>() + added[i]);
             }
             let predicted = x;
-            let Sensor { state, beside, .. } = self.filter.system.sensors[sensor];
-            let innovation = column[row] - predicted[state] - beside.map_or(0.0, |beside| predicted[beside]);
+            let Sensor { state, second_state, .. } = self.filter.system.sensors[sensor];
+            let innovation =
+                column[row] - predicted[state] - second_state.map_or(0.0, |second_state| predicted[second_state]);
             let gain = &self.filter.gains[self.filter.gain_of[row] as usize].gain;
             x.iter_mut().zip(gain).for_each(|(x, gain)| *x += gain * innovation);
             (predicted, innovation)
@@ -58,8 +59,8 @@ impl<const N: usize> Smoother<N> {
             let (step, sensor) = (reading.step(), reading.sensor());
             // Backwards through the correction by the reading.
             let through = *innovation / gain.variance - (0..N).map(|i| gain.gain[i] * score[i]).sum::<f64>();
-            let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
-            [Some(first), beside].into_iter().flatten().for_each(|index| score[index] += through);
+            let Sensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
+            [Some(first), second_state].into_iter().flatten().for_each(|index| score[index] += through);
             let predicted = &self.predicted[index];
             *state = std::array::from_fn(|i| state[i] + (0..N).map(|j| predicted[i][j] * score[j]).sum::<f64>());
             if let Some(step) = step {
@@ -78,8 +79,8 @@ impl<const N: usize> Smoother<N> {
             let index = self.filter.gain_of[row] as usize;
             let (gain, reading) = (&self.filter.gains[index], self.filter.system.readings[row]);
             let (step, sensor) = (reading.step(), reading.sensor());
-            let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
-            let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == beside));
+            let Sensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
+            let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == second_state));
             let unit = identity::<N>();
             // Transposed, since N = Aᵀ N A.
             let through: [[f64; N]; N] =

@@ -86,7 +86,7 @@ pub(super) fn identify(
 }
 
 fn all(points: &Points) -> SelectedPoints<'_> {
-    SelectedPoints { still: &points.still, crossings: points.crossings.clone() }
+    SelectedPoints { still: &points.zero_rate_points, crossings: points.crossings.clone() }
 }
 
 fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyError> {

@@ -69,7 +69,7 @@ pub(super) fn identify_at_extrema(
     let mut equations = Equations::default();
     for trial in trials {
         let [start_heading, start_rate] = if trial.points.from_rest {
-            let origin = trial.points.still[0];
+            let origin = trial.points.zero_rate_points[0];
             [origin.heading + trial.points.base, 0.0]
         } else {
             local_fit(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {

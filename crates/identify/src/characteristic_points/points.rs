@@ -51,10 +51,10 @@ pub struct Point {
 #[derive(Debug, Clone)]
 pub struct Points {
     /// Points with r = 0 in order of time; a start at rest is the first point.
-    pub still: Vec<Point>,
+    pub zero_rate_points: Vec<Point>,
     /// Passages of the base course in order of time.
     pub crossings: Vec<Point>,
-    /// `true` if the record starts at rest, so that the first of `still` is the execute and no extremum.
+    /// `true` if the record starts at rest, so that the first of `zero_rate_points` is the execute and no extremum.
     pub from_rest: bool,
     /// Base course, rad.
     pub base: f64,
@@ -67,13 +67,13 @@ pub struct Points {
 impl Points {
     /// Heading extrema, without a start at rest.
     pub fn extrema(&self) -> &[Point] {
-        &self.still[usize::from(self.from_rest)..]
+        &self.zero_rate_points[usize::from(self.from_rest)..]
     }
 
     /// Leaves a start at rest out of the instants with r = 0.
     pub fn drop_rest(&mut self) {
         if std::mem::take(&mut self.from_rest) {
-            self.still.remove(0);
+            self.zero_rate_points.remove(0);
         }
     }
 
@@ -97,19 +97,19 @@ impl Points {
             half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
         let point =
             |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
-        let mut still: Vec<Point> = points::extrema(time, &off_course, half_width)
+        let mut zero_rate_points: Vec<Point> = points::extrema(time, &off_course, half_width)
             .into_iter()
             .map(|[at, heading]| {
                 let (at, heading) = centred(time, &off_course, half_width, at).unwrap_or((at, heading));
                 point(at, heading, 0.0)
             })
             .collect();
-        let first_extremum = still.first().map_or(f64::INFINITY, |point| point.time);
+        let first_extremum = zero_rate_points.first().map_or(f64::INFINITY, |point| point.time);
         if let Some(rows) = &approach {
             let last = rows.end - 1;
             let recent = rows.clone().filter(|&k| time[k] >= time[last] - 2.0 * half_width);
             let heading = mean(recent.min().unwrap_or(last)..rows.end) - base;
-            still.insert(0, point(time[last], heading, 0.0));
+            zero_rate_points.insert(0, point(time[last], heading, 0.0));
         }
         // A window about a passage is not centred on a row: half an interval more gives it as many rows as a centred
         // window.
@@ -119,7 +119,7 @@ impl Points {
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
-        Self { still, crossings, from_rest: approach.is_some(), base, base_from, half_width }
+        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_from, half_width }
     }
 }
 

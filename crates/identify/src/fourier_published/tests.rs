@@ -56,8 +56,8 @@ fn the_range_of_the_rudder_is_that_of_its_window() {
     for reach in [0.0, 2.0, 40.0] {
         for t in (0..480).map(|k| 0.25 * f64::from(k)) {
             let moved = range_about(signal, t, reach);
-            let values = (0..=400).map(|k| signal.at(t + reach * (0.005 * f64::from(k) - 1.0)));
-            let corners = signal.times().iter().filter(|at| (*at - t).abs() <= reach).map(|&at| signal.at(at));
+            let values = (0..=400).map(|k| signal.value_at(t + reach * (0.005 * f64::from(k) - 1.0)));
+            let corners = signal.times().iter().filter(|at| (*at - t).abs() <= reach).map(|&at| signal.value_at(at));
             let (lo, hi) = values.chain(corners).fold((f64::MAX, f64::MIN), |(lo, hi), x| (lo.min(x), hi.max(x)));
             assert!((moved - (hi - lo)).abs() < 1e-9, "at {t} s within {reach} s: {moved} and {}", hi - lo);
         }

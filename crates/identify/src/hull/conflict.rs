@@ -32,7 +32,7 @@ pub struct PriorCheck {
     /// Probability of a larger χ² if the prior is true.
     pub p_value: f64,
     /// Key and departure, in standard deviations of the prior, of every coefficient of the ship; the largest first.
-    pub moved: Vec<(&'static str, f64)>,
+    pub shifts: Vec<(&'static str, f64)>,
 }
 
 impl PriorCheck {
@@ -62,8 +62,8 @@ impl PriorCheck {
             let coefficient = &expected.coefficients[place];
             (coefficient.key, (values[place] - coefficient.mean) / coefficient.sd)
         };
-        let mut moved: Vec<(&'static str, f64)> = places.iter().map(departure).collect();
-        moved.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        Some(Self { chi_square, degrees_of_freedom: squares.len(), p_value: law.sf(chi_square), moved })
+        let mut shifts: Vec<(&'static str, f64)> = places.iter().map(departure).collect();
+        shifts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        Some(Self { chi_square, degrees_of_freedom: squares.len(), p_value: law.sf(chi_square), shifts })
     }
 }

@@ -92,8 +92,8 @@ fn another_scale_tells_less_and_nothing_of_friction() {
     let found = after(&SHIP, "mmg", std::slice::from_ref(&one), "epsilon");
     near(found, [100.0 / 4.0 / (1.0 + 99.0 / 4.0), (1.0_f64 + 99.0 / 4.0).powf(-0.5)]);
     near(after(&SHIP, "mmg", &[one], "R0"), [0.0, 1.0]);
-    assert_eq!(Likeness::of(&large, &SHIP), Likeness::OtherScale);
-    assert_eq!(Likeness::of(&SHIP, &SHIP), Likeness::SameShip);
+    assert_eq!(Likeness::from_particulars(&large, &SHIP), Likeness::OtherScale);
+    assert_eq!(Likeness::from_particulars(&SHIP, &SHIP), Likeness::SameShip);
 }
 
 /// The departure from the prior of the particulars is carried to another draught, with the change of the formulas. The
@@ -101,7 +101,7 @@ fn another_scale_tells_less_and_nothing_of_friction() {
 #[test]
 fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
-    assert_eq!(Likeness::of(&SHIP, &ballast), Likeness::OtherHull);
+    assert_eq!(Likeness::from_particulars(&SHIP, &ballast), Likeness::OtherHull);
     let of = |ship: &HullParticulars, all: &[EarlierHull]| {
         let expected = HullFormPrior::candidates(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
         *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
@@ -158,7 +158,7 @@ fn quadratic(all: &[EarlierHull]) -> HullFormPrior {
 
 /// Mean square heading error of the replays of other records, rad².
 fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
-    let track = |trial: &Trial| HullTrack::of(trial, &estimate.reference).expect("a record");
+    let track = |trial: &Trial| HullTrack::from_trial(trial, &estimate.reference).expect("a record");
     let tracks: Vec<HullTrack> = others.iter().map(track).collect();
     let mut problem = HullObjective::new(&estimate.expected, &tracks);
     let left = problem.misfits(estimate.values.as_slice()).expect("a ship");
@@ -214,5 +214,5 @@ fn another_ship_contradicts_the_prior() {
     let mut other = TRUTH;
     (other[0], other[1], other[2]) = (-1.8, -2.6, 0.6);
     let found = check(&other);
-    assert!(found.is_conflict() && found.moved[0].1.abs() > 1.0, "{found:?}");
+    assert!(found.is_conflict() && found.shifts[0].1.abs() > 1.0, "{found:?}");
 }

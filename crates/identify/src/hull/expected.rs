@@ -126,7 +126,7 @@ impl EarlierHull {
     /// Coefficients of a single trial are left out, as are coefficients of friction at another scale, except through
     /// their correlations.
     fn information(&self, expected: &HullFormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
-        let likeness = Likeness::of(&self.particulars, ship);
+        let likeness = Likeness::from_particulars(&self.particulars, ship);
         let before = self.form.coefficients();
         let of_ship = |key: &str| !is_trial_specific(key) && (likeness == Likeness::SameShip || !is_frictional(key));
         let kept: Vec<usize> = (0..before.len()).filter(|&place| of_ship(before[place].key)).collect();

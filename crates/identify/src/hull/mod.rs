@@ -111,8 +111,8 @@ pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, H
     let mut search = minimise(&mut problem, start, &RULES);
     // The weight of a record grows as the hull approaches it, which avoids distant minima.
     for _ in 0..REWEIGHTINGS {
-        problem.reweigh(search.at.as_slice());
-        start = search.at;
+        problem.reweigh(search.estimate.as_slice());
+        start = search.estimate;
         search = minimise(&mut problem, start, &RULES);
     }
     if search.end == SearchEnd::NotFinite {
@@ -120,19 +120,22 @@ pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, H
     }
     let covariance = Cholesky::new(search.normal.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullFitError::NoReplay)?;
-    let misfits = problem.misfits(search.at.as_slice()).unwrap_or_default();
+    let misfits = problem.misfits(search.estimate.as_slice()).unwrap_or_default();
     let residual = |(trial, misfit): (&Trial, objective::Misfit)| HullResidual {
         name: trial.name().to_owned(),
         whole: misfit.whole.sqrt(),
         window: misfit.window.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
     };
-    let moment =
-        FormMoment::of(&form.with_coefficients(search.at.as_slice()).ok_or(HullFitError::NoReplay)?, &tracks, &misfits);
+    let moment = FormMoment::of(
+        &form.with_coefficients(search.estimate.as_slice()).ok_or(HullFitError::NoReplay)?,
+        &tracks,
+        &misfits,
+    );
     let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(misfits).map(residual).collect();
     let expected = expected.clone();
-    Ok(HullEstimate { expected, reference, values: search.at, covariance, records, moment })
+    Ok(HullEstimate { expected, reference, values: search.estimate, covariance, records, moment })
 }
 
 /// Reason why no hull can be fitted to these records of one ship; `None` if a fit is possible.
@@ -142,8 +145,8 @@ pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
 
 /// Dimensionless records of one ship, and their reference quantities.
 fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
-    let reference = trials.iter().find_map(HullReference::of).ok_or(HullFitError::Particulars)?;
-    let tracks = trials.iter().map(|trial| HullTrack::of(trial, &reference)).collect::<Result<_, _>>()?;
+    let reference = trials.iter().find_map(HullReference::from_trial).ok_or(HullFitError::Particulars)?;
+    let tracks = trials.iter().map(|trial| HullTrack::from_trial(trial, &reference)).collect::<Result<_, _>>()?;
     Ok((reference, tracks))
 }
 
@@ -177,7 +180,7 @@ impl HullEstimate {
     /// from the mean square residual of the fit. `None` for a record that cannot be replayed, or if the standard
     /// deviation exceeds half a turn, beyond the range of a linear law.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
-        let track = HullTrack::of(trial, &self.reference).ok()?;
+        let track = HullTrack::from_trial(trial, &self.reference).ok()?;
         let [time, mut variance] = heading_variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
         let residual = self.mean_square();
         variance.iter_mut().for_each(|value| *value += residual);

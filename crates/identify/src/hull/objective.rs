@@ -87,10 +87,10 @@ fn window(hull: &PrimeHull<Dual<1>>, track: &HullTrack, ends: [usize; 2], [u, v]
     };
     let read = pairs().count();
     let mean = |term: fn((&f64, &[Dual<1>; 3])) -> f64| pairs().map(term).sum::<f64>() / read.max(1) as f64;
-    let [offset, slope] = [mean(|(measured, row)| measured - row[0].value), mean(|(_, row)| row[0].by[0])];
+    let [offset, slope] = [mean(|(measured, row)| measured - row[0].value), mean(|(_, row)| row[0].derivatives[0])];
     let (mut square, mut cross, mut slope_square) = (0.0, 0.0, 0.0);
     for (measured, row) in pairs() {
-        let (error, by) = (measured - row[0].value - offset, row[0].by[0] - slope);
+        let (error, by) = (measured - row[0].value - offset, row[0].derivatives[0] - slope);
         square += error * error;
         cross += error * by;
         slope_square += by * by;
@@ -246,7 +246,7 @@ impl Objective for HullObjective<'_> {
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.expected.form.with_coefficients(&values) else { return f64::INFINITY };
         for departure in self.turn.departures(&hull) {
-            let by = DVector::from_column_slice(&departure.by[..at.len()]);
+            let by = DVector::from_column_slice(&departure.derivatives[..at.len()]);
             normal.matrix.ger(1.0, &by, &by, 1.0);
             normal.gradient.axpy(-departure.value, &by, 1.0);
         }
@@ -277,7 +277,7 @@ fn add(
     let mut start = track.start.map(Dual::from);
     for (ends, &rate) in cuts.windows(2).zip(rates) {
         // Surge and sway at this start do not depend on its yaw rate.
-        start.iter_mut().for_each(|velocity| velocity.by[unknowns] = 0.0);
+        start.iter_mut().for_each(|velocity| velocity.derivatives[unknowns] = 0.0);
         let variable = Dual::variable(rate, unknowns, 1.0);
         let ReplayedWindow { rows, end } = replay_rows(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
         start = [end[0], end[1]];
@@ -289,7 +289,7 @@ fn add(
             match j {
                 _ if j > unknowns => measured[ends[0] + i] - replayed_speed.value,
                 _ if j == unknowns => 0.0,
-                _ => replayed_speed.by[j] - shares[j] * replayed_speed.by[unknowns],
+                _ => replayed_speed.derivatives[j] - shares[j] * replayed_speed.derivatives[unknowns],
             }
         });
         add_squares(normal, &columns, unknowns + 1, weight);
@@ -302,7 +302,7 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
     let read: Vec<usize> = (0..rows.len()).filter(|&row| measured[row].is_finite()).collect();
     let heading = |i: usize, j: usize| {
         let replayed_heading = &rows[read[i]][0];
-        if j > unknowns { measured[read[i]] - replayed_heading.value } else { replayed_heading.by[j] }
+        if j > unknowns { measured[read[i]] - replayed_heading.value } else { replayed_heading.derivatives[j] }
     };
     let mut columns = DMatrix::from_fn(read.len(), unknowns + 2, heading);
     for mut column in columns.column_iter_mut() {

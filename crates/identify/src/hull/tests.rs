@@ -157,7 +157,7 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     for form in HullForm::candidates(Some(&dimensions)) {
         let expected = HullFormPrior::from_form(form);
         let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
-        let tracks = [HullTrack::of(&other, &estimate.reference).expect("a record")];
+        let tracks = [HullTrack::from_trial(&other, &estimate.reference).expect("a record")];
         let mut problem = HullObjective::new(&expected, &tracks);
         let left = to_deg(problem.misfits(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
         assert!(left < 3.5, "{}: {left}", expected.form.as_str());
@@ -254,7 +254,7 @@ fn a_trial_at_slow_ahead_is_one() {
     let trial = &records(|_| 0.0)[0];
     let slow = beside_constants(trial, &[(Channel::PropellerRate, 3.5)]);
     let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller: Some(10.0) };
-    assert!((HullTrack::of(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
+    assert!((HullTrack::from_trial(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub struct HullReference {
 
 impl HullReference {
     /// Reference of a trial; `None` if its length or speed is not declared.
-    pub fn of(trial: &Trial) -> Option<Self> {
+    pub fn from_trial(trial: &Trial) -> Option<Self> {
         let particulars = trial.particulars()?;
         let rates = trial.channel(Channel::PropellerRate);
         let propeller = rates.and_then(|rates| upper_median(rates.iter().copied())).filter(|rate| *rate > 0.0);
@@ -75,7 +75,7 @@ pub(super) struct HullTrack {
 impl HullTrack {
     /// Track of a record. Fails for a record with too few headings, a clock that does not fit this length and speed, or
     /// a start near rest.
-    pub fn of(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
+    pub fn from_trial(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
         let second = reference.time();
         let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
         if row > MAX_INTERVAL_LENGTHS || whole > MAX_DURATION_LENGTHS {
@@ -113,7 +113,7 @@ impl HullTrack {
     fn cut(trial: &Trial, reference: &HullReference) -> Option<Self> {
         let rows: Vec<usize> = trial.observed_rows().collect();
         let (first, last) = (*rows.first()?, *rows.last()?);
-        let record_reference = HullReference::of(trial).unwrap_or(*reference);
+        let record_reference = HullReference::from_trial(trial).unwrap_or(*reference);
         // Without a propeller rate the unit of speed comes from the record.
         let approach_rate = reference.propeller.zip(record_reference.propeller).map(|(reference, _)| reference);
         let speed_unit = if approach_rate.is_some() { reference.speed } else { record_reference.speed };

@@ -9,10 +9,10 @@ use crate::error::IdentifyError;
 use crate::samples::Samples;
 
 /// Number of shared parameters a, b, b δ_r.
-pub(super) const SHARED: usize = 3;
+pub(super) const SHARED_PARAMETERS: usize = 3;
 
 /// Number of their columns and the heading.
-const WIDTH: usize = SHARED + 1;
+const WIDTH: usize = SHARED_PARAMETERS + 1;
 
 /// Stretch without a gap: times and columns of its equations.
 #[derive(Debug)]
@@ -53,7 +53,7 @@ impl<'a> IntegratedStretch<'a> {
         let removed = self.columns.each_mut().map(|column| project(&unit, column));
         let [x0, x1, x2, y] = &self.columns;
         let sums = Matrix4::from(gram([x0, x1, x2, y]));
-        for i in 0..SHARED {
+        for i in 0..SHARED_PARAMETERS {
             lengths[i] += sums[(i, i)] + count * removed[i].mean.powi(2) + removed[i].share.powi(2);
         }
         *products += sums;
@@ -113,6 +113,10 @@ impl Solution {
         }
         let scaled_inverse = scaled.cholesky().ok_or_else(singular)?.inverse();
         let inverse = Matrix3::from_fn(|i, j| scaled_inverse[(i, j)] * scale[i] * scale[j]);
-        Ok(Self { parameters: inverse * products.fixed_view::<SHARED, 1>(0, SHARED), inverse, condition })
+        Ok(Self {
+            parameters: inverse * products.fixed_view::<SHARED_PARAMETERS, 1>(0, SHARED_PARAMETERS),
+            inverse,
+            condition,
+        })
     }
 }

@@ -3,7 +3,7 @@
 use estimation::column::{dot, gram};
 use nalgebra::Matrix3;
 
-use super::equations::{IntegratedStretch, SHARED, Solution};
+use super::equations::{IntegratedStretch, SHARED_PARAMETERS, Solution};
 
 /// Heading noise estimated from the residual, and its propagation to the parameters.
 #[derive(Debug)]
@@ -20,14 +20,14 @@ pub(super) struct ResidualNoise {
     /// covariance of Xᵀe.
     pub influence: Matrix3<f64>,
     /// Scores z n of every piece, for a covariance that does not assume white n.
-    pub scores: Vec<[Vec<f64>; SHARED]>,
+    pub scores: Vec<[Vec<f64>; SHARED_PARAMETERS]>,
 }
 
 impl ResidualNoise {
     /// Noise from projected pieces and their solution.
     pub fn of(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
-        let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
+        let degrees_of_freedom = count as f64 - (SHARED_PARAMETERS + 2 * pieces.len()) as f64;
         let (mut squares, mut products) = (0.0, 0.0);
         let mut influence = Matrix3::zeros();
         let mut scores = Vec::with_capacity(pieces.len());
@@ -83,11 +83,11 @@ fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
 ///
 /// A heading enters its own equation with weight 1 + a h/2 and every later equation with a (h + h')/2, with h and h'
 /// the intervals before and after it; hence one backward pass with the sum of the later columns.
-fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHARED] {
+fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHARED_PARAMETERS] {
     let half_a = 0.5 * solution.parameters[0];
     let [x0, x1, x2, _] = &piece.columns;
     let rows = piece.time.len();
-    let mut columns = [(); SHARED].map(|()| vec![0.0; rows]);
+    let mut columns = [(); SHARED_PARAMETERS].map(|()| vec![0.0; rows]);
     let [z0, z1, z2] = &mut columns;
     let (mut later0, mut later1, mut later2) = (0.0, 0.0, 0.0);
     let mut after = 0.0;

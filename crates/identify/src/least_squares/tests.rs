@@ -103,7 +103,7 @@ fn a_handful_of_rows_before_a_gap_is_too_little() {
     let heading = [0.0, 0.0, 0.0, 10.0, -685.0, 0.0, 0.0, 0.0].map(from_deg).to_vec();
     let rudder = [0.0, 0.0, 0.0, 0.0, -24.0, 0.0, 0.0, 0.0].map(from_deg).to_vec();
     let trial = record("burst", time, heading, rudder);
-    for settings in crate::registry::defaults() {
+    for settings in crate::registry::default_settings() {
         let method = settings.build().expect("valid defaults");
         let error = method.identify(std::slice::from_ref(&trial)).expect_err("too few rows");
         assert!(error.kind().starts_with("too-few"), "{}: {error}", method.id());

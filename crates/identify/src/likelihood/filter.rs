@@ -30,8 +30,8 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     let white = if compass.is_some() { 0.0 } else { 1.0 };
     // In the order of the sensors of `schedule`.
     let sensors = vec![
-        Sensor { state: 0, beside: compass, variance: white },
-        Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },
+        Sensor { state: 0, second_state: compass, variance: white },
+        Sensor { state: 1, second_state: None, variance: parameters.gyro * parameters.gyro },
     ];
     let steps = schedule.spans.iter().map(|span| transition_step(parameters, span)).collect();
     System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }

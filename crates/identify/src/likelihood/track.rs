@@ -103,7 +103,7 @@ pub struct Coefficients {
 
 impl Coefficients {
     /// Coefficients with the steering of a response and an anchor at rest.
-    pub fn of(response: &FirstOrder) -> Self {
+    pub fn from_response(response: &FirstOrder) -> Self {
         Self { anchor: State::default(), gain: response.K_over_T, offset: response.K_over_T * response.rudder_bias }
     }
 }
@@ -153,7 +153,7 @@ impl Track {
     }
 
     /// Track without the headings of the given rows.
-    pub fn without(&self, headings: &[usize]) -> Self {
+    pub fn without_headings(&self, headings: &[usize]) -> Self {
         let mut less = self.clone();
         less.observed.retain(|row| !headings.contains(row));
         less.heading = self

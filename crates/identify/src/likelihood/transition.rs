@@ -35,14 +35,14 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
         Some(size) => {
             let piece = |&length: &f64| with_rudder(undisturbed(parameters, length), parameters, size, length);
             let mut pieces = span.pieces.iter().map(piece);
-            let first = pieces.next().unwrap_or(Step { transition: identity(), added: [[0.0; N]; N] });
-            pieces.fold(first, |before, piece| before.then(&piece))
+            let first = pieces.next().unwrap_or(Step { transition: identity(), process_noise: [[0.0; N]; N] });
+            pieces.fold(first, |before, piece| before.followed_by(&piece))
         }
     };
     if let (Some(place), Some(rate)) = (parameters.compass_state(), parameters.compass_rate) {
         let decay = (-rate * span.duration()).exp();
         whole.transition[place][place] = decay;
-        whole.added[place][place] = 1.0 - decay * decay;
+        whole.process_noise[place][place] = 1.0 - decay * decay;
     }
     whole
 }
@@ -56,11 +56,11 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, length: f64) -> Ste
         q = sum(&q, &congruence(&f, &q));
         f = product(&f, &f);
     }
-    let mut step = Step { transition: identity(), added: [[0.0; N]; N] };
+    let mut step = Step { transition: identity(), process_noise: [[0.0; N]; N] };
     let states = if parameters.has_moment_state() { 3 } else { 2 };
     for i in 0..states {
         for j in 0..states {
-            (step.transition[i][j], step.added[i][j]) = (f[i][j], q[i][j]);
+            (step.transition[i][j], step.process_noise[i][j]) = (f[i][j], q[i][j]);
         }
     }
     step
@@ -79,7 +79,7 @@ fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, 
     }
     step.transition[place] = [0.0; N];
     fresh[place] = 1.0;
-    for (row, left) in step.added.iter_mut().zip(fresh) {
+    for (row, left) in step.process_noise.iter_mut().zip(fresh) {
         for (value, right) in row.iter_mut().zip(fresh) {
             *value += left * right;
         }

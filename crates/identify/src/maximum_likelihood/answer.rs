@@ -10,7 +10,7 @@ use trial::Trial;
 
 use super::choice::ChosenLaw;
 use super::outliers::Suspects;
-use super::point::{Point, Record, SHARED};
+use super::point::{Point, Record, SHARED_PARAMETERS};
 use super::search::Maximum;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
@@ -31,11 +31,11 @@ const LISTED: usize = 8;
 /// Covariance of (1/T, b, b δ_r) from the information, with noise and initial states eliminated, and its condition
 /// number.
 fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
-    let entries = information.nrows() - SHARED;
-    let mut reduced = information.fixed_view::<SHARED, SHARED>(0, 0).into_owned();
+    let entries = information.nrows() - SHARED_PARAMETERS;
+    let mut reduced = information.fixed_view::<SHARED_PARAMETERS, SHARED_PARAMETERS>(0, 0).into_owned();
     if entries > 0 {
-        let noise = information.view((SHARED, SHARED), (entries, entries)).into_owned();
-        let cross = information.view((SHARED, 0), (entries, SHARED)).into_owned();
+        let noise = information.view((SHARED_PARAMETERS, SHARED_PARAMETERS), (entries, entries)).into_owned();
+        let cross = information.view((SHARED_PARAMETERS, 0), (entries, SHARED_PARAMETERS)).into_owned();
         // An entry at the edge of its range may have no information.
         let ridge = DMatrix::from_fn(entries, entries, |i, j| if i == j { 1e-10 * noise[(i, i)] + 1e-12 } else { 0.0 });
         if let Some(factor) = (noise + ridge).cholesky() {
@@ -67,7 +67,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
         Vector3::new(0.0, -offset / (b * b), 1.0 / b),
     ];
     let mut variance = [0.0; 3];
-    let mut first = SHARED;
+    let mut first = SHARED_PARAMETERS;
     for (number, (record, vector)) in records.iter().zip(vectors).enumerate() {
         let readings = parts[number].readings as f64;
         let entries: Vec<usize> = vector.active_entries(record.has_gyro()).collect();
@@ -130,7 +130,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
     let readings: usize = parts.iter().map(|part| part.readings).sum();
     let jumps: usize = records.iter().map(|record| record.jumps.len()).sum();
-    let freedom = readings as f64 - (SHARED + 2 * trials.len() + jumps) as f64;
+    let freedom = readings as f64 - (SHARED_PARAMETERS + 2 * trials.len() + jumps) as f64;
     let singular = |condition| IdentifyError::Singular { condition, limit: CONDITION_LIMIT };
     let (inverse, condition) = covariance(&maximum.linearised.information).map_err(singular)?;
     let (averaged, degrees_of_freedom) = averaged_covariance(&chosen, freedom);
@@ -289,7 +289,7 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning
 /// record does not determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &NoiseModel) -> Option<Covariance> {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
-    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
+    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::from_response(truth) };
     if is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }

@@ -78,7 +78,7 @@ impl PreparedRecords {
         let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
         let mut too_many = false;
         let mut tracks: Vec<Track> =
-            whole.iter().zip(&suspects).map(|(track, rows)| track.without(&rows.spikes)).collect();
+            whole.iter().zip(&suspects).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
         let mut first = method.fit(tracks.clone(), finest);
         let mut evaluations = 0;
         for _ in 0..if settings.outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
@@ -94,7 +94,7 @@ impl PreparedRecords {
                 suspects = next;
                 break;
             }
-            tracks = whole.iter().zip(&next).map(|(track, rows)| track.without(&rows.spikes)).collect();
+            tracks = whole.iter().zip(&next).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
             suspects = next;
             first = method.fit(tracks.clone(), finest);
         }
@@ -176,7 +176,7 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
     let ship = estimate.response;
     let mut columns = MotionColumns::default();
     track.fill_columns(ship.inverse_T, &mut columns);
-    let Coefficients { gain, offset, .. } = Coefficients::of(&ship);
+    let Coefficients { gain, offset, .. } = Coefficients::from_response(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
     let free: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
     let without_spikes = |values: &[f64]| -> Vec<f64> {

@@ -19,7 +19,7 @@ use crate::profile::solve2;
 use estimation::kalman::Whitener;
 
 /// Number of unknowns that all records share: 1/T, K/T and (K/T) δ_r.
-pub(super) const SHARED: usize = 3;
+pub(super) const SHARED_PARAMETERS: usize = 3;
 
 /// Maximum number of iterations of the weights of the records of one ship.
 const MAX_WEIGHT_ITERATIONS: usize = 20;
@@ -279,7 +279,7 @@ impl Weight {
     /// Weight of a record; `all` is the number of readings of all records.
     fn new(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Self {
         let readings = record.len() as f64;
-        let fitted = record.nuisance_count() as f64 + SHARED as f64 * readings / all as f64;
+        let fitted = record.nuisance_count() as f64 + SHARED_PARAMETERS as f64 * readings / all as f64;
         let [rudder, constant, measured] = &white.projected;
         Self {
             products: gram([rudder, constant, measured]),

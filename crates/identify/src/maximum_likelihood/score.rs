@@ -8,7 +8,7 @@ use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use trial::noise_model::MomentKind;
 
-use super::point::{Point, Record, RecordAtPoint, SHARED, reading_count};
+use super::point::{Point, Record, RecordAtPoint, SHARED_PARAMETERS, reading_count};
 
 /// Step of a logarithm, and of 1/T as a share of itself and of one over the length of the record: wide enough for the
 /// digits of the likelihood, and far below the uncertainty of the noise.
@@ -32,14 +32,14 @@ pub(super) struct Linearised {
 pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
     let count = |(record, vector): (&Record, &NoiseVector)| vector.active_entries(record.has_gyro()).count();
     let counts: Vec<usize> = records.iter().zip(&point.vectors).map(count).collect();
-    let unknowns = SHARED + counts.iter().sum::<usize>();
+    let unknowns = SHARED_PARAMETERS + counts.iter().sum::<usize>();
     let mut all = Linearised {
         score: DVector::zeros(unknowns),
         information: DMatrix::zeros(unknowns, unknowns),
         scores: Vec::with_capacity(records.len()),
         totals: Vec::with_capacity(records.len()),
     };
-    let mut first = SHARED;
+    let mut first = SHARED_PARAMETERS;
     for (number, count) in counts.into_iter().enumerate() {
         all.add(records, point, number, first..first + count)?;
         first += count;

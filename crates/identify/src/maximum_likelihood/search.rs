@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::point::{Point, Record, SHARED, evaluate};
+use super::point::{Point, Record, SHARED_PARAMETERS, evaluate};
 use super::score::{Linearised, linearise};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
@@ -101,7 +101,7 @@ impl Search<'_> {
     fn linearise(&mut self, point: &Point) -> Option<Linearised> {
         let linearised = linearise(self.records, point)?;
         // One filter for 1/T and one for every entry.
-        self.evaluations += 1 + linearised.score.len() - SHARED;
+        self.evaluations += 1 + linearised.score.len() - SHARED_PARAMETERS;
         Some(linearised)
     }
 
@@ -232,7 +232,7 @@ impl Search<'_> {
     /// inwards.
     fn free(&self, point: &Point, score: &DVector<f64>) -> Vec<usize> {
         let mut free = vec![0];
-        let mut index = SHARED;
+        let mut index = SHARED_PARAMETERS;
         for ((record, vector), ranges) in self.records.iter().zip(&point.vectors).zip(self.ranges) {
             for entry in vector.active_entries(record.has_gyro()) {
                 let [low, high] = ranges.range(vector, entry);
@@ -250,7 +250,7 @@ impl Search<'_> {
     /// Noise vectors after a step.
     fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> Start {
         let by = |index: usize| free.iter().position(|&number| number == index).map_or(0.0, |k| step[k]);
-        let mut index = SHARED;
+        let mut index = SHARED_PARAMETERS;
         let mut vectors = point.vectors.clone();
         for ((record, vector), ranges) in self.records.iter().zip(&mut vectors).zip(self.ranges) {
             for entry in vector.active_entries(record.has_gyro()) {

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::filter::{Filters, InstrumentalEquations, Point};
-use super::record::Record;
+use super::record::SrivcRecord;
 use crate::robust;
 
 /// Residuals of the simulated heading at the estimate, and its covariance.
@@ -30,7 +30,7 @@ impl Residuals {
     /// Residuals and covariance from every record, filtered with the final estimate.
     ///
     /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
-    pub fn new(records: &[Record], point: &Point, blocks: &[InstrumentalEquations]) -> Option<Self> {
+    pub fn new(records: &[SrivcRecord], point: &Point, blocks: &[InstrumentalEquations]) -> Option<Self> {
         let count: usize = records.iter().map(|record| record.observed).sum();
         let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;
         if degrees_of_freedom <= 0.0 {

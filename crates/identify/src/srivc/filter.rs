@@ -5,7 +5,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
 use ship::first_order::{State, TangentTransition};
 
-use super::record::{FilterRow, Record};
+use super::record::{FilterRow, SrivcRecord};
 
 /// Parameters common to all records: 1/T, K/T and K/T δ_r. The regression is linear in them, except for the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +72,7 @@ impl Filters {
 
     /// Runs over `record` and calls `visit` at every observed row.
     #[inline]
-    pub fn run(record: &Record, shared: SharedParameters, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
+    pub fn run(record: &SrivcRecord, shared: SharedParameters, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
         let mut filters = Self::new(shared, start);
         let mut before: Option<&FilterRow> = None;
         for row in &record.rows {
@@ -151,7 +151,7 @@ pub(super) struct InstrumentalEquations {
 
 impl InstrumentalEquations {
     /// One pass over `record` with the filters of `shared`; `None` if 1 and φ₁ are parallel, as after an overflow.
-    pub fn new(record: &Record, shared: SharedParameters, start: State, left: LeftColumns) -> Option<Self> {
+    pub fn new(record: &SrivcRecord, shared: SharedParameters, start: State, left: LeftColumns) -> Option<Self> {
         let mut gram = SMatrix::<f64, 5, 5>::zeros();
         let mut cross = SMatrix::<f64, 5, 2>::zeros();
         Filters::run(record, shared, start, |row, filters| {

@@ -41,7 +41,7 @@ use crate::samples::Samples;
 use crate::settings::{SettingsError, check_iterations, require};
 use covariance::Residuals;
 use filter::{InstrumentalEquations, LeftColumns, Point, SharedParameters};
-use record::Record;
+use record::SrivcRecord;
 
 /// Minimum number of headings of a trial: twice its unknowns.
 const MIN_ROWS: usize = 10;
@@ -107,12 +107,12 @@ impl Identifier for Srivc {
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         // Checks that all methods share.
         Samples::from_trials(trials, MIN_ROWS)?;
-        let mut records: Vec<Record> = trials.iter().map(Record::new).collect();
+        let mut records: Vec<SrivcRecord> = trials.iter().map(SrivcRecord::new).collect();
         let mut start = self.integral_least_squares(&records)?;
         let backwards = start.point.shared.a < 0.0;
         let mut evaluations = 1;
         if backwards {
-            records = records.iter().map(Record::reversed).collect();
+            records = records.iter().map(SrivcRecord::reversed).collect();
             start = self.integral_least_squares(&records)?;
             evaluations += 1;
         }
@@ -161,7 +161,7 @@ impl Identifier for Srivc {
 
 impl Srivc {
     /// Start of the iteration: filters with their pole at 0 and the regressors as instruments.
-    fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
+    fn integral_least_squares(&self, records: &[SrivcRecord]) -> Result<Solution, IdentifyError> {
         let zero = Point {
             shared: SharedParameters { a: 0.0, b: 0.0, bias: 0.0 },
             starts: vec![State::default(); records.len()],
@@ -174,7 +174,7 @@ impl Srivc {
     /// With a large deterministic residual, as after a rudder put over between two rows, full steps oscillate about the
     /// fixed point and decay slowly or not at all. After the first reversal that exceeds half of the previous step,
     /// steps are shortened by their secant in a (Irons and Tuck 1969).
-    fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
+    fn iterate(&self, records: &[SrivcRecord], start: Solution) -> Result<(Solution, usize), IdentifyError> {
         let mut solution = start;
         let mut step = f64::INFINITY;
         let (mut share, mut before, mut oscillates): (f64, f64, bool) = (1.0, 0.0, false);
@@ -203,7 +203,7 @@ impl Srivc {
     }
 
     /// Solution of the common normal equations after one pass over all records.
-    fn solve(&self, records: &[Record], at: &Point, left: LeftColumns) -> Result<Solution, IdentifyError> {
+    fn solve(&self, records: &[SrivcRecord], at: &Point, left: LeftColumns) -> Result<Solution, IdentifyError> {
         let limit = self.settings.condition_limit;
         let singular = |condition| IdentifyError::Singular { condition, limit };
         let blocks: Option<Vec<InstrumentalEquations>> = records

@@ -22,14 +22,14 @@ pub(super) struct FilterRow {
 /// Rows of a trial from the first to the last observed heading, including rows without a heading, and one row without a
 /// heading for every corner of the rudder between rows.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Record {
+pub(super) struct SrivcRecord {
     /// Rows, in the order in which the filters run.
     pub rows: Vec<FilterRow>,
     /// Number of observed headings.
     pub observed: usize,
 }
 
-impl Record {
+impl SrivcRecord {
     /// Rows of `trial`, with time running forwards. A missing heading is interpolated linearly between its neighbours;
     /// it affects the iteration but not the estimate.
     pub fn new(trial: &Trial) -> Self {
@@ -98,7 +98,7 @@ mod tests {
         }
         let time: Vec<f64> = (0..12).map(|row| 7.0 + 0.1 * f64::from(row)).collect();
         let rudder = (0..12).map(|row| 0.1 * f64::from(row)).collect();
-        let record = Record::new(&record("gaps", time, heading, rudder));
+        let record = SrivcRecord::new(&record("gaps", time, heading, rudder));
         assert_eq!((record.rows.len(), record.observed), (10, 8));
         for (index, row) in record.rows.iter().enumerate() {
             assert_abs_diff_eq!(row.rudder, 0.1 * (index + 1) as f64, epsilon = 1e-12);
@@ -114,7 +114,7 @@ mod tests {
         let time = vec![0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 6.5, 7.0, 9.0];
         let heading = (0..9).map(|row| 0.02 * f64::from(row)).collect();
         let rudder = (0..9).map(|row| 0.1 * f64::from(row % 3)).collect();
-        let record = Record::new(&record("uneven", time, heading, rudder));
+        let record = SrivcRecord::new(&record("uneven", time, heading, rudder));
         let reversed = record.reversed();
         assert_eq!(reversed.rows[1].interval, 2.0);
         assert_eq!(reversed.reversed(), record);

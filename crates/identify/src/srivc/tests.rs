@@ -98,7 +98,7 @@ impl Spread {
             let noisy = heading.iter().zip(noise(seed)).map(|(psi, e)| psi + from_deg(case.noise_deg) * e).collect();
             let trial = record("noisy", time.clone(), noisy, rudder.clone());
             let least_squares =
-                srivc().solve(&[Record::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
+                srivc().solve(&[SrivcRecord::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
             let SharedParameters { a, b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
             let robust = estimate.robust.as_ref().expect("a robust covariance").indices(&estimate.response);
@@ -201,7 +201,7 @@ fn a_course_unstable_and_a_neutral_ship_are_regular() {
 fn either_direction_of_time_gives_the_same_answer() {
     let case = Case { noise_deg: 0.3, T: 60.0, ..Case::default() };
     let method = srivc();
-    let forwards = vec![Record::new(&case.trial())];
+    let forwards = vec![SrivcRecord::new(&case.trial())];
     let backwards = vec![forwards[0].reversed()];
     let [forwards, backwards] = [forwards, backwards].map(|records| {
         let start = method.integral_least_squares(&records).expect("steered");

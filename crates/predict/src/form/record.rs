@@ -56,7 +56,7 @@ impl<'a> TestedManoeuvre<'a> {
     /// straight course: the rudder amidships, and, if the approach is recorded, a yaw rate below a twentieth of the
     /// maximum or below three times its error.
     pub fn of(record: &FormRecord<'a>) -> Self {
-        let classified = match Measured::of(record.trial) {
+        let classified = match Measured::from_trial(record.trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record.trial, &zigzag),
             _ => circle(record.trial),
         };
@@ -84,16 +84,18 @@ fn side(sign: f64) -> &'static str {
 }
 
 fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
-    let is_pair = |angle: f64| zigzag.pair.is_some_and(|pair| pair.is_deg(angle, angle));
+    let is_pair = |angle: f64| zigzag.nominal_angles.is_some_and(|pair| pair.is_deg(angle, angle));
     let manoeuvre = match (is_pair(10.0), is_pair(20.0)) {
         (true, _) => ZIG_ZAG_10_10,
         (_, true) => ZIG_ZAG_20_20,
         _ => {
-            let pair = zigzag.pair.map_or_else(|| String::from("no regular pair of angles"), |pair| pair.to_string());
+            let pair = zigzag
+                .nominal_angles
+                .map_or_else(|| String::from("no regular pair of angles"), |pair| pair.to_string());
             return Err(format!("a zig-zag of {pair}, which is not part of the form"));
         }
     };
-    let Some(first) = zigzag.side else {
+    let Some(first) = zigzag.first_side else {
         return Err(format!("the {manoeuvre} begins within the trial, so its overshoots cannot be counted"));
     };
     let begin = &zigzag.executes[0];
@@ -132,7 +134,7 @@ fn zig_zag(trial: &Trial, zigzag: &Measured) -> Classified {
 
 fn circle(trial: &Trial) -> Classified {
     let neither = || String::from("neither a zig-zag nor a turning circle of the form");
-    let turn = HeldTurn::of(trial).ok_or_else(neither)?;
+    let turn = HeldTurn::from_trial(trial).ok_or_else(neither)?;
     let Particulars { length, speed } = trial.particulars().ok_or_else(|| {
         String::from("neither a zig-zag of the form nor, with an unknown length of the ship, a turning circle")
     })?;

@@ -96,7 +96,7 @@ fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
         if let Some(correction) = record.correction {
             remarks.extend(correction.warnings.iter().map(|each| format!("correction to full load: {}", each.text)));
             for (name, figure) in correction.figures.iter().filter(|(name, _)| tested.figure(name).is_some()) {
-                let name = names::plain(name);
+                let name = names::with_blanks(name);
                 remarks.extend(figure.warnings.iter().map(|warning| format!("correction of {name}: {}", warning.text)));
             }
         }

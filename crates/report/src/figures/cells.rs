@@ -116,7 +116,7 @@ impl CellMap {
             widest(&values, theme.small_font).max(widest(&self.columns, theme.tick_font)) + 0.5 * theme.tick_font;
         let room = theme.width - widest(&self.rows, theme.tick_font) - 2.0 * theme.label_font;
         let fits = |across: &usize| {
-            let gaps = Sheet::gap(theme) * (across - 1) as f64;
+            let gaps = Sheet::panel_gap(theme) * (across - 1) as f64;
             room - gaps >= cell * (across * self.columns.len()) as f64
         };
         let most = if self.panels.len() == 4 { 2 } else { 3 };

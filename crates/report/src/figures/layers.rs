@@ -52,13 +52,13 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
         data.names_aside = false;
-        for stack in data.stacks.iter_mut().filter(|stack| stack.across.is_none() && stack.rows.len() == 1) {
-            stack.across = (stack.x.len() > NARROW).then_some(NARROW);
+        for stack in data.stacks.iter_mut().filter(|stack| stack.columns.is_none() && stack.rows.len() == 1) {
+            stack.columns = (stack.x.len() > NARROW).then_some(NARROW);
         }
         return data;
     }
     let height = |stack: &Stack| {
-        let rows = stack.across.map_or(1, |across| stack.panels.len().div_ceil(across.max(1)));
+        let rows = stack.columns.map_or(1, |across| stack.panels.len().div_ceil(across.max(1)));
         if stack.equal { 0.0 } else { stack.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
     };
     let all: f64 = side_by_side(&data, theme).map(|stacks| stacks.iter().map(height).fold(0.0, f64::max)).sum();
@@ -96,7 +96,7 @@ pub(super) fn annotated(
     let left = whole.map(|stack| sheet.left_margin(&grid(stack, theme).0)).fold(0.0, f64::max);
     for stacks in side_by_side(data, theme) {
         let width = if stacks[0].is_half && !theme.is_narrow() { 2 } else { 1 };
-        let gap = Sheet::gap(theme);
+        let gap = Sheet::panel_gap(theme);
         let part = (theme.width - side_labels::width(data, theme) - gap * (width - 1) as f64) / width as f64;
         let (top, mut lowest) = (sheet.y, sheet.y);
         for (column, stack) in stacks.iter().enumerate() {
@@ -136,7 +136,7 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
         count => Some(format!("{count} points lie beyond a panel, where an arrow is at its edge.")),
     };
     let apart = outside.apart.then(|| String::from("Records of one amplitude stand side by side."));
-    let marks = outside.marks.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
+    let marks = outside.marks.then(|| data.overflow_note.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
     let cut = data.cut.clone().filter(|_| outside.is_cut);
     let names = (!outside.names.is_empty()).then(|| format!("Outside the axes: {}.", outside.names.join(", ")));
     [data.note.clone(), outside.bars.remark(), cut, dots, names, apart, marks].into_iter().flatten().collect()
@@ -160,7 +160,7 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<LegendEntry> {
     entries.extend(
         marks.map(|mark| LegendEntry::new(LegendSymbol::Upright(mark_stroke(&mark.label, theme)), &mark.label)),
     );
-    entries.extend(data.said.iter().map(|text| LegendEntry::new(LegendSymbol::Nothing, text)));
+    entries.extend(data.key_texts.iter().map(|text| LegendEntry::new(LegendSymbol::Nothing, text)));
     entries
 }
 
@@ -173,7 +173,7 @@ fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
 /// Number of panels of a stack side by side.
 fn columns(stack: &Stack, theme: &Theme) -> usize {
     let narrower = usize::from(theme.is_narrow() && !stack.unbroken);
-    stack.across.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
+    stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
 /// Extents of some layers along one axis; if the axis is cut for wild data, every value is a separate extent.
@@ -205,15 +205,15 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let count = columns(stack, theme);
     let mut is_cut = false;
     let layers = |keep: &dyn Fn(usize) -> bool| -> Vec<&Layer> {
-        let kept = stack.panels.iter().enumerate().filter(|(index, _)| stack.across.is_some() || keep(*index));
+        let kept = stack.panels.iter().enumerate().filter(|(index, _)| stack.columns.is_some() || keep(*index));
         kept.flat_map(|(_, panel)| &panel.layers).collect()
     };
     // Marks have a width.
     let has_marks = layers(&|_| true).iter().any(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let mut column = |number: usize| {
-        let ruler = &stack.x[if stack.across.is_some() { 0 } else { number }];
+        let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
-        data.fixed.extend(stack.marks.iter().map(|mark| mark.at));
+        data.fixed.extend(stack.marks.iter().map(|mark| mark.value));
         let (axis, cut) = ruler.axis(&data, if has_marks { PAD } else { ACROSS_PAD });
         is_cut |= cut;
         AxisSide::new(axis, ruler.title.as_str())
@@ -237,14 +237,14 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
     let head = |panel: &LayeredPanel| {
         // A layer with a name is in the key.
         let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
-        let is_sample = |layer: &&Layer| stack.across.is_some() && is_nameless(layer);
+        let is_sample = |layer: &&Layer| stack.columns.is_some() && is_nameless(layer);
         let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.legend_symbol(theme, 1.0));
         let head =
             [&panel.head, &panel.detail].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
         (!head.is_empty()).then(|| LegendEntry::new(sample.unwrap_or(LegendSymbol::Nothing), head))
     };
     let heads = stack.panels.iter().map(head).collect();
-    let grid = match (stack.across, rows.first(), columns.first()) {
+    let grid = match (stack.columns, rows.first(), columns.first()) {
         (Some(_), Some((row, height)), Some(column)) => Grid {
             shared_title: Some(row.title.clone()),
             heads,
@@ -281,7 +281,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
     let count = columns(stack, theme);
     let mut dots = 0;
     for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
-        background(chart, theme, stack, &stack.rows[if stack.across.is_some() { 0 } else { index / count }])?;
+        background(chart, theme, stack, &stack.rows[if stack.columns.is_some() { 0 } else { index / count }])?;
         // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
         let (bands, others): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
@@ -290,7 +290,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
         }
         chart.frame(theme)?;
         panel.layers.iter().try_for_each(|layer| draw_words(chart, layer, theme))?;
-        if stack.across.is_some() {
+        if stack.columns.is_some() {
             corner(chart, theme, panel)?;
         }
     }
@@ -312,7 +312,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
     if let Some(reference) = &row.reference {
         reference.horizontal(chart, theme)?;
     }
-    stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.at, mark_stroke(&mark.label, theme)))
+    stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.value, mark_stroke(&mark.label, theme)))
 }
 
 /// Writes the number of dots outside a small multiple into its corner.
@@ -387,10 +387,10 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotR
 
 /// Draws marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
 fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> PlotResult {
-    let Marks { look, intervals, joined, apart } = marks;
+    let Marks { look, intervals, joined, side_by_side } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
     let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.page_x(*x)).collect();
-    let across = if *apart { spread_overlapping(&middles, 2.0 * theme.marker) } else { middles.clone() };
+    let across = if *side_by_side { spread_overlapping(&middles, 2.0 * theme.marker) } else { middles.clone() };
     outside.apart |= middles != across;
     // An infinite value has a place far beyond.
     let up = |y: &f64| chart.page_y(y.clamp(-f64::MAX, f64::MAX));
@@ -411,7 +411,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     }
     let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
     chart.canvas.svg.begin(SvgGroup { is_interval: true, clip: Some(chart.bounds()), ..SvgGroup::named(name) });
-    for (row, place) in places.iter().enumerate().filter(|(_, place)| is_inside(place) || *apart) {
+    for (row, place) in places.iter().enumerate().filter(|(_, place)| is_inside(place) || *side_by_side) {
         let ends = intervals.get(row).copied().flatten().filter(|ends| ends.iter().all(|end| !end.is_nan()));
         if let (Some((x, _)), Some(ends)) = (place, ends) {
             let length = interval(chart, *x, ends, stroke, theme)?;

@@ -101,7 +101,7 @@ impl Pen {
     }
 
     /// Line of an origin.
-    pub fn of(origin: &CurveOrigin) -> Self {
+    pub fn from_origin(origin: &CurveOrigin) -> Self {
         let look = origin.look();
         Self { dash: look.dash, ..Self::new(look.colour) }
     }
@@ -131,7 +131,7 @@ pub struct Marks {
     /// Line that joins the marks.
     pub joined: Option<Pen>,
     /// `true` if marks that would overlap are drawn side by side.
-    pub apart: bool,
+    pub side_by_side: bool,
 }
 
 /// Place of the words of a point.
@@ -199,7 +199,11 @@ impl Layer {
     pub fn marks(name: impl Into<String>, look: Look, points: Vec<(f64, f64, Option<[f64; 2]>)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
         let intervals = points.into_iter().map(|(.., interval)| interval).collect();
-        Self::new(name, PlotCurve { x, y }, LayerKind::Marks(Marks { look, intervals, joined: None, apart: false }))
+        Self::new(
+            name,
+            PlotCurve { x, y },
+            LayerKind::Marks(Marks { look, intervals, joined: None, side_by_side: false }),
+        )
     }
 
     /// The marks joined by a line.
@@ -211,9 +215,9 @@ impl Layer {
     }
 
     /// The marks side by side if they would overlap.
-    pub fn apart(mut self) -> Self {
+    pub fn side_by_side(mut self) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
-            marks.apart = true;
+            marks.side_by_side = true;
         }
         self
     }
@@ -304,7 +308,7 @@ pub struct LayeredPanel {
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisLine {
     /// Value on the axis.
-    pub at: f64,
+    pub value: f64,
     /// Name in the key; empty without one.
     pub label: String,
 }
@@ -321,7 +325,7 @@ pub struct Stack {
     /// Lines from bottom to top.
     pub marks: Vec<AxisLine>,
     /// Small multiples: their number side by side; all share the one axis and the one row.
-    pub across: Option<usize>,
+    pub columns: Option<usize>,
     /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
     pub unbroken: bool,
     /// `true` if the stack has half the width of the figure; two of them are side by side if there is room.
@@ -342,7 +346,7 @@ impl Stack {
 
     /// Panels with one pair of axes, `across` of them side by side.
     pub fn multiples(across: usize, x: AxisSpec, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
-        Self { x: vec![x], rows: vec![row], panels, across: Some(across), ..Self::default() }
+        Self { x: vec![x], rows: vec![row], panels, columns: Some(across), ..Self::default() }
     }
 }
 
@@ -354,23 +358,23 @@ pub struct Panels {
     /// `true` if names are right of the frame, in place of a key; on a narrow page they are always in the key.
     pub names_aside: bool,
     /// Texts with numbers in the key.
-    pub said: Vec<String>,
+    pub key_texts: Vec<String>,
     /// Remark under the figure.
     pub note: Option<String>,
     /// Remark if a layer is cut.
     pub cut: Option<String>,
     /// Meaning of marks beyond the axes; `None` if it needs no words.
-    pub beyond: Option<String>,
+    pub overflow_note: Option<String>,
 }
 
 impl Panels {
     /// Figure of one stack.
-    pub fn of(stack: Stack) -> Self {
+    pub fn new(stack: Stack) -> Self {
         Self { stacks: vec![stack], ..Self::default() }
     }
 
     /// Panels above each other over time.
     pub fn over_time(rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
-        Self::of(Stack::over(AxisSpec::time(), rows))
+        Self::new(Stack::over(AxisSpec::time(), rows))
     }
 }

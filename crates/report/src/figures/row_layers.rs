@@ -99,7 +99,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (AxisSide::new(Axis::rows(&data.names, 0.6), data.of.as_str()), height);
+    let row = (AxisSide::new(Axis::rows(&data.names, 0.6), data.names_title.as_str()), height);
     let across = match theme.is_narrow() {
         true if data.names.len() <= FEW => 1,
         true => 2,
@@ -123,7 +123,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
             lengths.for_each(|length| bars.add(length, theme));
         }
     }
-    let arrows = beyond.then(|| data.beyond.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
+    let arrows = beyond.then(|| data.overflow_note.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
     sheet.note(&[data.note.clone(), bars.remark(), arrows].into_iter().flatten().collect::<Vec<_>>())?;
     Ok(sheet.finish())
 }
@@ -179,7 +179,7 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<LegendEntry> {
 fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
-    data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.reached.iter().copied()));
+    data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.included_values.iter().copied()));
     // Numbers are right of all data.
     let widest: f64 = number_widths(column, theme).iter().sum();
     let room = (widest / panel).min(MAX_ROOM);
@@ -341,7 +341,7 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
     let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
     let name = item.name.as_deref();
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
-    let drawn = || density.iter().filter(|(value, height)| chart.x.has_place(*value) && height.is_finite());
+    let drawn = || density.iter().filter(|(value, height)| chart.x.is_plottable(*value) && height.is_finite());
     let edge = |side: f64| drawn().map(move |(value, height)| (*value, y + side * HALF * height / highest));
     if highest > 0.0 {
         let outline: Vec<(f64, f64)> = edge(-1.0).chain(edge(1.0).collect::<Vec<_>>().into_iter().rev()).collect();

@@ -31,9 +31,9 @@ pub enum RowKind {
 pub enum RowPlace {
     /// Distance below the middle, as a share of the pitch of the rows.
     Aside(f64),
-    /// On a separate line below the items before it.
+    /// Separate line below the items before it.
     Below,
-    /// On the line of the item before it.
+    /// Line of the item before it.
     Beside,
 }
 
@@ -98,14 +98,14 @@ pub struct RowsColumn {
     /// Reference values of all rows, with their names in the key.
     pub lines: Vec<(String, Pen, f64)>,
     /// Values that the axis always includes.
-    pub reached: Vec<f64>,
+    pub included_values: Vec<f64>,
 }
 
 /// Data of [`super::Plot::Rows`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedRows {
     /// Title of the names; empty if the names need none.
-    pub of: String,
+    pub names_title: String,
     /// Names from top to bottom.
     pub names: Vec<String>,
     /// The columns, side by side.
@@ -115,5 +115,5 @@ pub struct NamedRows {
     /// Remark under the figure.
     pub note: Option<String>,
     /// Meaning of marks beyond the axes; `None` if it needs no words.
-    pub beyond: Option<String>,
+    pub overflow_note: Option<String>,
 }

@@ -49,7 +49,7 @@ pub(super) fn draw(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme)
     let across = stack.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
     let mut outside = Vec::new();
     for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate().filter(|(k, _)| (k + 1) % count == 0) {
-        let row = &stack.rows[if stack.across.is_some() { 0 } else { index / count }];
+        let row = &stack.rows[if stack.columns.is_some() { 0 } else { index / count }];
         for layer in names(chart, theme, &panel.layers)? {
             let (x, y) = layer.curve.pairs().next().unwrap_or((f64::NAN, f64::NAN));
             let (x, y) = (significant(x, 3), significant(y, 3));

@@ -50,7 +50,8 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             Layer::band("95 % band", [wave(n, wild, 0.8), wave(n, 0.1, 1.2)], look.colour, 0.2),
             Layer::new("record", wave(n, 0.2, 1.0), LayerKind::Record),
             Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(look.colour)),
-            Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::of(&CurveOrigin::Before) }).within(0.5),
+            Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::from_origin(&CurveOrigin::Before) })
+                .within(0.5),
             Layer::marks("shares", look, points(0.7)),
         ]
     };
@@ -62,7 +63,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let stack = |division, is_half| {
         let mut stack = Stack::over(AxisSpec::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
         stack.panels[0].head = Some("explains 93 %".into());
-        let marks = vec![AxisLine { at: 0.5, label: "period".into() }];
+        let marks = vec![AxisLine { value: 0.5, label: "period".into() }];
         Stack { marks, is_half, zero: true, ..stack }
     };
     let layered = Panels {
@@ -72,7 +73,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             stack(Division::Factors, true),
             stack(Division::Percent, true),
         ],
-        said: vec!["R² = 1".into()],
+        key_texts: vec!["R² = 1".into()],
         cut: Some("Cut.".into()),
         ..Panels::default()
     };
@@ -93,7 +94,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
     let named = |(number, origin): (usize, CurveOrigin)| {
         let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
-        if number % 2 == 0 { marks.with_line(Pen::of(&origin)) } else { marks.apart() }
+        if number % 2 == 0 { marks.with_line(Pen::from_origin(&origin)) } else { marks.side_by_side() }
     };
     let marks = Stack::over(
         ruler("noise [°]"),
@@ -109,9 +110,9 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         Stack::over(AxisSpec::decimal("east [m]"), vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), track)]);
     vec![
         ("layers", layered.into()),
-        ("clouds", Panels::of(clouds).into()),
-        ("aside", Panels { names_aside: true, ..Panels::of(marks) }.into()),
-        ("track", Panels::of(Stack { equal: true, ..track }).into()),
+        ("clouds", Panels::new(clouds).into()),
+        ("aside", Panels { names_aside: true, ..Panels::new(marks) }.into()),
+        ("track", Panels::new(Stack { equal: true, ..track }).into()),
     ]
 }
 
@@ -144,12 +145,12 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         zero,
         reference: Some(Reference95::line(1.0)),
         lines: vec![("truth".into(), Pen::new(INK), 0.2)],
-        reached: vec![-0.1],
+        included_values: vec![-0.1],
     };
     let names: Vec<String> =
         (0..n.min(5)).map(|row| format!("orders at {row} °/s, a name of a row that is long")).collect();
     let rows = NamedRows {
-        of: "rates [°/s]".into(),
+        names_title: "rates [°/s]".into(),
         names: names.clone(),
         columns: vec![
             column(AxisSpec::new("rms error [%]", Division::Factors), false),
@@ -396,14 +397,14 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     };
     let row = PanelRow::new(AxisSpec::new("rms error of T [%]", Division::Factors), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
-    let data = Panels::of(Stack::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
+    let data = Panels::new(Stack::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();
     assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
     let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
     let axis = |title: &str| AxisSpec::decimal(title).within(4.0, None);
     let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
-    let figure = Plot::from(Panels { names_aside: true, ..Panels::of(stack) }).draw("", &Theme::screen());
+    let figure = Plot::from(Panels { names_aside: true, ..Panels::new(stack) }).draw("", &Theme::screen());
     assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
 }
 
@@ -417,7 +418,7 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
             let rows = vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), layers)];
             let stack = Stack { equal: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
-            let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::of(stack) }).draw("", &theme);
+            let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::new(stack) }).draw("", &theme);
             let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
             let sides: Vec<f64> = panel.skip(2).collect();
             let lengths = ["data-x", "data-y"].map(|axis| {

@@ -111,7 +111,7 @@ impl ZigzagTrial {
             true => Layer::new(format!("recorded {name}"), self.heading.clone(), LayerKind::Record),
             false => Layer::line(name, self.heading.clone(), Pen::new(HEADING)),
         };
-        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::of(&CurveOrigin::Truth));
+        let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::from_origin(&CurveOrigin::Truth));
         let marks = |name: &str, look: Look, marks: Vec<&ZigZagMark>| {
             let points = marks.iter().map(|mark| (mark.t_s, mark.heading_deg, None)).collect();
             Some(Layer::marks(name, look, points)).filter(|_| !marks.is_empty())
@@ -130,9 +130,9 @@ impl ZigzagTrial {
             (PanelRow { room, ..PanelRow::new(AxisSpec::heading(), HEIGHT) }, heading),
             (PanelRow::new(AxisSpec::rudder(), 0.13), vec![rudder]),
         ];
-        let at = |mark: &ZigZagMark| AxisLine { at: mark.t_s, label: String::new() };
+        let at = |mark: &ZigZagMark| AxisLine { value: mark.t_s, label: String::new() };
         let marks = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
-        Panels::of(Stack { marks, ..Stack::over(AxisSpec::time(), rows) })
+        Panels::new(Stack { marks, ..Stack::over(AxisSpec::time(), rows) })
     }
 
     /// Draws overshoots, times and period; returns their meaning, with the times if they do not fit at their lines.

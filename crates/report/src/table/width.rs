@@ -9,10 +9,10 @@ use crate::number::MISSING;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Alignment {
-    /// Words.
+    /// Text, at the left.
     #[default]
     Left,
-    /// Whole numbers.
+    /// Whole numbers, at the right.
     Right,
     /// Numbers with decimals: the decimal points of a column are below each other.
     Decimal,

@@ -371,25 +371,25 @@ pub struct Prior {
     /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
     /// Index of a reference parameter of the effect: value and prior are those of the difference from this parameter.
-    pub beside: Option<usize>,
+    pub reference: Option<usize>,
 }
 
 impl Prior {
     /// Normal prior truncated to the physical range of a parameter.
     pub fn normal(parameter: &Parameter, mean: f64, sd: f64) -> Self {
         let Parameter { lowest, highest, .. } = *parameter;
-        Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, beside: None }
+        Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, reference: None }
     }
 
     /// Uniform prior on a range, for a shape parameter.
     pub fn uniform([lowest, highest]: [f64; 2]) -> Self {
         let mean = 0.5 * (lowest + highest);
-        Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, beside: None }
+        Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, reference: None }
     }
 
     /// Fixed value.
     pub fn fixed(value: f64) -> Self {
-        Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, beside: None }
+        Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, reference: None }
     }
 
     /// Prior truncated to another range. If a record sets the upper end below the lower end, the lower end holds.

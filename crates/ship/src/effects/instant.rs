@@ -3,10 +3,10 @@
 use super::effect::Parameter;
 
 /// Parameter t₀ of a step: the instant at which a moment sets in, s.
-pub const INSTANT: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
+pub const ONSET_TIME: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
 
 /// Width w of an edge, in rows.
 pub const EDGE_ROWS: f64 = 2.0;
 
 /// Distance from an instant, in widths, at which 1 − tanh is 10⁻¹³.
-pub const REACH: f64 = 15.0;
+pub const REACH_WIDTHS: f64 = 15.0;

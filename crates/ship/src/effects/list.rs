@@ -184,7 +184,7 @@ pub fn meaning(id: &str) -> &'static str {
 ///
 /// # Panics
 /// If there is none: a programming error, not a user's error.
-pub fn listed(id: &str, form: &str) -> Arc<dyn Effect> {
+pub fn listed_effect(id: &str, form: &str) -> Arc<dyn Effect> {
     let effect = ALL.iter().find(|effect| (effect.id(), effect.form()) == (id, form));
     Arc::clone(effect.unwrap_or_else(|| panic!("no effect of the list is {id} ({form})")))
 }

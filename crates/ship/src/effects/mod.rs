@@ -29,7 +29,7 @@ pub use effect::{
 };
 pub use file_number::{FileNumber, FileRole};
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
-pub use list::{all, listed, meaning};
+pub use list::{all, listed_effect, meaning};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;
 pub use steering_lag::SteeringLag;
@@ -48,7 +48,7 @@ pub fn parse_formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     let formula = Formula::parse(line)?;
     if all().iter().any(|effect| effect.id() == formula.id()) {
         let problem = format!("`{}` is on the list of effects; give the formula another name", formula.id());
-        return Err(FormulaError { text: line.to_owned(), at: 0, problem });
+        return Err(FormulaError { text: line.to_owned(), position: 0, problem });
     }
     Ok(formula)
 }

@@ -36,7 +36,7 @@ impl Effect for SecondOrder {
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
         let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
         let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
-        Some(CandidateEffect::new(*self, [second, Prior { beside: Some(0), ..lead }]))
+        Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))
     }
 
     fn targets(&self) -> Targets {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::effect::{
     Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
 };
-use super::instant::{EDGE_ROWS, INSTANT, REACH};
+use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
 use crate::particulars::Dimension;
 use estimation::number::Real;
@@ -26,11 +26,11 @@ const MOMENT: Parameter = Parameter::odd(["m", "m", "rad"], [0.0, 0.03], [-0.6, 
 
 const PASSING: [Parameter; 3] = [
     MOMENT.in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
-    Parameter { key: "t_c", symbol: "t_c", ..INSTANT }.in_file("centre-s", 1.0, "Time of its middle."),
+    Parameter { key: "t_c", symbol: "t_c", ..ONSET_TIME }.in_file("centre-s", 1.0, "Time of its middle."),
     Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]).in_file("duration-s", 1.0, "How long it lasts."),
 ];
 
-const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
+const LASTING: [Parameter; 2] = [MOMENT, ONSET_TIME];
 
 /// Width of an edge relative to the duration.
 const EDGE_SHARE: f64 = 0.1;
@@ -105,8 +105,8 @@ impl Effect for TransientDisturbance {
 
     fn fast_span(&self, p: &[f64]) -> [f64; 2] {
         let reach = match self {
-            Self::Passing => (0.5 + REACH * EDGE_SHARE) * p[2],
-            Self::Lasting { edge } => REACH * edge,
+            Self::Passing => (0.5 + REACH_WIDTHS * EDGE_SHARE) * p[2],
+            Self::Lasting { edge } => REACH_WIDTHS * edge,
         };
         [p[1] - reach, p[1] + reach]
     }

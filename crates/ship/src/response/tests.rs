@@ -162,7 +162,7 @@ fn a_replay_carries_its_derivatives() {
                 end(&model, &constant(&moved)).value
             };
             let slope = (moved(h) - moved(-h)) / (2.0 * h);
-            assert_relative_eq!(dual.by[1], slope, max_relative = 2e-5, epsilon = 1e-7);
+            assert_relative_eq!(dual.derivatives[1], slope, max_relative = 2e-5, epsilon = 1e-7);
         }
     }
 }

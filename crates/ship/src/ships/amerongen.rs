@@ -8,7 +8,7 @@
 //! here. The source also gives the frigate a lag of 1 s of the steering gear, which is not part of the ship.
 
 use super::{Model, Ship};
-use crate::effects::listed;
+use crate::effects::listed_effect;
 use crate::particulars::Particulars;
 use crate::response::ResponseModel;
 
@@ -38,6 +38,8 @@ fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gai
         particulars,
         rudder_rate: Some(10f64.to_radians()),
         largest_rudder: Some(30f64.to_radians()),
-        model: Model::Response(ResponseModel::new(vec![listed("nonlinear_damping", "r³")]).with_parameters(parameters)),
+        model: Model::Response(
+            ResponseModel::new(vec![listed_effect("nonlinear_damping", "r³")]).with_parameters(parameters),
+        ),
     }
 }

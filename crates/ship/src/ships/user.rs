@@ -81,7 +81,7 @@ fn ship(name: String, source: &'static str, particulars: Option<Particulars>, mo
 ///
 /// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
 /// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and if 1/T, K/T or δ_r
-/// lies outside the range that [`crate::response::BASE`] declares.
+/// lies outside the range that [`crate::response::BASE_PARAMETERS`] declares.
 pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
     check_indices(K, T, "T")?;
     check("rudder bias", rudder_bias, true, "it must be finite")?;

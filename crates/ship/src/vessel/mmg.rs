@@ -159,7 +159,7 @@ impl<R: Real> Mmg<R> {
         match propeller.wake {
             Wake::Exponential { C1, C2 } => {
                 let fading = -(-C1 * betaP.abs()).exp() + 1.0;
-                let gain = fading * (C2.at(betaP) - 1.0) + 1.0;
+                let gain = fading * (C2.value_at(betaP) - 1.0) + 1.0;
                 -(-propeller.wP0 + 1.0) * gain + 1.0
             }
             Wake::Gaussian => propeller.wP0 * (betaP * -4.0 * betaP).exp(),
@@ -191,7 +191,7 @@ impl<R: Real> Mmg<R> {
 
         let betaR = beta - rudder.lR * r_;
         let uR = self.rudder_inflow(uP, revolutions);
-        let vR = U * rudder.gammaR.at(betaR) * betaR;
+        let vR = U * rudder.gammaR.value_at(betaR) * betaR;
         let alphaR = rudder_angle - vR.atan2(uR);
         let FN = self.rudder_area * (uR * uR + vR * vR) * rudder.f_alpha * alphaR.sin_cos().0;
         let (sin, cos) = rudder_angle.sin_cos();

@@ -22,7 +22,7 @@ use estimation::number::Real;
 use nalgebra::{DMatrix, DVector};
 
 use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
-pub use self::equations::{CalmHull, MAX_SPEED, PrimeHull};
+pub use self::equations::{CalmHull, MAX_PRIME_SPEED, PrimeHull};
 pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, hull_prior};

@@ -107,7 +107,7 @@ impl ScaledHull {
         for _ in 0..MAX_STEPS {
             let [u, v, rudder] = [0, 1, 2].map(|place| Dual::variable(at[place], place, 1.0));
             let accelerations = hull.accelerations([u, v, Dual::from(rate)], rudder, 1.0, 0.0, [0.0; 3]);
-            let mut matrix = Matrix3::from_fn(|row, column| -accelerations[row].by[column]);
+            let mut matrix = Matrix3::from_fn(|row, column| -accelerations[row].derivatives[column]);
             matrix[(0, 0)] += step.recip();
             matrix[(1, 1)] += step.recip();
             let residual = Vector3::from(accelerations.map(|dual| dual.value));

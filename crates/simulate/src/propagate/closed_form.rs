@@ -62,7 +62,7 @@ impl ClosedForm {
             RudderMotion::Hold | RudderMotion::Exponential { .. } => 0.0,
         };
         let cell = self.weather.cell();
-        let rudder = segment.at(self.time) + self.ship.rudder_bias + cell.moment(self.time);
+        let rudder = segment.angle_at(self.time) + self.ship.rudder_bias + cell.moment(self.time);
         (self.ship.K_over_T * rudder, self.ship.K_over_T * (slope + cell.moment_slope()))
     }
 
@@ -76,7 +76,7 @@ impl ClosedForm {
             motion: Motion { heading, yaw_rate, yaw_acceleration, speed: None, sway: None },
             gyro: heading,
             disturbance: cell.moment(self.time),
-            gust: cell.gust(self.time),
+            gust_factor: cell.gust_factor(self.time),
         }
     }
 }

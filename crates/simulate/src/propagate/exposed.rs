@@ -27,7 +27,7 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
     /// Total disturbance as equivalent rudder angle, rad.
     pub fn disturbance(&self, t: f64, heading: f64) -> f64 {
         let cell: &WeatherCell = self.weather.cell();
-        cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust(t)))
+        cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust_factor(t)))
     }
 
     /// Heading of the gyrocompass, rad.
@@ -47,8 +47,8 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
     fn in_measured_wind(&self, t: f64, state: &[f64], input: Input, mean: f64) -> Input {
         let ship_speed = self.ship.motion(t, &state[..self.ship.dimension()], &input).speed;
         let (Some(wind), Some(ship_speed)) = (self.wind, ship_speed.or(self.approach_speed)) else { return input };
-        let speed = gusting_speed(mean, self.weather.cell().gust(t));
-        let (speed, from) = wind.relative(speed, ship_speed, state[0]);
+        let speed = gusting_speed(mean, self.weather.cell().gust_factor(t));
+        let (speed, from) = wind.relative_wind(speed, ship_speed, state[0]);
         let measured = MeasuredChannels { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
         Input { measured, ..input }
     }

@@ -23,7 +23,7 @@ pub(crate) struct Integrated<'a, D: ?Sized> {
 
 /// Input at `t` within `segment`, with its smooth continuation at both ends.
 fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
-    Input { rudder: segment.at(t - dead_time), ..Input::default() }
+    Input { rudder: segment.angle_at(t - dead_time), ..Input::default() }
 }
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
@@ -79,7 +79,7 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
             motion: self.ship.motion(self.time, &self.state, &input(segment, dead_time, self.time)),
             gyro: self.ship.gyro(&self.state),
             disturbance: self.ship.disturbance(self.time, self.state[0]),
-            gust: self.ship.weather.cell().gust(self.time),
+            gust_factor: self.ship.weather.cell().gust_factor(self.time),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{KEY, zig_zag};
 use crate::disturbance::GaussMarkov;
 use crate::limits::{MAX_EXECUTES, MAX_ROWS, MAX_TIME_S};
 use crate::sensor::Spikes;
-use crate::{Expected, Manoeuvre, SimulateError, Simulation, Solver, Vessel};
+use crate::{Expected, Manoeuvre, SimulateError, SimulatedShip, Simulation, Solver};
 
 fn failure(simulation: &Simulation) -> SimulateError {
     simulation.run(&KEY).expect_err("this must fail")
@@ -52,7 +52,8 @@ fn a_message_says_what_was_found_and_what_was_expected() {
 #[test]
 fn an_unstable_ship_that_runs_away_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 4000.0);
-    simulation.vessel = Vessel::from_first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
+    simulation.ship =
+        SimulatedShip::from_first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
     simulation.manoeuvre = Manoeuvre::turning_circle(0.1).lasting(4000.0);
     match failure(&simulation) {
         SimulateError::Diverged { time, .. } => assert!(time > 100.0 && time < 400.0, "{time}"),
@@ -64,7 +65,7 @@ fn an_unstable_ship_that_runs_away_is_an_error() {
 fn a_heading_that_is_never_reached_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 3000.0);
     // A bias larger than the port rudder: the ship turns to starboard only.
-    simulation.vessel = Vessel::from_first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
+    simulation.ship = SimulatedShip::from_first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
     simulation.longest_wait = 500.0;
     match failure(&simulation) {
         SimulateError::NeverReached { execute, waited, .. } => assert_eq!((execute, waited), (2, 500.0)),

@@ -9,7 +9,7 @@ use super::{KEY, TestShip, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, WaveSpectrum, Wind};
 use crate::recording::RudderSource;
 use crate::sensor::Spikes;
-use crate::{Recording, Simulated, Simulation};
+use crate::{Recording, SimulatedTrial, Simulation};
 
 const ROWS: f64 = 2001.0;
 
@@ -17,7 +17,7 @@ fn long() -> Simulation {
     zig_zag(10.0, 10.0, 2.5, ROWS - 1.0)
 }
 
-fn run(simulation: &Simulation) -> Simulated {
+fn run(simulation: &Simulation) -> SimulatedTrial {
     simulation.run(&KEY).expect("a zig-zag of a stable ship")
 }
 
@@ -41,7 +41,7 @@ fn heading_noise_bias_and_its_declaration() {
     let (noise, bias) = (from_deg(0.3), from_deg(1.0));
     simulation.sensors.heading_noise = noise;
     simulation.sensors.heading_bias = bias;
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let (mean, sd) = statistics(trial.heading(), &truth.heading);
     assert_relative_eq!(sd, noise, max_relative = sd_tolerance());
     assert_abs_diff_eq!(mean, bias, epsilon = 3.0 * noise / ROWS.sqrt());
@@ -56,7 +56,7 @@ fn quantisation_is_uniform_and_declared_so() {
     let quantum = from_deg(0.5);
     simulation.sensors.heading_quantum = quantum;
     simulation.sensors.rudder_quantum = from_deg(1.0);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let (_, sd) = statistics(trial.heading(), &truth.heading);
     let uniform = quantum / 12.0_f64.sqrt();
     // The samples are not independent but belong to a periodic motion: the sd agrees within 5 %.
@@ -76,7 +76,7 @@ fn the_yaw_rate_sensor_scales_shifts_and_adds_noise() {
     simulation.sensors.yaw_rate_noise = Some(noise);
     simulation.sensors.yaw_rate_bias = Some(bias);
     simulation.sensors.yaw_rate_scale_error = Some(0.05);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let scaled: Vec<f64> = truth.yaw_rate.iter().map(|r| 1.05 * r).collect();
     let (mean, sd) = statistics(trial.yaw_rate().expect("there is a sensor"), &scaled);
     assert_relative_eq!(sd, noise, max_relative = sd_tolerance());
@@ -87,7 +87,7 @@ fn the_yaw_rate_sensor_scales_shifts_and_adds_noise() {
 fn rudder_noise_has_its_sd_and_the_order_has_none() {
     let mut simulation = long();
     simulation.sensors.rudder_noise = from_deg(0.4);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let (_, sd) = statistics(trial.rudder(), &truth.rudder);
     assert_relative_eq!(sd, from_deg(0.4), max_relative = sd_tolerance());
     let order = trial.channel(Channel::RudderOrder).expect("a helmsman gives orders");
@@ -103,7 +103,7 @@ fn gyro_lag_trails_the_heading() {
     let lag = 0.8;
     simulation.sensors.heading_lag = lag;
     simulation.recording.period = 0.05;
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let trail: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(gyro, psi)| gyro - psi).collect();
     for row in 20..trail.len() - 1 {
         let slope = (trail[row + 1] - trail[row - 1]) / 0.1;
@@ -142,7 +142,7 @@ fn jitter_moves_heading_and_rudder_by_the_same_instants() {
     let mut simulation = zig_zag(20.0, 20.0, 2.5, 400.0);
     let jitter = 0.2;
     simulation.sensors.jitter = jitter;
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     // Δψ = r j + r' j²/2, so that j can be computed while the ship turns.
     let (mut instants, mut agreeing) = (Vec::new(), 0);
     for row in 1..trial.len() {
@@ -221,7 +221,7 @@ fn a_display_shows_the_coloured_error() {
     let calm = run(&simulation).truth;
     let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 20.0 };
     simulation.sensors.heading_wander = Some(wander);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     assert_ne!(truth.executes, calm.executes);
     let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
     let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -291,7 +291,7 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
     simulation.helmsman.reads_display_every = Some(1.0);
     simulation.sensors.heading_noise = from_deg(0.5);
     simulation.sensors.heading_quantum = from_deg(0.1);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let mut off = 0;
     for execute in &truth.executes[1..] {
         assert_eq!(execute.time, execute.time.round());
@@ -328,7 +328,7 @@ fn waves_are_seen_but_do_not_steer() {
     let sd = from_deg(0.6);
     simulation.disturbances.waves = Some(WaveSpectrum { sd, frequency: 0.8, damping: 0.2 });
     simulation.sensors.yaw_rate_noise = Some(0.0);
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     assert_eq!(truth.heading, calm.heading);
     let (_, heading) = statistics(trial.heading(), &truth.heading);
     let (_, rate) = statistics(trial.yaw_rate().expect("there is a sensor"), &truth.yaw_rate);
@@ -343,8 +343,8 @@ fn wind_acts_by_heading_and_is_recorded() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 200.0);
     let wind = Wind { moment: from_deg(1.0), from: from_deg(60.0), speed: Some(10.0), gusting: None };
     simulation.disturbances.wind = Some(wind);
-    simulation.vessel = simulation.vessel.with_particulars(Particulars { length: 105.0, speed: 8.0 });
-    let Simulated { trial, truth } = run(&simulation);
+    simulation.ship = simulation.ship.with_particulars(Particulars { length: 105.0, speed: 8.0 });
+    let SimulatedTrial { trial, truth } = run(&simulation);
     for (psi, moment) in truth.heading.iter().zip(&truth.disturbance) {
         assert_abs_diff_eq!(*moment, wind.moment * (2.0 * (wind.from - psi)).sin(), epsilon = 1e-15);
     }
@@ -365,11 +365,11 @@ fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 60.0);
     // A ship with a weathervane moment: its yaw moment is proportional to the relative wind direction in the input.
     let vane = |r: f64, input: &Input| 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * r;
-    simulation.vessel = TestShip::vessel(vane, |_| 6.0, 0.0);
+    simulation.ship = TestShip::simulated(vane, |_| 6.0, 0.0);
     simulation.longest_wait = 1e3;
     let gusting = Some(Gusting { sd: 0.3, correlation_time: 5.0 });
     simulation.disturbances.wind = Some(Wind { moment: 0.0, from: 1.5, speed: Some(9.0), gusting });
-    let Simulated { trial, truth } = run(&simulation);
+    let SimulatedTrial { trial, truth } = run(&simulation);
     let from = trial.channel(Channel::WindRelativeFrom).expect("speed of wind and ship are known");
     let rows = from.iter().zip(&truth.yaw_rate).zip(&truth.yaw_acceleration);
     for ((from, r), yaw_acceleration) in rows {

@@ -9,17 +9,19 @@ use ship::{Input, Polyline};
 use super::{KEY, TestShip, training_ship, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, Squall, WaveSpectrum, Wind};
 use crate::sensor::{DropOut, Spikes};
-use crate::vessel::Solver;
-use crate::{Manoeuvre, PreparedSimulation, Sensors, Side, Simulated, Simulation, StreamKey, Truth, Vessel};
+use crate::simulated_ship::Solver;
+use crate::{
+    Manoeuvre, PreparedSimulation, Sensors, Side, SimulatedShip, SimulatedTrial, Simulation, StreamKey, Truth,
+};
 
 /// Ship with cubic damping and a dead time of the rudder.
-fn cubic(dead_time: f64) -> Vessel {
+fn cubic(dead_time: f64) -> SimulatedShip {
     let base = training_ship();
     let acceleration = move |r: f64, input: &Input| {
         let steering = input.rudder + input.disturbance + base.rudder_bias;
         -base.inverse_T * (r + 2000.0 * r * r * r) + base.K_over_T * steering
     };
-    TestShip::vessel(acceleration, |r| 7.0 - 1e3 * r * r, dead_time)
+    TestShip::simulated(acceleration, |r| 7.0 - 1e3 * r * r, dead_time)
 }
 
 fn truth(simulation: &Simulation) -> Arc<Truth> {
@@ -88,16 +90,16 @@ fn closed_form_and_runge_kutta_agree_to_1e_9() {
 
 #[test]
 fn port_first_is_the_exact_mirror() {
-    for vessel in [Vessel::from_first_order(training_ship()), cubic(0.4)] {
+    for ship in [SimulatedShip::from_first_order(training_ship()), cubic(0.4)] {
         let mut starboard = zig_zag(15.0, 10.0, 2.5, 300.0);
-        starboard.vessel = vessel;
+        starboard.ship = ship;
         starboard.gear.lag = 0.5;
         starboard.sensors = spoilt();
         let mut port = starboard.clone();
         port.manoeuvre = port.manoeuvre.with_first_side(Side::Port);
         let (starboard, port) = (starboard.run(&KEY).expect("a zig-zag"), port.run(&KEY).expect("a zig-zag"));
         // Instrument errors are independent of the side.
-        let errors = |simulated: &Simulated| {
+        let errors = |simulated: &SimulatedTrial| {
             let headings = simulated.trial.heading().iter().zip(&simulated.truth.heading);
             headings.map(|(psi, truth)| psi - truth).collect::<Vec<f64>>()
         };
@@ -124,7 +126,7 @@ fn port_first_is_the_exact_mirror() {
 fn runge_kutta_is_of_order_four_and_events_with_it() {
     let with = |step| {
         let mut simulation = zig_zag(20.0, 20.0, 2.32, 200.0);
-        simulation.vessel = cubic(0.6);
+        simulation.ship = cubic(0.6);
         // Rows are coarser than the step; otherwise the rows would determine the step.
         simulation.recording.period = 20.0;
         truth(&Simulation { solver: Solver::RungeKutta(step), ..simulation })
@@ -155,7 +157,7 @@ fn events_do_not_depend_on_step_or_sampling() {
         assert_abs_diff_eq!(left.time, right.time, epsilon = 1e-11);
         assert_abs_diff_eq!(to_deg(left.heading.abs()), if left.time > 0.0 { 10.0 } else { 0.0 }, epsilon = 1e-11);
     }
-    simulation.vessel = cubic(0.0);
+    simulation.ship = cubic(0.0);
     let [coarse, fine] = [0.1, 0.03].map(|step| {
         let solver = Solver::RungeKutta(step);
         truth(&Simulation { solver, ..simulation.clone() })
@@ -168,9 +170,9 @@ fn events_do_not_depend_on_step_or_sampling() {
 #[test]
 fn a_late_rudder_is_the_same_motion_with_a_late_gear() {
     let mut late_ship = zig_zag(10.0, 10.0, 2.5, 200.0);
-    late_ship.vessel = cubic(1.3);
+    late_ship.ship = cubic(1.3);
     let mut late_gear = late_ship.clone();
-    late_gear.vessel = cubic(0.0);
+    late_gear.ship = cubic(0.0);
     late_gear.gear.dead_time = 1.3;
     let (ship, gear) = (truth(&late_ship), truth(&late_gear));
     for (left, right) in ship.heading.iter().zip(&gear.heading) {
@@ -302,7 +304,7 @@ fn a_prepared_simulation_gives_the_same_bits() {
         },
         |simulation| {
             simulation.sensors.drop_out = DropOut { probability: 0.1, whole_row: true, ..DropOut::default() };
-            simulation.vessel = cubic(0.4);
+            simulation.ship = cubic(0.4);
         },
         |simulation| *simulation = noisy(),
     ];
@@ -314,7 +316,7 @@ fn a_prepared_simulation_gives_the_same_bits() {
         for replicate in 0..3 {
             let key = StreamKey { replicate, ..KEY };
             let (direct, prepared) = (simulation.run(&key).expect("a zig-zag"), prepared.run(&key).expect("a zig-zag"));
-            let columns = |simulated: &Simulated| {
+            let columns = |simulated: &SimulatedTrial| {
                 let trial = &simulated.trial;
                 let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
                 let channels = trial.channels().map(|(channel, values)| (channel, bits(values)));

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use ship::angle::from_deg;
 use ship::{Dynamics, FirstOrder, Input, Motion};
 
-use crate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+use crate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
 /// Training ship of the reference numbers: K = 0.1 1/s, T = 16.3 s.
 fn training_ship() -> FirstOrder {
@@ -19,7 +19,7 @@ fn training_ship() -> FirstOrder {
 /// Zig-zag (degrees) of the training ship with a rudder rate (deg/s), until the record is full.
 pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simulation {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(delta_deg), from_deg(psi_deg));
-    let mut simulation = Simulation::new(Vessel::from_first_order(training_ship()), manoeuvre);
+    let mut simulation = Simulation::new(SimulatedShip::from_first_order(training_ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(rate_deg_s));
     simulation.recording.duration = Some(duration);
     simulation
@@ -35,8 +35,8 @@ struct TestShip<F> {
 }
 
 impl<F: Fn(f64, &Input) -> f64 + Send + Sync + 'static> TestShip<F> {
-    fn vessel(acceleration: F, speed: fn(f64) -> f64, dead_time: f64) -> Vessel {
-        Vessel::from_dynamics(Arc::new(Self { acceleration, speed, dead_time }))
+    fn simulated(acceleration: F, speed: fn(f64) -> f64, dead_time: f64) -> SimulatedShip {
+        SimulatedShip::from_dynamics(Arc::new(Self { acceleration, speed, dead_time }))
     }
 }
 

@@ -70,16 +70,16 @@ fn task(name: &str) -> Result<BenchTask, String> {
 }
 
 /// Methods of the caller, each with its label.
-pub type Entrants = Vec<(String, Arc<dyn Identifier>)>;
+pub type CallerMethods = Vec<(String, Arc<dyn Identifier>)>;
 
-/// Results of a benchmark: runs its missing studies below a folder, or in a temporary one; `entrants` are identified in
+/// Results of a benchmark: runs its missing studies below a folder, or in a temporary one, with `methods_of_caller` in
 /// addition to the methods of the scenarios.
 ///
 /// Fails if a scenario is invalid, or if no task remains to be scored.
 pub fn run_benchmark(
     request: &BenchRequest,
     seed: Option<u64>,
-    entrants: &Entrants,
+    methods_of_caller: &CallerMethods,
     folder: Option<&ResultFolder>,
     observer: &dyn Observer,
 ) -> Result<BenchDocument, Failure> {
@@ -94,7 +94,7 @@ pub fn run_benchmark(
     let (mut studies, mut absent) = (Vec::new(), Vec::new());
     for scenario in scenarios.into_iter().filter(|set| request.sets.is_empty() || request.sets.contains(&set.name)) {
         let Some(mut scenario) = scenario.with_methods(&request.methods) else { continue };
-        for (label, identifier) in entrants {
+        for (label, identifier) in methods_of_caller {
             scenario = scenario.with_identifier(label, Arc::clone(identifier))?;
         }
         if scenario.max_trials() == 0 {
@@ -113,9 +113,9 @@ pub fn run_benchmark(
         studies.push((scenario, rows));
     }
     studies.extend(absent);
-    let results = BenchDocument::of(&studies, &request.tasks);
+    let results = BenchDocument::from_studies(&studies, &request.tasks);
     if results.cases.is_empty() {
-        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
+        let reasons: Vec<String> = results.skipped.iter().map(skipped_record_line).collect();
         return Err(Failure::input(format!(
             "there is nothing to score:\n  {}\nset KEMPF_DATA to the folder with the measured records",
             reasons.join("\n  ")
@@ -160,20 +160,21 @@ pub fn publish(
     common: &CommonOptions,
 ) -> Result<(), Failure> {
     let text = write_files(results, folder, theme)?;
-    let notes: String = results.skipped.iter().map(|record| format!("skipped: {}\n", skipped(record))).collect();
+    let notes: String =
+        results.skipped.iter().map(|record| format!("skipped: {}\n", skipped_record_line(record))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
     let naming = match results.naming.is_empty() {
         true => String::new(),
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
     let head = format!("{}\n", counted(results.cases.len() as u64, "question"));
-    let table = bench_tables::leaderboard(results);
+    let table = bench_tables::leaderboards(results);
     let output = CommandOutput { frame: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::print_output(common, &output, &[] as &[&str])
 }
 
 /// One line on a record that was not used.
-pub fn skipped(record: &Skipped) -> String {
+pub fn skipped_record_line(record: &Skipped) -> String {
     format!("{}, {}: {}", record.set, record.record, record.reason)
 }
 

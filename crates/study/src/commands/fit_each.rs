@@ -23,7 +23,7 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
     let files = expand(&request.trials)?;
     let bar = progress::bar("logs", files.len() as u64, common.quiet);
     let fit_of = |file| {
-        let fit = LogFit::of(file, &methods, &request.reading);
+        let fit = LogFit::from_file(file, &methods, &request.reading);
         bar.inc(1);
         fit
     };
@@ -47,7 +47,7 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
 
 /// One log as a line of JSON. Fails if it cannot be written as JSON.
 fn line(LogFit { file, verdict, warnings, error, .. }: &LogFit) -> Result<String, Failure> {
-    let error = error.as_ref().map(ErrorEntry::of);
+    let error = error.as_ref().map(ErrorEntry::from_failure);
     let (file, verdict) = (file.display().to_string(), verdict.as_ref());
     let entry = LogFitEntry { schema: "fit-each/1", file, verdict, warnings, error };
     serde_json::to_string(&entry).map_err(Failure::work)

@@ -38,8 +38,8 @@ pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failu
     let mut warnings = Warnings::default();
     let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
     let file = display_path(&request.log);
-    warnings.extend(source(file).of(doubts(log.clone())));
-    let answer = InspectAnswer::of(file, &log, warnings.ranked());
+    warnings.extend(source(file).attach_to(doubts(log.clone())));
+    let answer = InspectAnswer::from_log(file, &log, warnings.ranked());
     let LogEntry { file, rows, duration_s, .. } = &answer.log;
     let before = format!("{file}: {rows} rows, {} s\n", fixed(*duration_s, 1));
     let text = documents::answer_text(&answer)?;

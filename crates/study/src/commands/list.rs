@@ -11,11 +11,11 @@ use ship::vessel::prior::{self, AssumedParticular, CoefficientFormula, Particula
 use ship::{effects, ships};
 
 use crate::documents::{self, answers::ListAnswer};
-use crate::options::{CommonOptions, Format, Listed, ShipOptions};
+use crate::options::{CommonOptions, Format, ListSubject, ShipOptions};
 use crate::screen;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
-use trial::sidecar::{self, Key, Sidecar};
+use trial::sidecar::{self, Sidecar, SidecarKey};
 
 use campaign::failure::Failure;
 use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
@@ -24,7 +24,7 @@ use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 #[derive(Debug, Clone, Args)]
 pub struct ListRequest {
     /// What to list
-    pub what: Listed,
+    pub what: ListSubject,
     /// For priors: sidecar whose tables `ship` and `form` give the particulars of the ship
     #[arg(long, value_name = "FILE.toml")]
     pub columns: Option<PathBuf>,
@@ -36,19 +36,19 @@ pub struct ListRequest {
 /// Prints the list.
 pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure> {
     let what = request.what;
-    if what != Listed::Priors && !(request.columns.is_none() && request.ship.is_empty()) {
+    if what != ListSubject::Priors && !(request.columns.is_none() && request.ship.is_empty()) {
         return Err(Failure::input("particulars of a ship apply to `study list priors` only; leave them out"));
     }
     let table = match what {
-        Listed::Identifiers => identifiers()?,
-        Listed::Effects => effects(),
-        Listed::Ships => ships(),
-        Listed::Manoeuvres => keys_below("manoeuvre."),
-        Listed::Sensors => keys_below("sensor."),
-        Listed::Keys => keys_below(""),
-        Listed::Columns => columns(),
-        Listed::Sidecar => sidecar(),
-        Listed::Priors => priors(request)?,
+        ListSubject::Identifiers => identifiers()?,
+        ListSubject::Effects => effects(),
+        ListSubject::Ships => ships(),
+        ListSubject::Manoeuvres => keys_below("manoeuvre."),
+        ListSubject::Sensors => keys_below("sensor."),
+        ListSubject::Keys => keys_below(""),
+        ListSubject::Columns => columns(),
+        ListSubject::Sidecar => sidecar(),
+        ListSubject::Priors => priors(request)?,
     };
     if common.format == Format::Json {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
@@ -57,20 +57,20 @@ pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure>
     // Head of a list in Markdown, which is a page of the documentation.
     let head = match what {
         _ if common.format != Format::Markdown => "",
-        Listed::Identifiers => include_str!("../../templates/list-identifiers.md"),
-        Listed::Effects => include_str!("../../templates/list-effects.md"),
-        Listed::Ships => include_str!("../../templates/list-ships.md"),
-        Listed::Keys => include_str!("../../templates/list-keys.md"),
-        Listed::Columns => include_str!("../../templates/list-columns.md"),
-        Listed::Sidecar => include_str!("../../templates/list-sidecar.md"),
-        Listed::Manoeuvres | Listed::Sensors | Listed::Priors => "",
+        ListSubject::Identifiers => include_str!("../../templates/list-identifiers.md"),
+        ListSubject::Effects => include_str!("../../templates/list-effects.md"),
+        ListSubject::Ships => include_str!("../../templates/list-ships.md"),
+        ListSubject::Keys => include_str!("../../templates/list-keys.md"),
+        ListSubject::Columns => include_str!("../../templates/list-columns.md"),
+        ListSubject::Sidecar => include_str!("../../templates/list-sidecar.md"),
+        ListSubject::Manoeuvres | ListSubject::Sensors | ListSubject::Priors => "",
     };
     screen::print_lines(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
 
 fn identifiers() -> Result<Table, Failure> {
     let mut table = Table::new(TableHead::default().texts(["id", "method", "settings"]));
-    for settings in registry::defaults() {
+    for settings in registry::default_settings() {
         let method = settings.build().map_err(|error| Failure::work(format!("default settings: {error}")))?;
         table.push([method.id().to_owned(), method.summary().to_owned(), keys(&settings)]);
     }
@@ -148,7 +148,7 @@ fn columns() -> Table {
         let accepted = channel.accepted_names().replace(" or ", ", ");
         let of_channel = |meaning| matches!(meaning, ColumnMeaning::Channel(held, _) if held == channel);
         let over_ground = |meaning| channel == Channel::Speed && matches!(meaning, ColumnMeaning::OverGround(_));
-        let holds = ::document::names::plain(channel.quantity());
+        let holds = ::document::names::with_blanks(channel.quantity());
         table.push([&holds, &accepted, &usual(&|meaning| of_channel(meaning) || over_ground(meaning))]);
     }
     table.push([
@@ -162,7 +162,7 @@ fn columns() -> Table {
 
 fn sidecar() -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "value", "meaning"]));
-    for Key { key, value, meaning } in sidecar::keys() {
+    for SidecarKey { key, value, meaning } in sidecar::keys() {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }
     table
@@ -182,7 +182,7 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
         ));
     }
     let prior = prior::hull_prior(&hull).map_err(|error| match columns {
-        Some(file) => Failure::about(file, error),
+        Some(file) => Failure::in_file(file, error),
         None => Failure::input(error),
     })?;
     let mut table =

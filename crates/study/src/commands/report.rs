@@ -82,7 +82,15 @@ fn report(stored: &Path, request: &ReportRequest, common: &CommonOptions) -> Res
         () if has(TRACE) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
-            trace::publish(&folder, &document, &TraceCurves::of(&document, stored)?, &text, Some(&theme), common, &[])?
+            trace::publish(
+                &folder,
+                &document,
+                &TraceCurves::read(&document, stored)?,
+                &text,
+                Some(&theme),
+                common,
+                &[],
+            )?
         }
         () if has(FIT) => {
             let (folder, theme) = (held()?, theme()?);

@@ -26,14 +26,14 @@ use crate::documents::fit_curves::FitCurves;
 use crate::documents::fit_each::LogFitEntry;
 use crate::documents::inspect::InspectAnswer;
 use crate::documents::truth::TruthDocument;
-use crate::options::{CommonOptions, Described};
+use crate::options::{CommonOptions, SchemaSubject};
 use crate::screen;
 
 /// Arguments of `study schema`.
 #[derive(Debug, Clone, Args)]
 pub struct SchemaRequest {
     /// Which file
-    pub what: Described,
+    pub what: SchemaSubject,
 }
 
 /// Prints the schema.
@@ -43,31 +43,31 @@ pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &CommonOptions) -> Result
 }
 
 /// JSON schema of a file, in draft 7, which editors of TOML understand as well.
-pub fn schema(what: Described) -> Schema {
+pub fn schema(what: SchemaSubject) -> Schema {
     match what {
-        Described::Scenario => campaign::scenario::schema::schema(),
-        Described::Sidecar => trial::sidecar::schema(),
-        Described::Fit => of::<FitDocument>(),
-        Described::Trace => of::<TraceDocument>(),
-        Described::Predict => of::<PredictDocument>(),
-        Described::Manifest => of::<Manifest>(),
-        Described::Bench => of::<BenchDocument>(),
-        Described::FitCurves => of::<FitCurves>(),
-        Described::Cells => of::<Design>(),
-        Described::Showcase => of::<Vec<Showcase>>(),
-        Described::Style => read::<Style>(),
-        Described::Trials => of::<Trials>(),
-        Described::Truth => of::<TruthDocument>(),
-        Described::Study => answer::<StudyAnswer>(),
-        Described::Shard => answer::<ShardAnswer>(),
-        Described::Find => answer::<FindAnswer>(),
-        Described::Inspect => answer::<InspectAnswer>(),
-        Described::Check => answer::<CheckAnswer>(),
-        Described::List => answer::<ListAnswer>(),
-        Described::Simulate => answer::<SimulateAnswer>(),
-        Described::SidecarAnswer => answer::<SidecarAnswer>(),
-        Described::FitEach => of::<LogFitEntry>(),
-        Described::Error => of::<ErrorDocument>(),
+        SchemaSubject::Scenario => campaign::scenario::schema::schema(),
+        SchemaSubject::Sidecar => trial::sidecar::schema(),
+        SchemaSubject::Fit => of::<FitDocument>(),
+        SchemaSubject::Trace => of::<TraceDocument>(),
+        SchemaSubject::Predict => of::<PredictDocument>(),
+        SchemaSubject::Manifest => of::<Manifest>(),
+        SchemaSubject::Bench => of::<BenchDocument>(),
+        SchemaSubject::FitCurves => of::<FitCurves>(),
+        SchemaSubject::Cells => of::<Design>(),
+        SchemaSubject::Showcase => of::<Vec<Showcase>>(),
+        SchemaSubject::Style => read::<Style>(),
+        SchemaSubject::Trials => of::<Trials>(),
+        SchemaSubject::Truth => of::<TruthDocument>(),
+        SchemaSubject::Study => answer::<StudyAnswer>(),
+        SchemaSubject::Shard => answer::<ShardAnswer>(),
+        SchemaSubject::Find => answer::<FindAnswer>(),
+        SchemaSubject::Inspect => answer::<InspectAnswer>(),
+        SchemaSubject::Check => answer::<CheckAnswer>(),
+        SchemaSubject::List => answer::<ListAnswer>(),
+        SchemaSubject::Simulate => answer::<SimulateAnswer>(),
+        SchemaSubject::SidecarAnswer => answer::<SidecarAnswer>(),
+        SchemaSubject::FitEach => of::<LogFitEntry>(),
+        SchemaSubject::Error => of::<ErrorDocument>(),
     }
 }
 

@@ -10,7 +10,7 @@ use campaign::scenario::Scenario;
 use campaign::scenario::name;
 use campaign::shard::default_folder;
 use clap::Args;
-use trial::file::{self, Kind};
+use trial::file::{self, FileKind};
 
 use crate::options::{CommonOptions, StudyFigureOptions};
 use crate::terminal::Terminal;
@@ -38,7 +38,7 @@ pub struct ScoreRequest {
 }
 
 /// Description of trials: a scenario and a few keys.
-const LIST: Kind = Kind { name: "a description of trials", max_bytes: 1 << 22 };
+const LIST: FileKind = FileKind { name: "a description of trials", max_bytes: 1 << 22 };
 
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` does.
 ///
@@ -75,9 +75,9 @@ fn scenario_of(request: &ScoreRequest, common: &CommonOptions) -> Result<Scenari
     if !beside.is_file() {
         return Scenario::read(scenario, common.seed);
     }
-    let text = file::read_text(&beside, LIST).map_err(|error| Failure::about(&beside, error))?;
+    let text = file::read_text(&beside, LIST).map_err(|error| Failure::in_file(&beside, error))?;
     let trials: Trials = toml::from_str(&text).map_err(|error| {
-        Failure::about(&beside, format!("{}; expected what `study simulate` wrote", error.message()))
+        Failure::in_file(&beside, format!("{}; expected what `study simulate` wrote", error.message()))
     })?;
     let scenario = Scenario::read(scenario, Some(common.seed.unwrap_or(trials.seed)))?;
     if (&scenario.design_sha256, scenario.seed) == (&trials.design_sha256, trials.seed) {

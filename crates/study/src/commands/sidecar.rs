@@ -34,7 +34,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &CommonOptions) -> R
         None => Sidecar::beside(log),
     };
     if disk::is_there(&path).on("look for", &path)? {
-        return Err(Failure::about(
+        return Err(Failure::in_file(
             &path,
             "this description is there already; remove it, or write another one elsewhere with `--out DIR`",
         ));

@@ -69,7 +69,7 @@ fn list(scenario: &Scenario, tasks: &[TrialId], names: &[String], folder: &Resul
         table.push([file(0), number, cell.title(), replicate, also.join(" ")]);
     }
     folder.write("trials.csv", table.to_csv())?;
-    let text = toml::to_string(&Trials::of(scenario)).on("describe the trials in", folder.path())?;
+    let text = toml::to_string(&Trials::from_scenario(scenario)).on("describe the trials in", folder.path())?;
     folder.write(TRIALS, format!("{SCORE}{text}"))
 }
 

@@ -54,7 +54,7 @@ pub fn publish(
     common: &CommonOptions,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
-    write_page(folder, trace_page::page(document, curves, steady::of_ship(&document.ship).as_ref()), theme)?;
+    write_page(folder, trace_page::page(document, curves, steady::steady_turns(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", folder.path().join(TRACE).display());
     let [before, behind] = trace_page::around_table(document);
     let table = trace_page::all_errors(document);

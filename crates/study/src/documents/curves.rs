@@ -155,7 +155,7 @@ impl TraceCurves {
     /// Curves of a document, read from the files in its folder.
     ///
     /// Fails if a file cannot be read.
-    pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
+    pub fn read(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);
             Ok((super::read_text(&path)?, path.display().to_string()))

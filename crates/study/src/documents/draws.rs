@@ -95,7 +95,7 @@ pub fn write_estimates<'a>(
 ) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for (method, answer) in answers {
-        let of_answer = EstimateSampler::new(answer, seed).map_err(|error| Failure::about(method, error))?;
+        let of_answer = EstimateSampler::new(answer, seed).map_err(|error| Failure::in_file(method, error))?;
         rows.extend((0..draws).map(|number| EstimateRow { number, method, drawn: of_answer.sample(number.into()) }));
     }
     keep_columns(folder, estimate_columns(&rows))

@@ -33,7 +33,7 @@ pub struct ErrorEntry<'a> {
 
 impl<'a> ErrorEntry<'a> {
     /// Entry of a failure.
-    pub fn of(Failure { blame, message, parts }: &'a Failure) -> Self {
+    pub fn from_failure(Failure { blame, message, parts }: &'a Failure) -> Self {
         Self { severity: "error", blame: *blame, message, parts }
     }
 }
@@ -41,6 +41,6 @@ impl<'a> ErrorEntry<'a> {
 /// Document of a failure in one line. Fails if it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
     let exit_code = screen::exit_code(failure.blame);
-    let document = ErrorDocument { schema: "error/1", error: ErrorEntry::of(failure), exit_code };
+    let document = ErrorDocument { schema: "error/1", error: ErrorEntry::from_failure(failure), exit_code };
     serde_json::to_string(&document)
 }

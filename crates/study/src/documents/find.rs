@@ -60,8 +60,8 @@ pub struct ManoeuvreEntry {
 
 impl SearchedLog {
     /// Entry of a log with its manoeuvres.
-    pub fn of(file: &Path, log: &Log, manoeuvres: &[DetectedManoeuvre]) -> Self {
-        let clock = |time: f64| log.clock.map(|clock| clock.at(time).to_string());
+    pub fn from_log(file: &Path, log: &Log, manoeuvres: &[DetectedManoeuvre]) -> Self {
+        let clock = |time: f64| log.clock.map(|clock| clock.time_of_day_at(time).to_string());
         let manoeuvre = |(trial, manoeuvre): (usize, &DetectedManoeuvre)| {
             let [rudder_deg, heading_deg] = manoeuvre.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
@@ -76,6 +76,6 @@ impl SearchedLog {
                 remarks: manoeuvre.quality.remarks(),
             }
         };
-        Self { log: LogEntry::of(file, log), manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect() }
+        Self { log: LogEntry::from_log(file, log), manoeuvres: (1..).zip(manoeuvres).map(manoeuvre).collect() }
     }
 }

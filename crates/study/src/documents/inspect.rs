@@ -70,7 +70,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let unit = readings.channel.written_unit();
         let shown = |value: f64| value / unit.si_factor();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
-        let spoken = |channel: Channel| names::plain(channel.label());
+        let spoken = |channel: Channel| names::with_blanks(channel.label());
         let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),
@@ -94,9 +94,9 @@ impl From<&ChannelInspection> for ChannelEntry {
 
 impl InspectAnswer {
     /// Entry of a log with its warnings.
-    pub fn of(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
+    pub fn from_log(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
         Self {
-            log: LogEntry::of(file, log),
+            log: LogEntry::from_log(file, log),
             channels: log.inspect().iter().map(ChannelEntry::from).collect(),
             warnings,
         }

@@ -21,7 +21,7 @@ pub struct LogEntry {
 
 impl LogEntry {
     /// Entry of the log of a file.
-    pub fn of(file: &Path, log: &Log) -> Self {
+    pub fn from_log(file: &Path, log: &Log) -> Self {
         let time = log.time();
         let ends = time.first().zip(time.last());
         Self {

@@ -58,7 +58,7 @@ impl MissingMomentCurves {
             moment: column_of(time, MOMENT),
             band: BAND.map(|end| column_of(time, end)),
             explained: column_of(time, EXPLAINED),
-            over: entry.over.iter().map(channel).collect(),
+            over: entry.channel_curves.iter().map(channel).collect(),
         }
     }
 }
@@ -145,7 +145,7 @@ pub fn entry(
         channel: panel.over.as_str().to_owned(),
         column: column(panel.over).0.to_owned(),
         variance_share: panel.share,
-        shows: !panel.curve.contains_zero(),
+        is_significant: !panel.curve.contains_zero(),
         inside: effects(missing, &panel.inside),
     };
     let square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
@@ -160,6 +160,6 @@ pub fn entry(
             && inside.is_empty()
             && telling().next().is_some(),
         inside_all: effects(missing, &inside),
-        over: missing.panels.iter().map(of_panel).collect(),
+        channel_curves: missing.panels.iter().map(of_panel).collect(),
     }
 }

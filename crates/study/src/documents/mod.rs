@@ -148,7 +148,7 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
     if stated.schema != schema {
         let mismatch = format!("schema = {:?}, expected {schema:?}", stated.schema);
         let problem = format!("{mismatch}; make it again with `study {command}`");
-        return Err(Failure::about(path, problem).with_code(ErrorCode::Document));
+        return Err(Failure::in_file(path, problem).with_code(ErrorCode::Document));
     }
     let document = serde_json::from_str(&text).map_err(|error| unread(path, error, command))?;
     Ok((document, text))
@@ -157,7 +157,7 @@ pub fn read_document<T: DeserializeOwned>(path: &Path, schema: &str) -> Result<(
 /// Failure for a document that this program did not write.
 fn unread(path: &Path, error: serde_json::Error, command: &str) -> Failure {
     let problem = format!("{error}; make it again with `study {command}`");
-    Failure::about(path, problem).with_code(ErrorCode::Document)
+    Failure::in_file(path, problem).with_code(ErrorCode::Document)
 }
 
 /// Maximum size of a document or a table of curves, bytes.

@@ -43,7 +43,7 @@ fn contradiction(earlier: &EarlierTrials) -> String {
     let files = earlier.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
     let cure = "make sure that it is the same ship in the same condition, or leave --prior out";
     let Some(nearest) = earlier.hulls.first() else { return format!("--prior {files}: {NOT_NEAR}; {cure}") };
-    let moved = nearest.moved.iter().filter(|(_, shift)| shift.abs() >= MIN_SHIFT_SD).take(MAX_NAMED);
+    let moved = nearest.shifts.iter().filter(|(_, shift)| shift.abs() >= MIN_SHIFT_SD).take(MAX_NAMED);
     let moved = moved.map(|(key, shift)| {
         let means = departure_cause(key).map_or_else(String::new, |means| format!(" ({means})"));
         format!("{key} by {} standard deviations{means}", fixed(*shift, 1))

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use ship::FirstOrder;
 use ship::angle::to_deg;
-use simulate::Simulated;
+use simulate::SimulatedTrial;
 
 /// True values of one record of a trial.
 #[derive(Serialize, JsonSchema)]
@@ -29,7 +29,8 @@ pub struct TruthDocument {
     /// First-order response nearest to the ship; the ship itself if it is of first order.
     pub nearest: Option<TrueIndices>,
     /// Base of a ship that has further effects.
-    pub own: Option<TrueIndices>,
+    #[serde(rename = "own")]
+    pub base: Option<TrueIndices>,
     /// Effects that a first-order base lacks.
     pub missing: Vec<String>,
     /// Sampled values in the units of their keys.
@@ -79,7 +80,7 @@ impl TrueIndices {
 pub fn truth(
     scenario: &Scenario,
     task: TrialId,
-    simulated: &Simulated,
+    simulated: &SimulatedTrial,
     truths: TrueResponses,
 ) -> Result<TruthDocument, String> {
     let cell = &scenario.cells[task.cell];
@@ -92,7 +93,7 @@ pub fn truth(
         cell: cell.title(),
         replicate: task.replicate,
         nearest: truths.nearest.map(TrueIndices::of),
-        own: truths.base.map(TrueIndices::of),
+        base: truths.base.map(TrueIndices::of),
         missing: trial_spec.specification.missing.clone(),
         drawn: scenario.draws.iter().cloned().zip(trial_spec.drawn.iter().copied()).collect(),
         executes_s: truth.executes.iter().map(|execute| execute.time).collect(),

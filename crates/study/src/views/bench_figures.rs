@@ -43,7 +43,7 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
     results.study_names().into_iter().filter_map(figure).collect()
 }
 
-fn origin(method: &str) -> CurveOrigin {
+fn curve_origin(method: &str) -> CurveOrigin {
     match method {
         // The straight-on forecast is not a method: grey.
         STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
@@ -94,7 +94,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
             let ratios = cases.filter_map(|case| case.ratio_of(method, &results.reference));
-            let look = Look { hollow: true, ..origin(method).look() };
+            let look = Look { hollow: true, ..curve_origin(method).look() };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
@@ -106,7 +106,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             let value = ratio.value.filter(|value| *value <= MAX_RATIO).unwrap_or(f64::INFINITY);
             let end = |end: Option<f64>| end.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
             let interval = ratio.ci95.map(|ends| ends.map(end)).filter(|_| value.is_finite());
-            vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
+            vec![RowItem::new("", RowKind::Mark(curve_origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
             x: AxisSpec::new(

@@ -32,7 +32,7 @@ fn percent(figure: ScoreFigure) -> ScoreFigure {
 
 fn share(share: WilsonShare) -> String {
     let [low, high] = share.ci95.map(|end| fixed(100.0 * end, 0));
-    format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
+    format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.cases as f64, 0))
 }
 
 /// A count as text; empty for zero.
@@ -72,7 +72,7 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
 }
 
 /// Table of one leaderboard.
-pub fn board(results: &BenchDocument, board: &Board) -> Table {
+pub fn leaderboard(results: &BenchDocument, board: &Board) -> Table {
     let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
@@ -80,7 +80,7 @@ pub fn board(results: &BenchDocument, board: &Board) -> Table {
 }
 
 /// All leaderboards in one table, for a person.
-pub fn leaderboard(results: &BenchDocument) -> Table {
+pub fn leaderboards(results: &BenchDocument) -> Table {
     let first = TableHead::default().texts(["task", "records"]).counts(["n"]).texts(["method"]);
     let mut table = Table::new(columns(first, &results.reference, true));
     for board in &results.boards {
@@ -109,7 +109,7 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
         }
     };
     for (board, row) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |row| (board, row))) {
-        let held = |place: usize| row.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
+        let held = |place: usize| row.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].cases as f64);
         let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &row.method];
         let figures = [Some(row.median), Some(row.high), row.ratio, row.better.map(percent)];
         let line = head.map(str::to_owned).into_iter().chain([row.failed.to_string()]);
@@ -167,7 +167,7 @@ fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLin
     let head = TableHead::default().texts(["method", first]).counts(["n"]).counts(Naming::ALL.map(Naming::label));
     let mut table = Table::new(head.counts(["failed"]).numbers(["named"]).unit("%"));
     for (ships, line) in lines {
-        let head = [line.method.clone(), ships.to_owned(), line.named.of.to_string()];
+        let head = [line.method.clone(), ships.to_owned(), line.named.cases.to_string()];
         table.push(head.into_iter().chain(line.counts.map(count)).chain([count(line.failed), share(line.named)]));
     }
     table

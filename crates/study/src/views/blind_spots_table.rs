@@ -23,18 +23,19 @@ pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String
     let head = head.counts(["at the largest"]).unit("%").counts(["named in 90 % from", "low", "high"]);
     let mut table = Table::new(head);
     for spot in spots {
-        let [smallest, largest] = spot.tried_range();
+        let [smallest, largest] = spot.size_range();
         let within = |size: f64| match size {
             size if size > largest => format!("more than {largest}"),
             size if size < smallest => format!("less than {smallest}"),
             size => significant(size, 3),
         };
-        let at_largest = spot.tried.iter().filter(|trial| trial.size == largest);
-        let [named, total] = at_largest.fold([0, 0], |[named, total], size| [named + size.seen, total + size.trials]);
+        let at_largest = spot.counts.iter().filter(|trial| trial.size == largest);
+        let [named, total] =
+            at_largest.fold([0, 0], |[named, total], size| [named + size.detections, total + size.trials]);
         let mut cells = vec![name(&spot.effect)];
-        cells.extend(spot.place.iter().cloned());
+        cells.extend(spot.conditions.iter().cloned());
         cells.extend(several.then(|| design.methods[spot.method].label.clone()));
-        let trials: u64 = spot.tried.iter().map(|trial| trial.trials).sum();
+        let trials: u64 = spot.counts.iter().map(|trial| trial.trials).sum();
         cells.extend([spot.unit.clone(), smallest.to_string(), largest.to_string(), trials.to_string()]);
         cells.push(fixed(100.0 * named as f64 / total as f64, 0));
         let [low, high] = spot.size.ci95.unwrap_or([0.0, f64::INFINITY]);

@@ -57,7 +57,7 @@ impl ErrorMeasure {
     }
 
     /// Statistic of one panel.
-    pub fn of(self, record: &Performance, panel: usize) -> Option<Statistic> {
+    pub fn statistic(self, record: &Performance, panel: usize) -> Option<Statistic> {
         let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
         match self {
             Self::Rms | Self::OverBound => errors.rms,
@@ -202,7 +202,7 @@ impl<'a> ComparedMethods<'a> {
 
     /// Statistic of a panel, and whether it is too large to set an axis.
     fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
-        let figure = self.measure.of(self.summary.performance(cell, method)?, panel)?;
+        let figure = self.measure.statistic(self.summary.performance(cell, method)?, panel)?;
         let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
         let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
         let figure = figure.times(1.0 / unit);
@@ -270,7 +270,7 @@ pub fn over_axes(
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, has no information.
     let says_something = |record: &Performance| {
-        let mut figures = (0..measure.panels()).filter_map(|panel| measure.of(record, panel));
+        let mut figures = (0..measure.panels()).filter_map(|panel| measure.statistic(record, panel));
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
     };
     let groups = groups(design, x);
@@ -327,7 +327,7 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
 }
 
 /// Colour and mark of a method.
-pub fn origin(design: &Design, method: usize) -> CurveOrigin {
+pub fn curve_origin(design: &Design, method: usize) -> CurveOrigin {
     curves::curve_origin(&design.methods, &design.methods[method].label)
 }
 
@@ -351,14 +351,14 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
                 let (value, interval) = compared.drawn(cell, method, panel)?;
                 Some((at(cell)?, value, interval))
             };
-            let origin = origin(design, method);
+            let origin = curve_origin(design, method);
             let points: Vec<_> = group.cells.iter().filter_map(point).collect();
             (!points.is_empty())
-                .then(|| Layer::marks(origin.label(), origin.look(), points).with_line(Pen::of(&origin)))
+                .then(|| Layer::marks(origin.label(), origin.look(), points).with_line(Pen::from_origin(&origin)))
         };
         let bound = |&cell: &usize| Some((at(cell)?, compared.shown_bound(cell, panel)?));
         let (bx, by): (Vec<f64>, Vec<f64>) = group.cells.iter().filter_map(bound).unzip();
-        let pen = Pen::of(&CurveOrigin::Bound).width(1.3);
+        let pen = Pen::from_origin(&CurveOrigin::Bound).width(1.3);
         let bound = (!bx.is_empty()).then(|| Layer::line(CurveOrigin::Bound.label(), PlotCurve { x: bx, y: by }, pen));
         LayeredPanel {
             head: (panel == 0 && groups.len() > 1).then(|| group.head.clone()),
@@ -371,10 +371,10 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
         x: vec![across; groups.len()],
         rows: titles.iter().enumerate().map(row).collect(),
         panels: (0..titles.len()).flat_map(|row| groups.iter().map(move |group| panel(row, group))).collect(),
-        marks: marks.map(|mark| AxisLine { at: mark.at, label: mark.label.clone() }).collect(),
+        marks: marks.map(|mark| AxisLine { value: mark.value, label: mark.label.clone() }).collect(),
         ..Stack::default()
     };
-    Panels { note: compared.note(groups), beyond: compared.beyond(), ..Panels::of(stack) }
+    Panels { note: compared.note(groups), overflow_note: compared.beyond(), ..Panels::new(stack) }
 }
 
 fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows {
@@ -384,7 +384,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
         let items_of = |&cell: &usize| {
             let dot = |&method: &usize| {
                 let (value, interval) = compared.drawn(cell, method, panel)?;
-                let origin = origin(design, method);
+                let origin = curve_origin(design, method);
                 Some(RowItem::below(origin.label(), origin.look(), value, interval))
             };
             let bound = compared.shown_bound(cell, panel);
@@ -400,11 +400,11 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
     };
     NamedRows {
         // Names of trials need no title.
-        of: if design.axes[x].contains('[') { design.axes[x].clone() } else { String::new() },
+        names_title: if design.axes[x].contains('[') { design.axes[x].clone() } else { String::new() },
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
         columns: compared.titles().into_iter().enumerate().map(column).collect(),
         note: compared.note(part),
-        beyond: compared.beyond(),
+        overflow_note: compared.beyond(),
         ..NamedRows::default()
     }
 }

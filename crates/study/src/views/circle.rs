@@ -150,5 +150,5 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
     let caption = format!(
         "Tracks from the execute on, in ship lengths, a recorded one without the current that it shows. {DIMENSION_LINES_NOTE}"
     );
-    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::of(plan_view(&circles, Vec::new()))))
+    Some(PageFigure::new("circle", findings.into_iter().next()?, caption, Panels::new(plan_view(&circles, Vec::new()))))
 }

@@ -41,7 +41,7 @@ fn table(columns: Vec<NamedCurve>) -> String {
 
 /// Record and replays: `t_s`, `heading_deg`, the rudder and the noise-free heading if there are any, and heading and
 /// residual of every method.
-pub fn of_replays(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
+pub fn replay_table(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
     let mut columns = vec![("heading_deg".to_owned(), &replays.record)];
     columns.extend(rudder.map(|rudder| ("rudder_deg".to_owned(), rudder)));
     columns.extend(replays.truth.as_ref().map(|truth| ("true_heading_deg".to_owned(), truth)));
@@ -58,7 +58,7 @@ pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Fa
     folder.remove_all(|name| name.starts_with("replay-") && name.ends_with(".csv"))?;
     curves.records.iter().enumerate().try_for_each(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
-        folder.write(&format!("replay{suffix}.csv"), of_replays(&record.replays, Some(&record.rudder)))
+        folder.write(&format!("replay{suffix}.csv"), replay_table(&record.replays, Some(&record.rudder)))
     })
 }
 
@@ -69,7 +69,7 @@ pub fn write_showcases(stored: &StoredStudy, figures: &[StudyFigure], folder: &R
         let showcase = &stored.showcases[*index];
         let rudder = showcase.trial.as_ref().map(|trial| &trial.rudder);
         let stem = figure.stem.replace("replays", "replay");
-        folder.write(&format!("{stem}.csv"), of_replays(&showcase.replays, rudder))?;
+        folder.write(&format!("{stem}.csv"), replay_table(&showcase.replays, rudder))?;
     }
     Ok(())
 }

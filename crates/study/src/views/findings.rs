@@ -35,12 +35,12 @@ pub fn range(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
 }
 
 /// Finding of a figure of methods: the point of largest difference; for T if the figure has K and T.
-pub fn of_chart(plot: &Plot) -> String {
+pub fn chart_finding(plot: &Plot) -> String {
     match plot {
         Plot::Panels(data) => of_curves(data),
         Plot::Rows(data) => of_rows(data),
         Plot::Cells(data) => of_map(data),
-        Plot::ZigZag(data) => of_trial(data),
+        Plot::ZigZag(data) => zigzag_finding(data),
     }
 }
 
@@ -49,7 +49,7 @@ fn of_curves(data: &Panels) -> String {
     let Some(stack) = data.stacks.first().filter(|stack| !stack.rows.is_empty()) else {
         return String::from("No data");
     };
-    if stack.across.is_some() {
+    if stack.columns.is_some() {
         return of_clouds(data);
     }
     let (across, row) = (stack.x.len().max(1), stack.rows.len().min(2) - 1);
@@ -131,7 +131,7 @@ fn of_map(data: &CellMap) -> String {
 }
 
 /// Overshoots of a zig-zag.
-pub fn of_trial(data: &ZigzagTrial) -> String {
+pub fn zigzag_finding(data: &ZigzagTrial) -> String {
     let angles: Vec<String> = data.overshoots.iter().map(|swing| format!("{}°", fixed(swing.angle_deg, 1))).collect();
     match &angles[..] {
         [] => String::from("The trial has no overshoot"),
@@ -177,7 +177,7 @@ mod tests {
             (PanelRow::new(AxisSpec::decimal("rms error of K [%]"), 0.2), layers(1.0)),
             (PanelRow::new(AxisSpec::decimal("rms error of T [%]"), 0.2), layers(10.0)),
         ];
-        let data = Panels::of(Stack::over(AxisSpec::decimal("heading noise [°]"), rows));
-        assert_eq!(of_chart(&data.into()), "At heading noise 1.0°, rms error of T from 20 % (a) to 40 % (b)");
+        let data = Panels::new(Stack::over(AxisSpec::decimal("heading noise [°]"), rows));
+        assert_eq!(chart_finding(&data.into()), "At heading noise 1.0°, rms error of T from 20 % (a) to 40 % (b)");
     }
 }

@@ -79,7 +79,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
     let mut figures = Vec::new();
     figures.extend(record.zigzag.as_ref().map(|data| {
         let description = "heading and rudder, with the characteristics of the zig-zag.";
-        figure("trial", findings::of_trial(data), description, data.clone().into())
+        figure("trial", findings::zigzag_finding(data), description, data.clone().into())
     }));
     figures.extend(rejected.as_ref().map(|marks| {
         let description = "the record as read, with marks at readings that are left out or doubtful.";
@@ -164,7 +164,7 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     Panels {
         names_aside: true,
         note: (!curves.regions.is_empty()).then_some(note),
-        ..Panels::of(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
+        ..Panels::new(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
     }
 }
 
@@ -185,7 +185,7 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
             (amplitude(record), value.value, value.ci95)
         };
         let marks = Layer::marks(name.as_str(), look, all.records.iter().map(point).collect());
-        LayeredPanel { head: None, layers: vec![marks.apart()], ..LayeredPanel::default() }
+        LayeredPanel { head: None, layers: vec![marks.side_by_side()], ..LayeredPanel::default() }
     };
     let row = |title: String, joint: Option<Quantity>, factor: f64| {
         let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());
@@ -203,5 +203,5 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let stack =
         Stack { x: x.map(|title| AxisSpec::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
-    Panels { note, ..Panels::of(stack) }
+    Panels { note, ..Panels::new(stack) }
 }

@@ -1,6 +1,6 @@
 //! Held-out records: residuals and errors of the models before and after.
 
-use ::trace::replay_errors::HORIZONS;
+use ::trace::replay_errors::HORIZONS_S;
 use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
@@ -10,7 +10,7 @@ use report::figures::{
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
 
-use super::trace_figures::{models, ratio};
+use super::trace_figures::{ratio, replays_by_origin};
 use super::trace_tables::horizon;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
@@ -40,11 +40,11 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
         };
         let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
         let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
-        LayeredPanel { head: Some(head), layers: models(record).map(line).into(), ..LayeredPanel::default() }
+        LayeredPanel { head: Some(head), layers: replays_by_origin(record).map(line).into(), ..LayeredPanel::default() }
     };
     let row = PanelRow::zeroed(AxisSpec::new("residual [°]", Division::Angle), 0.13);
     let plot =
-        Panels::of(Stack::multiples(ACROSS.min(all.len()), AxisSpec::time(), row, all.iter().map(panel).collect()));
+        Panels::new(Stack::multiples(ACROSS.min(all.len()), AxisSpec::time(), row, all.iter().map(panel).collect()));
     let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
                    not fitted; degrees are root mean squares. The worst predicted record comes first.";
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
@@ -64,7 +64,8 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
         RowsColumn { x: AxisSpec::decimal(title), rows, zero: true, ..RowsColumn::default() }
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|error| Some(error.heading_rmse_deg))];
-    columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |all| horizon(all, length))));
+    columns
+        .extend(HORIZONS_S.map(|length| column(format!("every {length:.0} s [°]"), &move |all| horizon(all, length))));
     let count = judged.len();
     let records = if count == 1 { "record that was" } else { "records that were" };
     let title =

@@ -70,12 +70,12 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
     } else if records.len() > 1 {
         layers.extend(records.iter().map(|record| {
             let (x, y): (Vec<f64>, Vec<f64>) = record.iter().map(|entry| (entry.horizon_s, error(entry))).unzip();
-            let pen = Pen { width: 0.6, opacity: 0.5, ..Pen::of(origin) };
+            let pen = Pen { width: 0.6, opacity: 0.5, ..Pen::from_origin(origin) };
             Layer::line("", PlotCurve::new(x, y), pen)
         }));
     }
     let points = x.iter().zip(horizons).map(|(x, entries)| (*x, pooled(entries, *error), None)).collect();
-    layers.push(Layer::marks(origin.label(), look, points).with_line(Pen::of(origin)));
+    layers.push(Layer::marks(origin.label(), look, points).with_line(Pen::from_origin(origin)));
     layers
 }
 
@@ -101,7 +101,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
          far as half of them go.{each}"
     );
     let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;
-    Some(PageFigure::new("horizon", finding, caption, Panels::of(Stack::over(x, vec![(row, layers)]))))
+    Some(PageFigure::new("horizon", finding, caption, Panels::new(Stack::over(x, vec![(row, layers)]))))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use report::{CurveOrigin, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
-use super::key_rows::{is_of_k, is_quiet, of_rows, unit};
+use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
@@ -29,10 +29,10 @@ pub fn trials(design: &Design) -> Option<String> {
 }
 
 /// A chart as the key figure of a study, with a remark on its trials.
-pub fn of_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -> Plot {
+pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -> Plot {
     let (remark, note) = match &mut plot {
         Plot::Panels(data) => (of_panels(data, highlight), &mut data.note),
-        Plot::Rows(data) => (of_rows(data, highlight), &mut data.note),
+        Plot::Rows(data) => (highlight_rows(data, highlight), &mut data.note),
         Plot::Cells(data) => {
             of_cells(data, highlight);
             (None, &mut data.note)
@@ -93,7 +93,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let mut notes = Vec::new();
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
-        if stack.across.is_some() {
+        if stack.columns.is_some() {
             // Small multiples show one method each.
             stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
@@ -266,7 +266,9 @@ mod tests {
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..Stack::default()
         };
-        let Plot::Panels(data) = of_chart(Panels::of(stack).into(), &about_output_error(), None) else { panic!() };
+        let Plot::Panels(data) = highlighted_chart(Panels::new(stack).into(), &about_output_error(), None) else {
+            panic!()
+        };
         let panels = &data.stacks[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
@@ -293,7 +295,7 @@ mod tests {
             columns: vec![column("error of K [%]"), column("error of T [%]")],
             ..NamedRows::default()
         };
-        let Plot::Rows(data) = of_chart(rows.into(), &about_output_error(), None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &about_output_error(), None) else { panic!() };
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
@@ -313,7 +315,7 @@ mod tests {
         let rows =
             NamedRows { names: vec!["5/5".into(), "20/20".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &highlight, None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, None) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
             RowItem { kind: RowKind::Mark(drawn, ..), number, .. } => {
                 (drawn.colour == tint(look.colour), number.as_deref())
@@ -345,8 +347,10 @@ mod tests {
             rows: vec!["2".into()],
             over_bound: true,
         };
-        let data = Panels { note: Some(String::from("Marks.")), ..Panels::of(stack) };
-        let Plot::Panels(data) = of_chart(data.into(), &highlight, Some(String::from("9 trials."))) else { panic!() };
+        let data = Panels { note: Some(String::from("Marks.")), ..Panels::new(stack) };
+        let Plot::Panels(data) = highlighted_chart(data.into(), &highlight, Some(String::from("9 trials."))) else {
+            panic!()
+        };
         let layers = &data.stacks[0].panels[0].layers;
         let words = layers.iter().filter_map(|layer| match &layer.kind {
             LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
@@ -377,12 +381,12 @@ mod tests {
             note: None,
         };
         let highlight = Highlight { rows: vec![String::from("tug")], ..Highlight::default() };
-        let Plot::Cells(data) = of_chart(map.clone().into(), &highlight, None) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.clone().into(), &highlight, None) else { panic!() };
         assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
         let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
         assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
         let highlight = Highlight { rows: vec![String::from("known: c, right")], ..Highlight::default() };
-        let Plot::Cells(data) = of_chart(map.into(), &highlight, None) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.into(), &highlight, None) else { panic!() };
         assert_eq!(
             data.panels[0].1.iter().map(|row| row[0].outline).collect::<Vec<_>>(),
             [None, None, Some(Outline::Finding), None]
@@ -398,7 +402,7 @@ mod tests {
         let column = RowsColumn { rows: vec![violin(-20.2), violin(1.0)], ..RowsColumn::default() };
         let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
-        let Plot::Rows(data) = of_chart(rows.into(), &highlight, None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, None) else { panic!() };
         let text = |row: usize| data.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("−20 (−30 to 5.0)"), Some("1.0 (−30 to 5.0)")));
     }

@@ -41,7 +41,7 @@ pub fn tint(colour: RGBColor) -> RGBColor {
 }
 
 /// Highlights rows; returns a remark on their colours.
-pub fn of_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
+pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
     let (about, Highlight { rows, over_bound, .. }) = (&highlight.methods(), highlight);
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
@@ -50,7 +50,7 @@ pub fn of_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
         {
             let RowKind::Violin(_, density, quantiles) = &item.kind else { continue };
             if about.contains(name) {
-                column.reached.extend(density.iter().map(|(value, _)| *value));
+                column.included_values.extend(density.iter().map(|(value, _)| *value));
             }
             // Two digits, at most hundredths.
             let short = |value: f64| if value.abs() < 0.1 { fixed(value, 2) } else { significant(value, 2) };
@@ -60,7 +60,7 @@ pub fn of_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
     }
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
     let quiet_names = distinct(items.filter_map(|item| item.name.clone()).filter(|name| is_quiet(Some(name), about)));
-    if data.of.is_empty() {
+    if data.names_title.is_empty() {
         sort_rows(data, rows);
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {

@@ -62,8 +62,8 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
     let [lower, upper] = &curves.band;
     let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
     let mut stacks = vec![over(AxisSpec::time(), 0.24, REACHES[0], moment)];
-    let panels = entry.over.iter().zip(&curves.over);
-    let (shown, undrawn): (Vec<_>, Vec<_>) = panels.partition(|(panel, _)| panel.shows);
+    let panels = entry.channel_curves.iter().zip(&curves.over);
+    let (shown, undrawn): (Vec<_>, Vec<_>) = panels.partition(|(panel, _)| panel.is_significant);
     stacks.extend(shown.into_iter().take(MAX_PANELS).map(|(panel, channel): (&PanelEntry, &ChannelCurve)| {
         let ChannelCurve { moment, half_width, .. } = channel;
         let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
@@ -93,7 +93,7 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
 pub fn finding(entry: &MissingMomentEntry) -> String {
     let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
-    let telling = entry.over.iter().find(|panel| panel.shows && panel.variance_share.is_some());
+    let telling = entry.channel_curves.iter().find(|panel| panel.is_significant && panel.variance_share.is_some());
     match telling {
         None => format!("{begin}; it depends on no recorded channel"),
         Some(best) => format!("{begin}; its curve over the {} {}", best.channel, percent(best.variance_share)),
@@ -102,7 +102,7 @@ pub fn finding(entry: &MissingMomentEntry) -> String {
 
 /// Caption: effects that have the shape of the moment of one record.
 pub fn sentence(entry: &MissingMomentEntry) -> String {
-    let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
+    let telling = || entry.channel_curves.iter().filter(|panel| panel.is_significant && panel.variance_share.is_some());
     let Some(best) = telling().next() else { return String::from("The moment depends on time alone.") };
     let list =
         |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { names::effects(ids, ", ") };

@@ -29,7 +29,7 @@ fn judged<'a>(design: &'a Design, lines: &'a [TraceSummary]) -> Vec<JudgedLine<'
 
 fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -> bool) -> u64 {
     let of_line = |(line, physics): &JudgedLine| {
-        line.judged
+        line.judgements
             .iter()
             .filter(|(judgement, _)| is_counted(**judgement, physics))
             .map(|(_, count)| count)

@@ -29,14 +29,14 @@ pub struct ReplayedOvershoot<'a> {
 pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves) -> Vec<ReplayedOvershoot<'a>> {
     let mut all = Vec::new();
     for (record, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
-        let Ok(zigzag) = ZigZag::of(trial) else { continue };
+        let Ok(zigzag) = ZigZag::from_trial(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
         // The limits are for ships; for a model, the record does not state the length of the full-size ship.
         let ship = record.particulars().filter(|ship| ship.length >= imo::MIN_LENGTH_M);
         let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
         let rudder = trial.rudder().iter().fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
         for (number, word) in [(0, "first"), (1, "second")] {
-            let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
+            let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.overshoots_by_execute().nth(number)??.angle.value));
             let Some(measured) = angle(&zigzag) else { continue };
             let limit = criteria.iter().find(|limit| {
                 limit.unit == imo::CriterionUnit::Degrees && limit.measured.is_some() && limit.name.contains(word)
@@ -95,7 +95,7 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         let used = if overshoot.record.held_out { "" } else { " (fitted)" };
         format!("{}, {}{used}", names::record(&overshoot.record.name), overshoot.word)
     };
-    let seen = document.ship.seen.rudder_rad;
+    let seen = document.ship.validity_range.rudder_rad;
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
     let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
     let data =

@@ -13,7 +13,7 @@ use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{ErrorMeasure, comparable, origin, rms_title};
+use super::charts::{ErrorMeasure, comparable, curve_origin, rms_title};
 
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
@@ -37,7 +37,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         // Cells are the product of the axes, the first axis slowest.
         let cell = |x: usize, y: usize, method: usize| {
             let record = summary.performance(y * columns.len() + x, method);
-            let value = record.and_then(|record| measure.of(record, panel)).map(|figure| figure.value);
+            let value = record.and_then(|record| measure.statistic(record, panel)).map(|figure| figure.value);
             MapCell { value, ..MapCell::default() }
         };
         let panel = |method: usize| {
@@ -71,7 +71,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         x: AxisSpec::decimal(title).within(MAX_SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
-                let look = origin(design, method).look();
+                let look = curve_origin(design, method).look();
                 let violin =
                     |shape: &summary::ErrorDensity| RowKind::Violin(look, shape.density.clone(), shape.quantiles);
                 density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
@@ -107,7 +107,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
         let covariance_bound = design.cells[detail.cell].bound_percent2;
         let bound = covariance_bound.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
         let panel = |(method, detail): (usize, &MethodDetail)| {
-            let (origin, cloud) = (origin(design, method), detail.cloud.as_ref());
+            let (origin, cloud) = (curve_origin(design, method), detail.cloud.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
             let ellipse = cloud
                 .map_or_else(PlotCurve::default, |cloud| PlotCurve::contour95(cloud.centre.into(), cloud.covariance));
@@ -115,7 +115,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
                 Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.look().colour)),
                 Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),
             ];
-            let pen = Pen { dash: DOTTED, ..Pen::of(&CurveOrigin::Bound) };
+            let pen = Pen { dash: DOTTED, ..Pen::from_origin(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
             layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
             let detail = covariance_bound.zip(cloud).map(|(bound, cloud)| {
@@ -145,7 +145,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
         }
-        let data = Panels { note: Some(note), ..Panels::of(Stack { zero: true, ..multiples }) };
+        let data = Panels { note: Some(note), ..Panels::new(Stack { zero: true, ..multiples }) };
         let is_drawn = detail.methods.iter().any(|detail| detail.cloud.is_some());
         is_drawn.then_some((detail.cell, bound.is_some(), data))
     };
@@ -184,7 +184,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
         RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
     let rows = NamedRows {
-        of: design.axes[last].clone(),
+        names_title: design.axes[last].clone(),
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
         note: Some(String::from("Marks: means.")),
@@ -237,7 +237,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     let several = rows.len() > 1;
     let column = |x: AxisSpec, pick: Of, outer: usize, lines: Vec<(String, Pen, f64)>| {
         let of_method = |method: usize| -> Vec<Vec<RowItem>> {
-            let origin = origin(design, method);
+            let origin = curve_origin(design, method);
             let items = |(value, ends): (f64, [f64; 2])| prediction_items(&origin, value, ends);
             let is_of =
                 |line: &&PredictionSummary, cells: &[usize]| line.method == method && cells.contains(&line.cell);

@@ -5,8 +5,8 @@ use campaign::curves::degrees;
 use document::names;
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::prediction::{BandedCurve, Predicted};
-use predict::replay::{Compared, RecordReplay};
+use predict::prediction::{BandedCurve, PredictedFigure};
+use predict::replay::{ComparedFigure, RecordReplay};
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
@@ -82,7 +82,7 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
         let caption = format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
         let steady = &prediction.curves.steady;
-        return vec![PageFigure::new(stem, stability(steady), caption, steady_turns(steady, document.seen))];
+        return vec![PageFigure::new(stem, stability(steady), caption, steady_turns(steady, document.validity_range))];
     }
     let passage = prediction.curves.most_probable.as_ref();
     let steered = passage.map_or_else(PlotCurve::default, |passage| {
@@ -112,7 +112,7 @@ const MAX_NAMED_FIGURES: usize = 2;
 
 /// First characteristics of a manoeuvre, with their 90 % intervals over the sampled ships.
 fn first_figures(prediction: &Prediction) -> String {
-    let figure_words = |(name, figure): (&String, &Predicted)| {
+    let figure_words = |(name, figure): (&String, &PredictedFigure)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
         let (quantity, unit) = names::figure_of_merit(name);
         format!("{quantity} {}{unit} [{low}, {high}]", significant(figure.interval.median, 3))
@@ -171,7 +171,7 @@ fn from_above(track: &[[f64; 2]]) -> PlotCurve {
 /// Recorded turn and the median of its prediction.
 fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
     let drawn = |track: &Vec<[f64; 2]>| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.15);
-    let figures = |of: fn(&Compared) -> f64| {
+    let figures = |of: fn(&ComparedFigure) -> f64| {
         let length = replayed.figures.get("advance_m").zip(replayed.figures.get("advance_lengths"));
         let length = length.map(|(metres, lengths)| metres.measured / lengths.measured);
         let of_name = |name| replayed.figures.get(name).map(of).zip(length).map(|(metres, length)| metres / length);
@@ -186,7 +186,7 @@ fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
         circle("median of the drawn ships", &tracks.median, figures(|figure| figure.interval.median), predicted_pen()),
     ];
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::of(circle::plan_view(&circles, tracks.drawn.iter().map(drawn).collect())) }
+    Panels { cut, ..Panels::new(circle::plan_view(&circles, tracks.drawn.iter().map(drawn).collect())) }
 }
 
 fn track(prediction: &Prediction) -> Panels {
@@ -211,7 +211,7 @@ fn track(prediction: &Prediction) -> Panels {
     let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
     let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::of(Stack { equal: true, ..stack }) }
+    Panels { cut, ..Panels::new(Stack { equal: true, ..stack }) }
 }
 
 /// Prediction intervals of characteristics, with measured values and limits.

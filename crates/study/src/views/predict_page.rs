@@ -36,8 +36,8 @@ pub fn summary(document: &PredictDocument) -> String {
     if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
         summary += &format!(
             "extrapolated: beyond the rudder of {}° or the yaw rate of {}°/s in the records\n",
-            fixed(to_deg(document.seen.rudder_rad), 1),
-            fixed(to_deg(document.seen.yaw_rate_rad_s), 2)
+            fixed(to_deg(document.validity_range.rudder_rad), 1),
+            fixed(to_deg(document.validity_range.yaw_rate_rad_s), 2)
         );
     }
     let turns = document.manoeuvres.iter().filter(|turn| matches!(turn.kind, Manoeuvre::TurningCircle { .. }));

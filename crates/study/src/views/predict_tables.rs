@@ -1,7 +1,7 @@
 //! Tables of predictions.
 
 use document::names;
-use predict::correction::Corrected;
+use predict::correction::CorrectedFigure;
 use predict::interval::PredictionInterval;
 use predict::{PredictDocument, Prediction};
 use report::number::{MISSING, fixed, significant, with_uncertainty};
@@ -82,7 +82,7 @@ pub fn corrected(document: &PredictDocument) -> Table {
     let head = head.texts(["F/B 90 %"]).numbers(["R"]).texts(["R 50 %", "R 90 %", "remark"]);
     let mut table = Table::new(head);
     for correction in &document.corrected {
-        for (name, Corrected { measured, sd, factor, result, warnings, .. }) in &correction.figures {
+        for (name, CorrectedFigure { measured, sd, factor, result, warnings, .. }) in &correction.figures {
             let ([factor, _, of_factor], [median, half, most]) = (cells(factor), cells(result));
             let measured = match sd {
                 Some(_) => with_uncertainty(*measured, *sd),

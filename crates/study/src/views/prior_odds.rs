@@ -130,7 +130,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
          named. Dashed level: an effect is named from there. Structures that the search did not fit have no part in it."
     );
     let finding = format!("Prior odds × {least} to × {most}: {}", finding(&lines, prior.named_from));
-    let plot = Panels::of(Stack::over(x, vec![(row, layers)]));
+    let plot = Panels::new(Stack::over(x, vec![(row, layers)]));
     (!lines.is_empty()).then(|| PageFigure::new("prior-odds", finding, caption, plot))
 }
 

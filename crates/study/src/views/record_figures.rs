@@ -39,7 +39,7 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
     // A band wider than everything else is cut at the frame: it would flatten the record.
     let mut bands = Vec::new();
     for ModelOverTime { origin, heading, residual, rms_deg, band } in models {
-        let (pen, colour) = (Pen::of(&origin), origin.look().colour);
+        let (pen, colour) = (Pen::from_origin(&origin), origin.look().colour);
         let rms = rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", significant(rms, 2)));
         upper.push(Layer::line(format!("{}{rms}", origin.label()), heading, pen));
         // Solid, because dashes would hide parts of a noisy residual.
@@ -115,7 +115,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
     let stack = Stack::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
-    Panels { note, cut, ..Panels::of(Stack { zero: true, ..stack }) }
+    Panels { note, cut, ..Panels::new(Stack { zero: true, ..stack }) }
 }
 
 #[cfg(test)]

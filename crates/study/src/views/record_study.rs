@@ -47,7 +47,7 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
     for line in lines {
         let mut cells = tables::row_labels(design, line.cell, line.method);
         cells.push(format!("{}/{}", line.failed, line.fits));
-        for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
+        for figure in [line.fitted_deg, line.validation_deg, line.ratio, line.window_ratio] {
             cells.push(
                 figure
                     .map_or_else(|| MISSING.into(), |figure| number::with_supported_digits(figure.value, figure.ci95)),
@@ -71,7 +71,7 @@ pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     for line in lines {
         let mut cells = tables::row_labels(design, line.cell, line.method);
         cells.extend([line.fits.to_string(), line.failed.to_string()]);
-        for figure in [line.fitted_deg, line.judged_deg, line.ratio, line.window_ratio] {
+        for figure in [line.fitted_deg, line.validation_deg, line.ratio, line.window_ratio] {
             let ends = Statistic::value_and_ends(figure);
             cells.extend(ends.map(|value| value.map_or_else(String::new, |value| significant(value, 6))));
         }
@@ -91,7 +91,7 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
         let cell = &design.cells[row.cell as usize];
         let Some(record) = cell.records.get(row.replicate as usize) else { continue };
         let mut cells = tables::row_labels(design, row.cell as usize, row.method);
-        cells.extend([record.fitted.clone(), record.judge.clone().unwrap_or_default()]);
+        cells.extend([record.fitted.clone(), record.validation.clone().unwrap_or_default()]);
         cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
         let traced = row.traced.as_ref();
         cells.push(traced.map_or_else(String::new, |trace| trace.verdict.to_string()));
@@ -143,7 +143,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
                 ..RowItem::new("", RowKind::Mark(pale, error, None)).clipped_if_far()
             })
             .collect();
-        let median = line.judged_deg.filter(|_| items.len() >= MIN_SUMMARISED);
+        let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED);
         items.extend(median.map(|median| RowItem {
             number: Some(degrees(median.value)),
             place: RowPlace::Beside,
@@ -197,7 +197,7 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let method = &design.methods[best].label;
     let median = |cell: usize, method: usize| {
         let line = lines.iter().find(|line| (line.cell, line.method) == (cell, method));
-        line.and_then(|line| line.judged_deg).map_or(f64::NAN, |median| median.value)
+        line.and_then(|line| line.validation_deg).map_or(f64::NAN, |median| median.value)
     };
     let ratios = ratios(best);
     if ratios.len() > MAX_NAMED_CELLS {
@@ -280,7 +280,7 @@ pub fn write_files(
         let held = study_figures::predictions(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
         judged.into_iter().chain(held).collect()
     };
-    let figures = study_figures::chosen(all, design, choice);
+    let figures = study_figures::chosen_figures(all, design, choice);
     write_page(folder, page(stored, &made, figures), Some(theme))?;
     Ok(made)
 }

@@ -42,7 +42,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     for term in &model.terms {
         let unit = if term.unit == "1" { String::new() } else { format!(" [{}]", term.unit) };
         let mut cells = vec![format!("{}{unit}", term.symbol), number(&term.joint)];
-        cells.extend(term.own.iter().map(|quantity| quantity.as_ref().map_or_else(|| MISSING.to_owned(), number)));
+        cells.extend(term.by_scale.iter().map(|quantity| quantity.as_ref().map_or_else(|| MISSING.to_owned(), number)));
         cells.push(term.difference_sd.map_or_else(|| MISSING.to_owned(), |far| fixed(far, 1)));
         cells.push(term.verdict.to_string());
         table.push(cells);

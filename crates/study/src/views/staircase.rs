@@ -48,7 +48,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     }
     let row = PanelRow::zeroed(AxisSpec::new("heading [°]", Division::Angle), 0.085);
     let stack = Stack { unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
-    let plot = Panels::of(stack);
+    let plot = Panels::new(stack);
     let caption = format!(
         "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \
          the closest replay; degrees are root mean squares over all fitted records.",

@@ -47,12 +47,12 @@ struct StudiesPage {
 pub fn check_folders(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
     if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
         let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
-        return Err(Failure::about(folder, format!("{problem}; give folders of studies, or this folder alone")));
+        return Err(Failure::in_file(folder, format!("{problem}; give folders of studies, or this folder alone")));
     }
     let path = place.join(PAGE);
     if disk::read(&path, MAX_PAGE_BYTES).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
         let problem = "this page was not made by `study report`";
-        return Err(Failure::about(&path, format!("{problem}; move it away, or give another folder with --out")));
+        return Err(Failure::in_file(&path, format!("{problem}; move it away, or give another folder with --out")));
     }
     Ok(())
 }
@@ -71,10 +71,12 @@ pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Fail
 
 fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
     let path = folder.join(files::MANIFEST);
-    let missing = || Failure::about(&path, "there is no such file any more");
+    let missing = || Failure::in_file(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
     let words = manifest.prose();
-    let unfit = |stem: &str, unfit| Failure::about(&path, format!("`output.figure` is {}; {unfit}", name::shown(stem)));
+    let unfit = |stem: &str, unfit| {
+        Failure::in_file(&path, format!("`output.figure` is {}; {unfit}", name::quoted_beginning(stem)))
+    };
     let figure = match &words.output.figure {
         Some(stem) => {
             Some(name::check_file_name(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?)
@@ -111,7 +113,7 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     let names = disk::names(folder).on("list", folder)?;
     let stems: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
     let stems = stems.join(", ");
-    Err(Failure::about(
+    Err(Failure::in_file(
         folder,
         format!("the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {stems}"),
     ))

@@ -29,15 +29,15 @@ use crate::screen;
 /// Place of a figure in the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FigurePlace {
-    /// At the top: the key figure of the study.
+    /// Top of the page, for the key figure of the study.
     Key,
-    /// With the first trial of a cell.
+    /// Section of the first trial of a cell.
     Showcase(usize),
-    /// With the effects named by traces.
+    /// Section of the effects named by traces.
     Traces,
-    /// With all trials.
+    /// Section of all trials.
     AllTrials,
-    /// With all trials: errors over the axes.
+    /// Charts of errors over the axes, in the section of all trials.
     Chart,
 }
 
@@ -47,11 +47,15 @@ pub type StudyFigure = (FigurePlace, PageFigure);
 /// Figures of a study in the order of the report, the key figure first if the scenario names one. Warns of a name that
 /// no figure has.
 pub fn figures(stored: &StoredStudy, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
-    chosen(|| all(stored, summary), &stored.design, choice)
+    chosen_figures(|| all(stored, summary), &stored.design, choice)
 }
 
 /// Figures of a study that are made, the key figure first.
-pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: FigureChoice) -> Vec<StudyFigure> {
+pub fn chosen_figures(
+    all: impl FnOnce() -> Vec<StudyFigure>,
+    design: &Design,
+    choice: FigureChoice,
+) -> Vec<StudyFigure> {
     if choice == FigureChoice::None {
         return Vec::new();
     }
@@ -73,7 +77,7 @@ pub fn chosen(all: impl FnOnce() -> Vec<StudyFigure>, design: &Design, choice: F
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
                 let trials = key_figure::trials(design).filter(|_| *place != FigurePlace::Traces);
-                plot = key_figure::of_chart(plot, &output.highlight, trials);
+                plot = key_figure::highlighted_chart(plot, &output.highlight, trials);
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))
@@ -117,7 +121,7 @@ pub fn highlighted_trace(design: &Design, summary: &Summary) -> Vec<TraceSummary
 /// Figure titled with the finding from its data.
 fn under_its_finding(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> PageFigure {
     let plot = plot.into();
-    PageFigure::new(stem, capital(&findings::of_chart(&plot)), caption, plot)
+    PageFigure::new(stem, capital(&findings::chart_finding(&plot)), caption, plot)
 }
 
 /// Caption suffix naming the part of the study that a figure shows.
@@ -257,7 +261,7 @@ fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Ite
         (
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
-            showcase.trial.clone().map(|data| (findings::of_trial(&data), data.into())),
+            showcase.trial.clone().map(|data| (findings::zigzag_finding(&data), data.into())),
         ),
         (
             "fourier-fit",

@@ -96,7 +96,7 @@ struct NamedEffects {
 pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figures: Vec<StudyFigure>) -> Page {
     let StoredStudy { manifest, design, showcases, timings, .. } = stored;
     let figures = PlacedFigures(figures);
-    let trial = |(number, showcase)| first_trial(showcase, figures.at(FigurePlace::Showcase(number)));
+    let trial = |(number, showcase)| first_trial(showcase, figures.marks_at(FigurePlace::Showcase(number)));
     let tracing = &summary.tracing;
     let named = || {
         let spots = blind_spots(tracing, design);

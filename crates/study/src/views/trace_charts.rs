@@ -151,7 +151,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     };
     Some(NamedRows {
         names: rules.iter().map(|(label, _)| (*label).to_owned()).collect(),
-        of: String::from("list of effects"),
+        names_title: String::from("list of effects"),
         columns: vec![column],
         note: Some(note),
         ..NamedRows::default()
@@ -178,7 +178,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
         RowsColumn { x: AxisSpec::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
     };
     NamedRows {
-        of: String::from("named if its probability is"),
+        names_title: String::from("named if its probability is"),
         names: variants.iter().map(|variant| (*variant).to_owned()).collect(),
         columns: vec![
             column("trials with a false name [%]", |(_, wrong, _)| *wrong),
@@ -226,7 +226,7 @@ fn shares(
     };
     let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();
     let row = PanelRow::new(AxisSpec::new(y_title, Division::Percent), 0.42);
-    Panels::of(Stack::over(x, vec![(row, layers)]))
+    Panels::new(Stack::over(x, vec![(row, layers)]))
 }
 
 /// Maximum number of named kinds of trial, and of series in a figure.

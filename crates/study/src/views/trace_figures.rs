@@ -83,7 +83,7 @@ pub fn residual_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<P
             let caption = format!(
                 "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
             );
-            let [before, after] = models(record).map(|(_, replay)| significant(to_deg(replay.rms()), 2));
+            let [before, after] = replays_by_origin(record).map(|(_, replay)| significant(to_deg(replay.rms()), 2));
             let finding = format!("{name}: heading error {before}° (rms) before, {after}° after");
             figures.push(PageFigure::new(format!("residual{suffix}"), finding, caption, residual(record)));
         }
@@ -92,7 +92,7 @@ pub fn residual_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<P
 }
 
 /// Replays of a record by the models before and after.
-pub fn models(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
+pub fn replays_by_origin(record: &TracedRecord) -> [(CurveOrigin, &Replay); 2] {
     let [before, after] = &record.replays;
     [(CurveOrigin::Before, before), (CurveOrigin::After, after)]
 }
@@ -116,7 +116,7 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
         residual: angle_curve_deg(&replay.time, &replay.residual),
         rms_deg: rms.map(|rms| rms[number]),
     };
-    models(record).into_iter().enumerate().map(model).collect()
+    replays_by_origin(record).into_iter().enumerate().map(model).collect()
 }
 
 /// A record with the models before and after.
@@ -222,18 +222,18 @@ fn residual(record: &TracedRecord) -> Panels {
             Layer::new(origin.label(), curve_of(replay), if joined { line } else { LayerKind::Dots(colour) })
         };
         let row = PanelRow { zero: y.division != Division::Factors, ..PanelRow::new(y, 0.17) };
-        Stack { is_half: true, ..Stack::over(x, vec![(row, models(record).map(layer).into())]) }
+        Stack { is_half: true, ..Stack::over(x, vec![(row, replays_by_origin(record).map(layer).into())]) }
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
         let scatter = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
         stack(AxisSpec::decimal(x_title), AxisSpec::decimal("residual [°]"), false, &scatter)
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
-    let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
+    let period = ZigZag::from_trial(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
     let frequency = AxisSpec::new("frequency [Hz]", Division::Factors);
     let density = AxisSpec::new("power [°²/Hz]", Division::Factors);
     let spectrum = stack(frequency, density, true, &|replay| power_spectrum(&series(replay)));
-    let mark = period.map(|period| AxisLine { at: period.recip(), label: String::from("period") });
+    let mark = period.map(|period| AxisLine { value: period.recip(), label: String::from("period") });
     let stacks = vec![
         against("heading [°]", &|replay| degrees(&replay.heading)),
         against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),

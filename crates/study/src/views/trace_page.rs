@@ -81,10 +81,17 @@ const MIN_DEPARTURE: f64 = 2.0;
 fn odd(document: &TraceDocument) -> String {
     let hulls = &document.ship.hulls;
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };
-    let farthest = hull.coefficients.iter().max_by(|a, b| a.departure().abs().total_cmp(&b.departure().abs()));
-    let departure = farthest.filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).map(|entry| {
+    let farthest = hull
+        .coefficients
+        .iter()
+        .max_by(|a, b| a.departure_from_prior().abs().total_cmp(&b.departure_from_prior().abs()));
+    let departure = farthest.filter(|entry| entry.departure_from_prior().abs() >= MIN_DEPARTURE).map(|entry| {
         let means = departure_cause(&entry.key).map_or_else(String::new, |means| format!(" ({means})"));
-        format!("{} is {} standard deviations off its prior{means}", entry.symbol, fixed(entry.departure(), 1))
+        format!(
+            "{} is {} standard deviations off its prior{means}",
+            entry.symbol,
+            fixed(entry.departure_from_prior(), 1)
+        )
     });
     let departure = departure
         .unwrap_or_else(|| format!("no coefficient is more than {MIN_DEPARTURE} standard deviations off its prior"));
@@ -101,7 +108,7 @@ fn noise(document: &TraceDocument) -> String {
     let largest = all.iter().max_by(|a, b| a.heading_sd_deg.total_cmp(&b.heading_sd_deg));
     let beside = largest.map(tables::coloured).unwrap_or_default();
     let beside = beside.iter().map(|noise_term| format!(", {noise_term}")).collect::<String>();
-    let holds = match all.iter().all(|noise_entry| noise_entry.describes_what_is_left) {
+    let holds = match all.iter().all(|noise_entry| noise_entry.is_adequate) {
         true => "this explains the remaining error",
         false => "this does not explain all of the remaining error",
     };
@@ -216,8 +223,8 @@ fn placed(
 /// Names of the fitted records, and the kind of the first if its name does not state it.
 fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
     let name = document.title();
-    let zigzag = curves.records.first().and_then(|record| ZigZag::of(&record.trial).ok());
-    let manoeuvre = zigzag.and_then(|zigzag| Some((zigzag.pair?, zigzag.side)));
+    let zigzag = curves.records.first().and_then(|record| ZigZag::from_trial(&record.trial).ok());
+    let manoeuvre = zigzag.and_then(|zigzag| Some((zigzag.nominal_angles?, zigzag.first_side)));
     let manoeuvre =
         manoeuvre.filter(|(pair, _)| !name.contains(&pair.to_string())).map_or_else(String::new, |(pair, side)| {
             let side = side.map_or_else(String::new, |side| format!(", first to {side}"));
@@ -253,7 +260,7 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
 
 /// Limits of validity of the model, a sentence each.
 fn limits(document: &TraceDocument) -> Vec<String> {
-    let rudder = fixed(to_deg(document.ship.seen.rudder_rad), 0);
+    let rudder = fixed(to_deg(document.ship.validity_range.rudder_rad), 0);
     let largest = document
         .trace
         .error

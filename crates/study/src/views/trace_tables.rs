@@ -1,6 +1,6 @@
 //! Tables of a trace, from its document alone.
 
-use ::trace::replay_errors::HORIZONS;
+use ::trace::replay_errors::HORIZONS_S;
 use document::identified_hull::IdentifiedCoefficient;
 use document::trace::{
     ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
@@ -54,7 +54,7 @@ pub fn effects(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["parameters", "indistinguishable from"]));
     for effect in &document.trace.effects {
-        let asked = if effect.asked { ", asked for" } else { "" };
+        let asked = if effect.required { ", asked for" } else { "" };
         let parameters: Vec<String> = effect.parameters.values().map(value).collect();
         table.push([
             format!("{}{asked}", term(&effect.id, &effect.form, effect.only.as_ref())),
@@ -73,7 +73,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     let with_moments = judged.any(|error| error.with_own_bias_deg.or(error.with_own_moment_deg).is_some());
     let moments = ["own bias", "own moment"].into_iter().filter(|_| with_moments);
     let head = TableHead::default().texts(["record", "use", "model"]).numbers(["heading"]).unit("deg");
-    let head = head.numbers(moments).unit("deg").numbers(HORIZONS.map(|length| format!("every {length:.0} s")));
+    let head = head.numbers(moments).unit("deg").numbers(HORIZONS_S.map(|length| format!("every {length:.0} s")));
     let head = head.unit("deg").numbers(["yaw rate"]).unit("deg/s").numbers(["overshoots"]).unit("deg");
     let head = head.numbers(["after/before"]).numbers(["band covers"]).unit("%").numbers(["band width"]).unit("deg");
     let mut table = Table::new(head);
@@ -88,7 +88,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
             cells.push(three(Some(error.heading_rmse_deg)));
             let moments = [error.with_own_bias_deg, error.with_own_moment_deg].map(three);
             cells.extend(with_moments.then_some(moments).into_iter().flatten());
-            cells.extend(HORIZONS.map(|length| three(horizon(error, length))));
+            cells.extend(HORIZONS_S.map(|length| three(horizon(error, length))));
             cells.extend([error.yaw_rate_rmse_deg_s, error.overshoot_error_deg].map(three));
             cells.push(optional(ratio, 2));
             cells.push(optional(error.band_coverage_95.map(|share| 100.0 * share), 1));
@@ -121,12 +121,12 @@ pub fn hulls(document: &TraceDocument) -> Table {
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
         let mut far: Vec<&IdentifiedCoefficient> =
-            hull.coefficients.iter().filter(|entry| entry.departure().abs() >= MIN_DEPARTURE).collect();
-        far.sort_by(|a, b| b.departure().abs().total_cmp(&a.departure().abs()));
+            hull.coefficients.iter().filter(|entry| entry.departure_from_prior().abs() >= MIN_DEPARTURE).collect();
+        far.sort_by(|a, b| b.departure_from_prior().abs().total_cmp(&a.departure_from_prior().abs()));
         for entry in far {
             let expected = format!("{} ± {}", significant(entry.expected, 2), significant(entry.expected_sd, 2));
             let meaning = departure_cause(&entry.key).unwrap_or(MISSING).to_owned();
-            let departure = fixed(entry.departure(), 1);
+            let departure = fixed(entry.departure_from_prior(), 1);
             table.push([
                 hull.form.clone(),
                 entry.symbol.clone(),

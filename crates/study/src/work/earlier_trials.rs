@@ -47,16 +47,16 @@ impl EarlierModel {
         let ship = ship.ok_or_else(|| {
             let problem = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \
                         approach speed of the ship and a speed column";
-            Failure::about(shown, problem)
+            Failure::in_file(shown, problem)
         })?;
-        let hulls = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
+        let hulls = hulls_of(&ship).map_err(|error| Failure::in_file(shown, error))?;
         Ok(Self { file: shown.to_owned(), records, hulls })
     }
 
     /// Document entry of the model, compared with the ship of the records.
     fn entry(&self, ship: &HullParticulars) -> PriorModelEntry {
         let earlier_ship = self.hulls[0].particulars;
-        let likeness = Likeness::of(&earlier_ship, ship);
+        let likeness = Likeness::from_particulars(&earlier_ship, ship);
         PriorModelEntry {
             file: self.file.clone(),
             records: self.records.clone(),
@@ -80,7 +80,7 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
         if let Some((file, other)) = records.iter().find_map(|(hash, file)| Some((file, seen.get(hash.as_str())?))) {
             let problem =
                 format!("{file} is in this model and in {other}, but a record counts only once; leave one of them out");
-            return Err(Failure::about(model, problem));
+            return Err(Failure::in_file(model, problem));
         }
         seen.extend(records.keys().map(|sha256| (sha256.as_str(), model.as_str())));
     }
@@ -96,7 +96,7 @@ pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, 
         let problem = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
-        return Err(Failure::about(file_of(&trials[0]).0, format!("{problem}: {error}; {cure}")));
+        return Err(Failure::in_file(file_of(&trials[0]).0, format!("{problem}: {error}; {cure}")));
     }
     Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
@@ -144,20 +144,20 @@ pub struct ShipAfterTrials {
 pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
-    let before_trials = hulls_of(ship).map_err(|error| Failure::about(shown, error))?;
+    let before_trials = hulls_of(ship).map_err(|error| Failure::in_file(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
     for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
         let Some((after, check)) = hull::combined(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = rows_of(&after.covariance);
-        drawable_hull::check(stored).map_err(|error| Failure::about(shown, error))?;
+        drawable_hull::check(stored).map_err(|error| Failure::in_file(shown, error))?;
         checks.extend(check.map(|check| (hull_before.form.as_str(), check)));
     }
     if checks.is_empty() {
         let problem = "it has no hull that --prior could change; fit its records again with length and speed of the \
             ship, or leave --prior out";
-        return Err(Failure::about(shown, problem));
+        return Err(Failure::in_file(shown, problem));
     }
     checks.sort_by(|a, b| b.1.p_value.total_cmp(&a.1.p_value));
     let earlier = earlier_trials(models, &before_trials[0].particulars, &checks, |_| true);
@@ -178,7 +178,7 @@ fn earlier_trials(
         chi_square: check.chi_square,
         degrees_of_freedom: check.degrees_of_freedom,
         p_value: check.p_value,
-        moved: check.moved.iter().map(|(key, shift)| ((*key).to_owned(), *shift)).collect(),
+        shifts: check.shifts.iter().map(|(key, shift)| ((*key).to_owned(), *shift)).collect(),
         takes_part: takes_part(form),
     };
     EarlierTrials {

@@ -64,7 +64,14 @@ pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Qu
     let values: Vec<Quantity> =
         at_scales.iter().map(|value| value.unwrap_or(Quantity::without_uncertainty(f64::NAN))).collect();
     let (difference_sd, verdict) = compare_scales(&values);
-    ComparedTerm { symbol: symbol.to_owned(), unit: unit.to_owned(), joint, own: at_scales, difference_sd, verdict }
+    ComparedTerm {
+        symbol: symbol.to_owned(),
+        unit: unit.to_owned(),
+        joint,
+        by_scale: at_scales,
+        difference_sd,
+        verdict,
+    }
 }
 
 /// 1/T or K/T with its standard deviation.

@@ -38,7 +38,7 @@ use campaign::statistics::grouped;
 /// Result of an identification.
 pub struct FitResult {
     /// Records, brought to one scale.
-    pub together: RescaledRecords,
+    pub records: RescaledRecords,
     /// Entries of the methods, with their estimates if they gave one.
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
     /// Document of `fit.json`.
@@ -57,14 +57,14 @@ impl FitResult {
     /// The same fit with the turning circle predicted from the recommended estimate.
     #[must_use]
     pub fn with_predicted_circle(mut self) -> Self {
-        let circle = PredictedCircle::of(&self.document);
+        let circle = PredictedCircle::from_document(&self.document);
         (self.document.predicted_circle, self.circle_track) = circle.map(|circle| (circle.entry, circle.track)).unzip();
         self
     }
 
     /// Curves of the figures: records, replays, and 95 % regions of K and T.
     pub fn curves(&self) -> FitCurves {
-        let RescaledRecords { trials, held_out, .. } = &self.together;
+        let RescaledRecords { trials, held_out, .. } = &self.records;
         let stems = records::unique_names(trials.iter().chain(held_out).map(Trial::name));
         let records = trials.iter().chain(held_out).zip(stems).enumerate();
         let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
@@ -80,7 +80,7 @@ impl FitResult {
     }
 
     fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
-        let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
+        let zigzag = ZigZag::from_trial(trial).ok().filter(|_| !validation);
         let rejected = |channel: Channel| {
             let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
             let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
@@ -97,7 +97,7 @@ impl FitResult {
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: angle_curve_deg(trial.time(), trial.rudder()),
-            circle: (!validation).then(|| MeasuredCircle::of(trial)?.track).flatten().map(from_above),
+            circle: (!validation).then(|| MeasuredCircle::from_trial(trial)?.track).flatten().map(from_above),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
             name,
         }
@@ -126,7 +126,7 @@ pub fn fit(
         .map(|(label, method)| {
             let (mut entry, estimate) = entry(label, method.identify(trials), trials);
             entry.id = (method.id() != label).then(|| method.id().to_owned());
-            entry.prime = entry.parameters.zip(ship).map(|(fit, ship)| PrimeIndices::of([fit.k_per_s, fit.t_s], ship));
+            entry.prime = entry.parameters.zip(ship).map(|(fit, ship)| PrimeIndices::new([fit.k_per_s, fit.t_s], ship));
             entry.validation = held_out.iter().map(|other| validate(other, estimate.as_ref())).collect();
             (entry, estimate)
         })
@@ -138,7 +138,7 @@ pub fn fit(
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
-    let shown = RecordFacts::of(trials).with_motion(None, &earlier_trials::hulls(priors));
+    let shown = RecordFacts::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
@@ -146,7 +146,7 @@ pub fn fit(
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };
-    let (verdict, zigzags) = (verdict::of_answers(trials, &answers), RecordedZigZags::of(trials));
+    let (verdict, zigzags) = (verdict::from_answers(trials, &answers), RecordedZigZags::from_trials(trials));
     let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
     let document = FitDocument {
         schema: SCHEMA.into(),
@@ -162,17 +162,17 @@ pub fn fit(
         form,
         form_remarks,
         predicted_circle: None,
-        single_records: zigzags.alone(&preferred(methods, &entries, verdict.as_ref())),
+        single_records: zigzags.single_records(&preferred(methods, &entries, verdict.as_ref())),
         verdict,
         warnings: warnings.ranked(),
         methods: entries,
     };
-    Ok(FitResult { together, answers, document, circle_track: None })
+    Ok(FitResult { records: together, answers, document, circle_track: None })
 }
 
 /// Document entry of a record; adds a warning if its first overshoot cannot be read.
 fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
-    let ((file, sha256), zigzag) = (file_of(trial), ZigZag::of(trial));
+    let ((file, sha256), zigzag) = (file_of(trial), ZigZag::from_trial(trial));
     warnings.extend(zigzag.as_ref().ok().and_then(|zigzag| late_begin(trial, zigzag)));
     TrialEntry {
         file: file.into(),
@@ -182,14 +182,14 @@ fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
         trial_particulars: records::particulars(trial),
         zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
         no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
-        circle: MeasuredCircle::of(trial).map(|circle| circle_entry(&circle, trial.particulars())),
+        circle: MeasuredCircle::from_trial(trial).map(|circle| circle_entry(&circle, trial.particulars())),
     }
 }
 
 fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEntry {
     let lengths = |name: &str| Some(circle.figures.get(name).copied().flatten()? / ship?.length);
     CircleEntry {
-        side: Side::of(circle.turn.side).to_string(),
+        side: Side::from_angle(circle.turn.side).to_string(),
         rudder_deg: to_deg(circle.turn.rudder),
         advance_lengths: lengths("advance_m"),
         transfer_lengths: lengths("transfer_m"),
@@ -219,8 +219,8 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     };
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
-        overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
-        overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
+        overshoots_deg: zigzag.overshoots_by_execute().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
+        overshoots_sd_deg: zigzag.overshoots_by_execute().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
         period_s: zigzag.period.map(|period| period.value),
         imo: criteria.iter().map(criterion).collect(),
         imo_caution: trial.particulars().and_then(imo::short_ship_caution),
@@ -230,7 +230,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
 /// Warnings of a method.
 fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
     let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
-    WarningSource::Method(entry.method.clone()).of(warnings).collect()
+    WarningSource::Method(entry.method.clone()).attach_to(warnings).collect()
 }
 
 /// Warning for a ship of known draught whose model cannot be converted to another loading.
@@ -251,7 +251,7 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
 ///
 /// Fails if no method has such a name.
 pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
-    let all = registry::defaults().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
+    let all = registry::default_settings().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
@@ -307,7 +307,7 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::about(file_of(record).0, message).with_code(ErrorCode::NoAnswer)
+    Failure::in_file(file_of(record).0, message).with_code(ErrorCode::NoAnswer)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {

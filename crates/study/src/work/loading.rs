@@ -58,7 +58,7 @@ impl DescribedLoading {
     }
 
     fn refused(&self, problem: impl std::fmt::Display) -> Failure {
-        Failure::about(&self.file, problem)
+        Failure::in_file(&self.file, problem)
     }
 
     /// Ship at this loading, with one hull, and her draught at the trials, m; `shown` is the name of her model in
@@ -75,7 +75,7 @@ impl DescribedLoading {
         warnings: &mut Warnings,
     ) -> Result<(IdentifiedShip, f64), Failure> {
         let mut ship = only_hull(shown, ship)?;
-        let earlier = hulls_of(&ship).map_err(|error| Failure::about(shown, error))?;
+        let earlier = hulls_of(&ship).map_err(|error| Failure::in_file(shown, error))?;
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
@@ -92,7 +92,7 @@ impl DescribedLoading {
         let faster = to.speed / at_trials.speed;
         ship.speed_m_s = ship.speed_m_s.map(|speed| speed * faster);
         ship.approach_yaw_rate_rad_s *= faster;
-        ship.seen.yaw_rate_rad_s *= faster;
+        ship.validity_range.yaw_rate_rad_s *= faster;
         Ok((ship, at_trials.draught.unwrap_or_default()))
     }
 
@@ -116,7 +116,7 @@ impl DescribedLoading {
     /// except the mass; revolutions are proportional to the speed. Unknown particulars of rudder and propeller are
     /// assumed once for both loadings.
     fn particulars(&self, shown: &str, at_trials: &HullParticulars) -> Result<HullParticulars, Failure> {
-        let mut to = completed(at_trials).map_err(|error| Failure::about(shown, error))?;
+        let mut to = completed(at_trials).map_err(|error| Failure::in_file(shown, error))?;
         to.displacement = None;
         to.block_coefficient = to.block_coefficient.filter(|_| self.given.displacement.is_none());
         for particular in &PARTICULARS {
@@ -159,7 +159,7 @@ impl DescribedLoading {
 pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
     if rule_out_form(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";
-        return Err(Failure::about(shown, format!("--load needs a hull of the form mmg: {FORM_RULED_OUT}; {cure}")));
+        return Err(Failure::in_file(shown, format!("--load needs a hull of the form mmg: {FORM_RULED_OUT}; {cure}")));
     }
     let mut ship = ship.clone();
     ship.hulls.retain(|hull| hull.form == FORM);
@@ -174,7 +174,7 @@ pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, F
     }
     let cure = "fit records with a speed column again, with length, speed, beam, draught and block coefficient of the \
                 trial as options (--draught-m, …) or under [ship] of a sidecar";
-    Err(Failure::about(shown, format!("it has no {lacks}, so --load cannot take it to another loading; {cure}")))
+    Err(Failure::in_file(shown, format!("it has no {lacks}, so --load cannot take it to another loading; {cure}")))
 }
 
 /// Particulars with typical values for missing ones, and the block coefficient from the displacement.

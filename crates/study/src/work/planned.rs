@@ -2,7 +2,7 @@
 
 use ::trace::Analysis;
 use ship::angle::{from_deg, to_deg};
-use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamKey};
 use trial::Trial;
 
 /// Candidate zig-zags: rudder and heading, deg, first execute to starboard.
@@ -46,7 +46,7 @@ pub fn planned_trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Tr
 /// the manoeuvre.
 fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
-    let mut simulation = Simulation::new(Vessel::from_response(analysis.ship()), manoeuvre);
+    let mut simulation = Simulation::new(SimulatedShip::from_response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
     simulation.recording.period = records[0].sampling_period();
     simulation.longest_wait = MAX_DURATIONS * longest;

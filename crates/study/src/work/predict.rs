@@ -50,14 +50,14 @@ fn files(models: &[StoredModel]) -> Vec<String> {
 fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
     let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
     for model in models {
-        let ship = at_scale(&model.ship, scale).map_err(|error| Failure::about(&model.file, error))?;
+        let ship = at_scale(&model.ship, scale).map_err(|error| Failure::in_file(&model.file, error))?;
         let [first, next] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
         if !first.zip(next).map_or(first == next, |(first, next)| is_same_scale(first, next)) {
             return Err(scale_mismatch([(&models[0].file, first), (&model.file, next)]));
         }
         ships.push((ship, 1.0));
     }
-    ShipMixture::new(ships).map_err(|error| Failure::about(&files(models).join(", "), error))
+    ShipMixture::new(ships).map_err(|error| Failure::in_file(&files(models).join(", "), error))
 }
 
 impl StoredModel {
@@ -99,7 +99,7 @@ impl StoredModel {
             warnings.push(WarningCode::LateRudder, WarningSource::File(shown.to_owned()), text);
         }
         let ship = if calm { ship.in_calm() } else { Ok(ship) };
-        let ship = ship.map_err(|error| Failure::about(shown, error))?;
+        let ship = ship.map_err(|error| Failure::in_file(shown, error))?;
         Ok(Self { ship, file: shown.to_owned(), method, records })
     }
 
@@ -191,7 +191,7 @@ impl SteeredShips<'_> {
                     warnings.extend([warning(format!("{error}; it is left out"))]);
                     lost = Some(error);
                 }
-                Err(error) => return Err(Failure::about(self.file, error)),
+                Err(error) => return Err(Failure::in_file(self.file, error)),
             }
         }
         Ok((predictions, lost))
@@ -214,7 +214,7 @@ pub fn predict(
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|trial| validates_nothing(models, trial)));
-    let (draws, scale) = (request.draws as usize, TargetScale::of(&request.scale, &records, declared)?);
+    let (draws, scale) = (request.draws as usize, TargetScale::from_request(&request.scale, &records, declared)?);
     let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let mixture = mixture_of(models, scale)?;
@@ -225,7 +225,7 @@ pub fn predict(
     let (predictions, lost) =
         SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
-        return Err(Failure::about(&file, error));
+        return Err(Failure::in_file(&file, error));
     }
     let loading = OtherLoading::name(taken.as_ref().map(|(.., load)| load));
     let replays_of = ReplayedModels { full: models, ballast, loading: &loading, scale, draws };
@@ -253,7 +253,7 @@ pub fn predict(
         earlier_trials: sentences,
         hull: !mixture.first().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
-        seen: mixture.first().seen,
+        validity_range: mixture.first().validity_range,
         ..PredictDocument::default()
     };
     if request.form {
@@ -342,10 +342,10 @@ impl ReplayedModels<'_> {
         let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
         let file = file_of(record).0;
         let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
-        let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::about(file, error))?;
+        let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::in_file(file, error))?;
         let Some(replayed) = replayed else {
             let problem = "too few headings at its beginning to determine the initial state";
-            return Err(Failure::about(file, format!("{problem}; choose a part under [part] of a sidecar")));
+            return Err(Failure::in_file(file, format!("{problem}; choose a part under [part] of a sidecar")));
         };
         if ballast.is_empty() {
             return Ok((replayed, None));
@@ -357,7 +357,7 @@ impl ReplayedModels<'_> {
                 warnings.push(WarningCode::Correction, source_of(record), text);
                 return Ok((replayed, None));
             }
-            Err(error) => return Err(Failure::about(file, error)),
+            Err(error) => return Err(Failure::in_file(file, error)),
         };
         if correction.figures.is_empty() {
             let text = format!(
@@ -381,14 +381,14 @@ fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&s
     let methods: Vec<&str> = ships.keys().map(String::as_str).collect();
     if methods.is_empty() {
         let problem = "no method has a covariance for this record, so no intervals can be predicted";
-        return Err(Failure::about(
+        return Err(Failure::in_file(
             file,
             format!("{problem}; fit again with --method output-error, or with a longer record or several"),
         ));
     }
     match asked {
         Some(asked) if methods.contains(&asked) => Ok(asked.to_owned()),
-        Some(asked) => Err(Failure::about(
+        Some(asked) => Err(Failure::in_file(
             file,
             format!("--method {asked}: no such answer with a covariance; use one of {}", methods.join(", ")),
         )),

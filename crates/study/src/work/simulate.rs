@@ -6,7 +6,7 @@ use campaign::outside_estimates::part_name;
 use campaign::scenario::Scenario;
 use campaign::scenario::problem::suggestion;
 use campaign::shard::TrialId;
-use simulate::Simulated;
+use simulate::SimulatedTrial;
 
 use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
@@ -20,7 +20,7 @@ const MAX_RECORDS: u64 = 100_000;
 pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<TrialId>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
-        return Err(Failure::about(&request.scenario, problem));
+        return Err(Failure::in_file(&request.scenario, problem));
     }
     let titles: Vec<String> = scenario.cells.iter().map(|cell| cell.title()).collect();
     let cells = match &request.cell {
@@ -82,7 +82,7 @@ pub fn records(scenario: &Scenario, task: TrialId, name: &str) -> Result<Vec<Rec
     };
     let simulated = engine::simulate(scenario, task).map_err(refuse)?;
     let truths = engine::true_responses(scenario, task).map_err(refuse)?;
-    let files = |(number, simulated): (usize, &Simulated)| {
+    let files = |(number, simulated): (usize, &SimulatedTrial)| {
         let mut table = Vec::new();
         trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
         let truth = truth(scenario, task, simulated, truths)?;

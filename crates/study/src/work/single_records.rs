@@ -16,7 +16,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 /// Mean amplitudes of rudder and heading of a zig-zag.
 fn amplitude(trial: &Trial) -> Option<Amplitude> {
-    let zigzag = ZigZag::of(trial).ok()?;
+    let zigzag = ZigZag::from_trial(trial).ok()?;
     let base = zigzag.base_course.heading.value;
     let peaks = zigzag.overshoots.iter().map(|overshoot| (overshoot.peak_heading.value - base).abs());
     let rudders = zigzag.executes.iter().map(|execute| execute.rudder_after.abs());
@@ -31,7 +31,7 @@ struct RecordedZigZag<'a> {
 }
 
 impl RecordedZigZag<'_> {
-    fn alone(&self, method: &dyn Identifier) -> Option<SingleRecord> {
+    fn single_record(&self, method: &dyn Identifier) -> Option<SingleRecord> {
         let estimate = method.identify(std::slice::from_ref(self.trial)).ok()?;
         let (record, amplitude) = (self.name.clone(), self.amplitude);
         let single = SingleRecord { record, amplitude, k_per_s: estimate.K(), t_s: estimate.T() };
@@ -44,7 +44,7 @@ pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
 
 impl<'a> RecordedZigZags<'a> {
     /// Amplitude of every record that is a zig-zag.
-    pub fn of(trials: &'a [Trial]) -> Self {
+    pub fn from_trials(trials: &'a [Trial]) -> Self {
         let named = trials.iter().zip(unique_names(trials.iter().map(Trial::name)));
         Self(
             named
@@ -63,11 +63,12 @@ impl<'a> RecordedZigZags<'a> {
 
     /// Estimates of every record alone by one method: the first that identifies all records, else the one that
     /// identifies most; `None` for fewer than two estimates.
-    pub fn alone(&self, methods: &[&dyn Identifier]) -> Option<SingleRecords> {
+    pub fn single_records(&self, methods: &[&dyn Identifier]) -> Option<SingleRecords> {
         let zigzags = &self.0;
         let mut best: Option<SingleRecords> = None;
         for method in methods.iter().filter(|_| zigzags.len() > 1) {
-            let records: Vec<SingleRecord> = zigzags.par_iter().filter_map(|zigzag| zigzag.alone(*method)).collect();
+            let records: Vec<SingleRecord> =
+                zigzags.par_iter().filter_map(|zigzag| zigzag.single_record(*method)).collect();
             let complete = records.len() == zigzags.len();
             if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
                 let agree = agree(&records);

@@ -16,10 +16,10 @@ const RUDDER_RANGE_DEG: [f64; 2] = [10.0, 35.0];
 
 /// Steady turns of the possible responses of a ship in a calm, the most probable one first, and the range of motion
 /// covered by the records; `None` if no steady turn is found.
-pub fn of_ship(identified: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
+pub fn steady_turns(identified: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
     // Steady turns of the traced response, not of a hull.
     let ship = IdentifiedShip { hulls: Vec::new(), ..identified.in_calm().ok()? };
-    let seen = ship.seen;
+    let seen = ship.validity_range;
     let [least, most] = RUDDER_RANGE_DEG.map(from_deg);
     let kind = Manoeuvre::Spiral { rudder: (RUDDER_RATIO * seen.rudder_rad).clamp(least, most) };
     let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves.steady;

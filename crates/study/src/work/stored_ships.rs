@@ -12,7 +12,7 @@ use serde_json::Value;
 use trial::file;
 
 /// A stored model; the covariances of the largest mixtures have a hundredth of this size.
-const MODEL: file::Kind = file::Kind { name: "a model", max_bytes: 1 << 26 };
+const MODEL: file::FileKind = file::FileKind { name: "a model", max_bytes: 1 << 26 };
 
 /// Expected documents, for messages.
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
@@ -33,13 +33,13 @@ pub struct StoredShips {
 pub fn text_of(path: &Path) -> Result<String, Failure> {
     name::study_name(path)?;
     let shown = file::display_path(path).display().to_string();
-    file::read_text(path, MODEL).map_err(|error| Failure::about(&shown, format!("{error}; {EXPECTED}")))
+    file::read_text(path, MODEL).map_err(|error| Failure::in_file(&shown, format!("{error}; {EXPECTED}")))
 }
 
 /// Content of the text of a `fit.json` or `trace.json`; `shown` is its name in messages. Fails if it is no such
 /// document, or if it has another version.
 pub fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
-    let refuse = |problem: String| Failure::about(shown, problem);
+    let refuse = |problem: String| Failure::in_file(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
     let value: Value =
         serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;

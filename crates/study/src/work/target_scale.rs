@@ -34,7 +34,7 @@ impl TargetScale {
     /// declares. `None` for that of the model.
     ///
     /// Fails if the records are of ships of several lengths.
-    pub fn of(asked: &ScaleOptions, records: &[Trial], declared: Declared) -> Result<Option<Self>, Failure> {
+    pub fn from_request(asked: &ScaleOptions, records: &[Trial], declared: Declared) -> Result<Option<Self>, Failure> {
         if let Some(length) = asked.length_m {
             return Ok(Some(Self { length, speed: asked.speed(), is_asked: true }));
         }
@@ -66,7 +66,7 @@ pub fn scale_mismatch([(first, of_first), (other, of_other)]: [(&str, Option<Par
     };
     let [of_first, of_other] = [of_first, of_other].map(ship_words);
     let cure = "give --length-m and --speed-kn of the ship to predict, or predict one at a time";
-    Failure::about(other, format!("its ship is {of_other}, that of {first} {of_first}; {cure}"))
+    Failure::in_file(other, format!("its ship is {of_other}, that of {first} {of_first}; {cure}"))
 }
 
 /// `true` if ships have equal length and Froude number, with the tolerances used for earlier trials.

@@ -18,7 +18,7 @@ use super::planned;
 use super::single_records::RecordedZigZags;
 use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
-use crate::options::{TraceRequest, Withheld};
+use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
 use crate::records::{file_of, missing_track_warning, particulars, rudder_logged_late, unique_names};
 use crate::scales::{self, RescaledRecords};
@@ -100,7 +100,7 @@ pub fn trace(
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let (scales, RescaledRecords { trials, held_out, .. }) = (together.scaling_sentence(), together);
-    let shown = RecordFacts::of(&trials).with_motion(Some(&analysis), &settings.earlier);
+    let shown = RecordFacts::from_trials(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(missing_track_warning(&shown));
     warnings.extend(unusual_ship(&analysis.base, scales::particulars(&trials), records));
     let names = unique_names(trials.iter().chain(&held_out).map(Trial::name));
@@ -126,7 +126,7 @@ pub fn trace(
     let earlier_trials = earlier_trials::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
-    let zigzags = RecordedZigZags::of(&trials);
+    let zigzags = RecordedZigZags::from_trials(&trials);
     let document = TraceDocument {
         earlier_trials,
         ship,
@@ -134,7 +134,7 @@ pub fn trace(
         missing_moment: moments,
         staircase,
         amplitude: zigzags.mean_amplitude(),
-        single_records: zigzags.alone(&[&output_error]),
+        single_records: zigzags.single_records(&[&output_error]),
         scales,
         next_trial: next_trial(&analysis, &trials),
         trace: analysis.document,
@@ -188,7 +188,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
         TraceError::Asked { .. } => "; leave it out of --with and --only",
         TraceError::Settings(error) => return Failure::input(error),
     };
-    Failure::about(file_of(first).0, format!("{error}{why}"))
+    Failure::in_file(file_of(first).0, format!("{error}{why}"))
 }
 
 /// Sentence on the most informative next trial.
@@ -228,13 +228,13 @@ pub fn withhold_channels(request: &TraceRequest, trials: Vec<Trial>) -> Vec<Tria
     trials.into_iter().map(|trial| trial.without_channels(&withheld)).collect()
 }
 
-fn channels(channel: Withheld) -> &'static [Channel] {
+fn channels(channel: WithheldChannel) -> &'static [Channel] {
     match channel {
-        Withheld::Wind => {
+        WithheldChannel::Wind => {
             &[Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueSpeed, Channel::WindTrueFrom]
         }
-        Withheld::Speed => &[Channel::Speed, Channel::Surge],
-        Withheld::Propeller => &[Channel::PropellerRate],
-        Withheld::Sway => &[Channel::Sway],
+        WithheldChannel::Speed => &[Channel::Speed, Channel::Surge],
+        WithheldChannel::Propeller => &[Channel::PropellerRate],
+        WithheldChannel::Sway => &[Channel::Sway],
     }
 }

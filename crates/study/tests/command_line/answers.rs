@@ -21,7 +21,7 @@ fn fit_asks_the_usual_methods_and_all_on_request() {
     let (usual, verdict) = fitted(&[], "usual");
     let (all, with_all) = fitted(&["--method", "all"], "all");
     assert_eq!(usual, DEFAULT_METHODS);
-    assert!(all.starts_with(&usual) && all.len() == registry::defaults().len(), "{all:?}");
+    assert!(all.starts_with(&usual) && all.len() == registry::default_settings().len(), "{all:?}");
     assert!(["method", "reason", "residual", "residual_deg"].iter().all(|key| verdict[*key] == with_all[*key]));
     let fit = desk.json("all/fit.json");
     let taken = fit["methods"].as_array().into_iter().flatten().find(|own| own["method"] == verdict["method"]);

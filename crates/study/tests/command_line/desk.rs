@@ -12,7 +12,7 @@ use parquet::record::Field;
 use sha2::{Digest, Sha256};
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
-use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Recording, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
 use crate::schemas;
 
@@ -174,7 +174,7 @@ pub fn zig_zag_csv_of(ship: &Ship) -> String {
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: 1.0, duration: Some(300.0), ..Recording::default() },
-        ..Simulation::new(Vessel::from_ship(ship), manoeuvre)
+        ..Simulation::new(SimulatedShip::from_ship(ship), manoeuvre)
     };
     let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");
     let trial = &simulated.trial;

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use ship::angle::{from_deg, to_deg};
-use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Recording, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
 use crate::desk::{Desk, with_column, zig_zag_csv};
 
@@ -10,11 +10,11 @@ const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
 
 fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
     let ship = ship::ships::find(ship).expect("it is in the registry");
-    zig_zag_with_speed(Vessel::from_ship(&ship), angle_deg, change_deg)
+    zig_zag_with_speed(SimulatedShip::from_ship(&ship), angle_deg, change_deg)
 }
 
 /// A zig-zag of a hull without noise, with its speed; a row every 4 s.
-pub fn zig_zag_with_speed(ship: Vessel, angle_deg: f64, change_deg: f64) -> String {
+pub fn zig_zag_with_speed(ship: SimulatedShip, angle_deg: f64, change_deg: f64) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(change_deg));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.34)),

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, hull_prior};
 use ship::vessel::scaled::ScaledHull;
-use simulate::Vessel;
+use simulate::SimulatedShip;
 
 use crate::desk::{Desk, zig_zag_csv};
 use crate::earlier::zig_zag_with_speed;
@@ -49,7 +49,7 @@ fn record(angle_deg: f64) -> String {
     let (form, values) = values(&particulars(6.5, 0.7));
     let hull = form.with_coefficients(&values).expect("a ship");
     let ship = ScaledHull { hull, length: 160.0, speed: 7.7, propeller: None };
-    zig_zag_with_speed(Vessel::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
+    zig_zag_with_speed(SimulatedShip::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
 }
 
 /// A desk with a fit of a 20/20 in ballast, `f/fit.json`, the record, `run.csv`, and the loading, `full.toml`.

@@ -405,7 +405,7 @@ fn a_title_names_what_is_highlighted() {
     for entry in std::fs::read_dir(of_repository("scenarios")).expect("the folder is there").flatten() {
         let Ok(text) = std::fs::read_to_string(entry.path()) else { continue };
         let scenario: toml::Table = text.parse().expect("it is TOML");
-        let words = campaign::scenario::Prose::of(&text).output;
+        let words = campaign::scenario::Prose::from_scenario_text(&text).output;
         let Some(title) = words.title.filter(|_| !words.highlight.series.is_empty()) else { continue };
         let ids = scenario["identifier"].as_array().expect("a list").iter().filter_map(|identifier| {
             let method = identifier.get("method").and_then(|method| method.as_table()?.keys().next().cloned());

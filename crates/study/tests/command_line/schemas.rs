@@ -6,14 +6,14 @@ use std::sync::LazyLock;
 use clap::ValueEnum;
 use serde_json::Value;
 use study::commands::schema::schema;
-use study::options::Described;
+use study::options::SchemaSubject;
 
 use crate::desk::{Desk, of_repository};
 
 /// Every schema by its name.
-fn all() -> Vec<(String, Described)> {
-    let named = |what: &Described| what.to_possible_value().map(|value| (value.get_name().to_owned(), *what));
-    Described::value_variants().iter().filter_map(named).collect()
+fn all() -> Vec<(String, SchemaSubject)> {
+    let named = |what: &SchemaSubject| what.to_possible_value().map(|value| (value.get_name().to_owned(), *what));
+    SchemaSubject::value_variants().iter().filter_map(named).collect()
 }
 
 /// What is wrong with a document by a schema.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::Value;
-use ship::effects::{Effect, SecondOrder, listed};
+use ship::effects::{Effect, SecondOrder, listed_effect};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ships};
 
@@ -201,7 +201,7 @@ fn a_trace_is_drawn_again_from_its_files() {
 #[test]
 fn the_missing_moment_is_written() {
     let desk = Desk::new();
-    desk.file("Run 1.csv", zig_zag_csv_of(&with_effect(listed("nonlinear_damping", "r³"), &[60.0])));
+    desk.file("Run 1.csv", zig_zag_csv_of(&with_effect(listed_effect("nonlinear_damping", "r³"), &[60.0])));
     desk.file("other.csv", zig_zag_csv());
     desk.draw(&["trace", "Run 1.csv", "--validate", "other.csv", "--out", "here", "--quiet"]).is_done();
     let json = desk.json("here/trace.json");

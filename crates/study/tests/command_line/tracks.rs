@@ -1,7 +1,7 @@
 //! Tracks: records of position alone, and the current that a circle shows.
 
 use ship::angle::{from_deg, to_deg};
-use simulate::{Manoeuvre, Recording, Side, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Manoeuvre, Recording, Side, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
 use crate::desk::{Desk, measured, of_repository};
 
@@ -19,7 +19,7 @@ fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: 1.0, duration: Some(duration), ..Recording::default() },
-        ..Simulation::new(Vessel::from_ship(&ship), manoeuvre)
+        ..Simulation::new(SimulatedShip::from_ship(&ship), manoeuvre)
     };
     let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;
     let speed = truth.speed.as_ref().expect("a hull has a speed");

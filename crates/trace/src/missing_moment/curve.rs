@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::smoother::{HeadingRows, MomentFilter, MomentRows, STATES};
-use crate::law::MIN_HEADING_SD;
+use crate::law::MIN_HEADING_SD_RAD;
 
 /// Inner knots of the spline, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
@@ -52,12 +52,12 @@ pub(super) fn maximum_likelihood_level(
 /// Deviance −2 log L up to a constant, with σ² at its estimate.
 pub(super) fn deviance(square: f64, filter: &MomentFilter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
-    n * (square / n + MIN_HEADING_SD * MIN_HEADING_SD).ln() + filter.log_determinant()
+    n * (square / n + MIN_HEADING_SD_RAD * MIN_HEADING_SD_RAD).ln() + filter.log_determinant()
 }
 
 /// Estimate of σ² (rad²) from a whitened sum of squares after a fit of `coefficients`.
 pub(super) fn variance(square: f64, rows: usize, coefficients: usize) -> f64 {
-    square / (rows - STATES - coefficients) as f64 + MIN_HEADING_SD * MIN_HEADING_SD
+    square / (rows - STATES - coefficients) as f64 + MIN_HEADING_SD_RAD * MIN_HEADING_SD_RAD
 }
 
 /// Minimum number of rows for a curve.

@@ -94,7 +94,7 @@ pub struct MissingMoment {
 }
 
 fn at_rows(signal: &Polyline, time: &[f64]) -> Vec<f64> {
-    time.iter().map(|&t| signal.at(t)).collect()
+    time.iter().map(|&t| signal.value_at(t)).collect()
 }
 
 /// Sum of squared deviations from the mean.

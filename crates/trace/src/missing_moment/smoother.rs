@@ -69,7 +69,7 @@ impl MomentRows {
     /// Responses to the recorded rudder and δ_r in the step before every row, from rest.
     pub fn rudder_response(&self, rudder: &Polyline) -> Vec<[f64; 2]> {
         let (a, b) = (self.base.inverse_T, self.base.K_over_T);
-        let input = |t: f64| b * (rudder.at(t) + self.base.rudder_bias);
+        let input = |t: f64| b * (rudder.value_at(t) + self.base.rudder_bias);
         let mut forced = vec![[0.0; 2]];
         for pair in self.time.windows(2) {
             let from = rudder.times().partition_point(|&corner| corner <= pair[0]);

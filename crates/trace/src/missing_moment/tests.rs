@@ -1,7 +1,7 @@
 use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
 use ship::angle::from_deg;
-use ship::effects::listed;
+use ship::effects::listed_effect;
 use ship::first_order::{State, Transition};
 
 use super::*;
@@ -137,7 +137,7 @@ fn an_unstable_base_is_smoothed_as_well() {
 #[test]
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;
-    let damped = ship(vec![(listed("nonlinear_damping", "r³"), vec![CUBE])]);
+    let damped = ship(vec![(listed_effect("nonlinear_damping", "r³"), vec![CUBE])]);
     let record = PreparedRecord::whole(&record(&damped, TrialPlan::default()));
     let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
     let panel = &missing.panels[0];

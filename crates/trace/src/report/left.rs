@@ -14,7 +14,7 @@ impl TraceParts<'_> {
     /// there is none.
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
-        let rudder_deg = to_deg(self.location.moment(self.rudder_errors)?.rudder);
+        let rudder_deg = to_deg(self.location.moment(self.rudder_noises)?.rudder);
         let [_, after] = sums_of_squares(self.identification);
         let rows = || self.identification.iter().map(|comparison| comparison.after.errors.rows as f64);
         let of_row = self.problem.records.iter().zip(&shapes.heading_sd);

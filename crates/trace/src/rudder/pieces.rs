@@ -41,7 +41,7 @@ impl RudderPiece {
     }
 
     /// Angle at a time, rad.
-    pub fn at(&self, time: f64) -> f64 {
+    pub fn angle_at(&self, time: f64) -> f64 {
         self.angle + self.rate * (time - self.time)
     }
 
@@ -155,7 +155,7 @@ fn intersection(time: &[f64], piece: &RudderPiece, next: &RudderPiece) -> usize 
         return piece.to;
     }
     let end = time[piece.to];
-    let row = time.partition_point(|t| *t < end + (next.at(end) - piece.at(end)) / bend);
+    let row = time.partition_point(|t| *t < end + (next.angle_at(end) - piece.angle_at(end)) / bend);
     if row.abs_diff(piece.to) <= MAX_SHIFT_ROWS { row } else { piece.to }
 }
 
@@ -196,7 +196,7 @@ mod tests {
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
         assert!(distinct.len() < 3, "{distinct:?}");
-        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t)));
         let left = |values: &mut dyn Iterator<Item = f64>| -> f64 {
             values.zip(&clean).map(|(value, clean)| (value - clean).powi(2)).sum::<f64>().sqrt()
         };
@@ -216,7 +216,7 @@ mod tests {
         let angle: Vec<f64> = (0..60).map(|row| if row == 31 { 0.2 } else { 0.1 * f64::from(row / 20) }).collect();
         let fitted = pieces(&time, &angle, 0.003);
         assert!(fitted.iter().all(|piece| !piece.is_stroke), "{fitted:?}");
-        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.at(*t)));
+        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t)));
         assert!(path.zip(&angle).all(|(path, angle)| (path - angle).abs() < 1e-12));
     }
 }

@@ -116,7 +116,7 @@ impl WhitenedStructure {
             square += precision * offset * offset;
         }
         let factor = factor(&matrix, &[])?;
-        let solution = solved(&factor, &gradient, &[]);
+        let solution = solve(&factor, &gradient, &[]);
         let rows = structure.rows() as f64;
         let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
         let weights_rows = weights.whiteners.iter().zip(&weights.scale).zip(&blocks);
@@ -207,7 +207,7 @@ impl WhitenedStructure {
     fn extension(&self, products: &GramProducts) -> Option<Extension> {
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
         let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
-        let solution = solved(&factor, &products.gradient, &self.solution);
+        let solution = solve(&factor, &products.gradient, &self.solution);
         Some(Extension { factor, solution })
     }
 
@@ -264,7 +264,7 @@ fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// L⁻¹ times a right side in the rows of a lower factor after the rows of the solution `leading`.
-fn solved(factor: &[Vec<f64>], right: &[f64], leading: &[f64]) -> Vec<f64> {
+fn solve(factor: &[Vec<f64>], right: &[f64], leading: &[f64]) -> Vec<f64> {
     let count = leading.len();
     let mut solution: Vec<f64> = Vec::with_capacity(right.len());
     for (k, row) in factor.iter().enumerate() {

@@ -210,7 +210,7 @@ impl Shape {
                 let factor = |row: usize| factor.map_or(1.0, |(signal, power)| power.at(signal[row]));
                 vec![rows(&|row| power.at(signal.values(motion)[row]) * factor(row))]
             }
-            Self::Delay(lag) => vec![rows(&|row| motion.record.rudder.at(time[row] - lag) - rudder[row])],
+            Self::Delay(lag) => vec![rows(&|row| motion.record.rudder.value_at(time[row] - lag) - rudder[row])],
             Self::RudderMemory(lag) => vec![motion.lagged(|row| rudder[row], lag)],
             Self::RateMemory(lag) => vec![motion.lagged(|row| rate[row], lag)],
             Self::RateSquareMemory(lag) => {

@@ -87,7 +87,7 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
 }
 
 /// Smooth moments of unknown shape, which compete with all random laws.
-pub fn smooth(gain: f64, longest: f64) -> Vec<RandomLaw> {
+pub fn smooth_moments(gain: f64, longest: f64) -> Vec<RandomLaw> {
     let laws = |kind| decades(-1.0, 2.5, 0.5).map(move |size| RandomLaw::correlated(kind, size, gain, longest, None));
     CorrelatedNoise::smooth_moments().flat_map(laws).collect()
 }

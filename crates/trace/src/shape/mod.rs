@@ -31,10 +31,10 @@ pub use dictionary::Shape;
 pub use search::{Candidate, Explanation};
 
 /// Minimum significant gain of shapes, nats.
-pub const MIN_GAIN: f64 = 4.0;
+pub const MIN_GAIN_NATS: f64 = 4.0;
 
 /// Maximum difference of two equivalent explanations, nats.
-pub const MAX_EQUIVALENT_GAIN: f64 = 3.0;
+pub const MAX_EQUIVALENT_GAIN_NATS: f64 = 3.0;
 
 /// Minimum significant gain of a smooth moment of unknown shape, nats.
 const MIN_SMOOTH_GAIN: f64 = 1.5;
@@ -78,7 +78,7 @@ pub struct MomentSize {
 pub struct ShapeAnalysis {
     /// Best explanation; without shapes if none is significant.
     pub best: Explanation,
-    /// Equivalent explanations, within [`MAX_EQUIVALENT_GAIN`] of the best.
+    /// Equivalent explanations, within [`MAX_EQUIVALENT_GAIN_NATS`] of the best.
     pub equivalent: Vec<Explanation>,
     /// Coefficients of the best, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
@@ -106,7 +106,7 @@ pub struct ShapeAnalysis {
 impl ShapeAnalysis {
     /// `true` if the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
-        self.gain >= MIN_GAIN
+        self.gain >= MIN_GAIN_NATS
     }
 
     /// Shapes of the best with a clear loss, the clearest first; `duration` (s) is that of a record.
@@ -118,7 +118,7 @@ impl ShapeAnalysis {
         let mut all: Vec<NamedShape> = all.collect();
         all.sort_by(|a, b| b.loss.total_cmp(&a.loss));
         let least =
-            all.first().map_or(0.0, |clearest| (MIN_LOSS_RATIO * clearest.loss).max(MIN_GAIN).min(clearest.loss));
+            all.first().map_or(0.0, |clearest| (MIN_LOSS_RATIO * clearest.loss).max(MIN_GAIN_NATS).min(clearest.loss));
         all.retain(|named| named.loss >= least);
         let from = |named: &NamedShape| named.candidate.shape.span(0.0).map(|[from, _]| from);
         let changes: Vec<(Option<usize>, Option<f64>)> = all
@@ -161,7 +161,7 @@ pub fn analyse_shapes(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLa
     let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..MAX_ROUNDS {
         let (before, colour) = (current.point.theta[0], current.laws[current.law].colour);
-        let point = current.point.moved(&current.structure[current.law].as_ref()?.step());
+        let point = current.point.after_step(&current.structure[current.law].as_ref()?.step());
         let change = (point.theta[0] / before - 1.0).abs();
         let Some(next) = ShapeProblem::new(point, problem, law, &colour) else { break };
         let is_settled = change < TIME_TOLERANCE && next.laws[next.law].colour == colour;
@@ -212,7 +212,7 @@ impl<'a> ShapeProblem<'a> {
     /// Searches the shapes and summarises the best explanation.
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
         let longest = problem.longest();
-        let smooth = law.colour.waves.is_none().then(|| laws::smooth(self.point.theta[1].abs(), longest));
+        let smooth = law.colour.waves.is_none().then(|| laws::smooth_moments(self.point.theta[1].abs(), longest));
         let smooth = smooth.unwrap_or_default();
         let smooth = smooth.par_iter().map(|law| self.criterion_under(law)).reduce(|| f64::INFINITY, f64::min);
         let search = ShapeSearch {
@@ -226,13 +226,13 @@ impl<'a> ShapeProblem<'a> {
         let ((mut best, mut without), mut tried) = search.explain(unit);
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
         let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
-        if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN {
+        if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN_NATS {
             best = Explanation { shapes: Vec::new(), criterion: self.criterion, law: self.law };
             without.clear();
         }
         tried.retain(|other| {
             other.shapes.len() <= best.shapes.len()
-                && power * (other.criterion - best.criterion) < 2.0 * MAX_EQUIVALENT_GAIN
+                && power * (other.criterion - best.criterion) < 2.0 * MAX_EQUIVALENT_GAIN_NATS
         });
         let whole = search.whole(&best)?;
         let step = whole.step();

@@ -70,7 +70,7 @@ impl<'a> PredictedMotion<'a> {
         }
         let first = heading[0];
         heading.iter_mut().for_each(|psi| *psi -= first);
-        let rudder = medians(&record.time.iter().map(|&t| record.rudder.at(t)).collect::<Vec<_>>());
+        let rudder = medians(&record.time.iter().map(|&t| record.rudder.value_at(t)).collect::<Vec<_>>());
         let intervals = || record.time.windows(2).map(|pair| pair[1] - pair[0]);
         let mut way = vec![0.0];
         for (row, h) in intervals().enumerate() {

@@ -93,7 +93,7 @@ impl<'a> StructurePoint<'a> {
         let (entries, fitted) = (structure.entries(), structure.fitted_indices());
         let mut prior = vec![(0.0, 0.0); integrated];
         // Deviations of the rudder bias from record to record are expected to be small.
-        for (place, prior) in prior.iter_mut().enumerate().take(of_base).skip(ship::response::BASE_PARAMETERS) {
+        for (place, prior) in prior.iter_mut().enumerate().take(of_base).skip(ship::response::BASE_PARAMETER_COUNT) {
             let (expected, value) = (entries[fitted[place]].prior, self.theta[fitted[place]]);
             let precision = prior_precision(expected);
             *prior = (precision, prior_deviation(expected, value) / precision.sqrt());
@@ -122,7 +122,7 @@ impl<'a> StructurePoint<'a> {
 
     /// Point after a step of all unknowns of [`linearised`](Self::linearised), within their bounds.
     #[must_use]
-    pub fn moved(&self, step: &[f64]) -> Self {
+    pub fn after_step(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
         let [of_base, of_terms] = self.counts();
         let entries = self.fit.structure.entries();

@@ -51,7 +51,7 @@ fn one_moment_in_many_notations() {
         assert_eq!(stamps.seconds(Stamp::parse(text).expect(text)), Ok(0.0));
         let clock = stamps.clock().expect("a stamp was read");
         assert_eq!((clock.day, clock.second, clock.zone), (Some(20_777), 50_585.0, None), "{text}");
-        assert_eq!((clock.at(60.0), clock.date_at(60.0)), ("14:04:05".into(), Some("2026-11-20".into())));
+        assert_eq!((clock.time_of_day_at(60.0), clock.date_at(60.0)), ("14:04:05".into(), Some("2026-11-20".into())));
     }
     let zone = |text| Stamp::parse(text).expect(text).zone;
     assert_eq!(zone("2026-11-20T14:03:05Z"), Some(0));

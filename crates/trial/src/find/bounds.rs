@@ -8,7 +8,7 @@ use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
-use crate::zigzag::holds::{self, LAID_SHARE};
+use crate::zigzag::holds::{self, MIN_HOLD_ANGLE_SHARE};
 
 /// Tolerances of the rudder in a steady approach, as shares of the rudder of the manoeuvre: about its median, and of
 /// its median about amidships.
@@ -123,7 +123,7 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
     let angle = &record.rudder.angle[window..=end];
     let laid = |&row: &usize| {
         let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
-        before < after && before >= LAID_SHARE * hold.level.abs()
+        before < after && before >= MIN_HOLD_ANGLE_SHARE * hold.level.abs()
     };
     local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
     if let ([_], Some(row)) = (&local[..], single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise)) {
@@ -149,8 +149,9 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
     // The second half of the movement gives the scatter about the line: rounding and uneven times.
-    let ramp: Vec<usize> =
-        (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID_SHARE * hold.level.abs()).collect();
+    let ramp: Vec<usize> = (half + 1..hold.first)
+        .take_while(|&row| hold.side * angle[row] < MIN_HOLD_ANGLE_SHARE * hold.level.abs())
+        .collect();
     if ramp.len() < MIN_RAMP_ROWS {
         return 0;
     }

@@ -38,7 +38,7 @@ pub(crate) fn turns(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
         let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
         if turned.abs() >= MIN_CIRCLE {
-            let (side, heading_change) = (Side::of(hold.level), Some(turned.abs()));
+            let (side, heading_change) = (Side::from_angle(hold.level), Some(turned.abs()));
             let manoeuvre = Manoeuvre::TurningCircle { rudder: hold.level.abs(), side, duration: None, heading_change };
             patterns.push(Pattern { manoeuvre, holds: vec![*hold], scale: MIN_TURN / rate, swing: MIN_TURN });
         }
@@ -95,7 +95,7 @@ fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern>
     let first = (turn.last + 1).min(amidships.first);
     let [from, until] = [first, last].map(|row| record.log.time[row]);
     let hold = Hold { first, last, from, until, level: amidships.level };
-    let (rudder, side) = (turn.level.abs(), Side::of(turn.level));
+    let (rudder, side) = (turn.level.abs(), Side::from_angle(turn.level));
     let manoeuvre = Manoeuvre::PullOut { rudder, side, hold: turn.duration(), duration: until - from };
     Some(Pattern { manoeuvre, holds: vec![hold], scale: time, swing: PULL_OUT_TURN })
 }

@@ -220,7 +220,7 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
     let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
-    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).with_first_side(Side::of(holds[0].level));
+    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).with_first_side(Side::from_angle(holds[0].level));
     let scale = finite_median(holds[..holds.len() - 1].iter().map(Hold::duration));
     (clear && rudder >= MIN_RUDDER && (MIN_HEADING..=MAX_HEADING).contains(&heading)).then(|| Pattern {
         manoeuvre,

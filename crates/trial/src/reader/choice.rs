@@ -35,14 +35,14 @@ impl Log {
     ///
     /// Fails as [`into_trial`](Self::into_trial) does, and if the log contains several zig-zags.
     pub fn into_zig_zag(self, ship: Option<Particulars>) -> Result<ReadRecord, ReadError> {
-        self.chosen(None)?.into_trial(ship)
+        self.into_manoeuvre(None)?.into_trial(ship)
     }
 
     /// Part with the manoeuvre of this number, from 1; without a number the part of the only zig-zag, if much of
     /// the log is outside it. The choice is a warning of the log.
     ///
     /// Fails for a number without a manoeuvre, and, without a number, if the log contains several zig-zags.
-    pub fn chosen(mut self, number: Option<usize>) -> Result<Self, ReadError> {
+    pub fn into_manoeuvre(mut self, number: Option<usize>) -> Result<Self, ReadError> {
         if number.is_none() && self.has_declared_part() {
             return Ok(self);
         }
@@ -87,7 +87,7 @@ impl Log {
 
     /// Time of the log as text: seconds, and the reading of the clock.
     fn shown(&self, time: f64) -> String {
-        let clock = self.clock.map(|clock| format!(" ({})", clock.at(time)));
+        let clock = self.clock.map(|clock| format!(" ({})", clock.time_of_day_at(time)));
         format!("{time:.1} s{}", clock.unwrap_or_default())
     }
 }

@@ -8,10 +8,10 @@ use flate2::read::MultiGzDecoder;
 use super::columnar::BinaryFormat;
 use super::error::Problem;
 use super::limits::RECORD;
-use super::lines::{Hash, Hashed};
+use super::lines::{HashingReader, RunningHash};
 use super::messages::{self, MessageFormat};
 use super::nmea;
-use crate::file::{self, FileError, Limited};
+use crate::file::{self, FileError, LimitedReader};
 
 /// Number of bytes that distinguish sentences from a table.
 const HEAD_BYTES: u64 = 1 << 14;
@@ -21,7 +21,7 @@ const HEAD_LINES: usize = 60;
 pub(super) struct Text<'a> {
     pub bytes: Box<dyn Read + 'a>,
     /// Hash of the file, if it differs from the hash of the text.
-    pub on_disk: Option<Hash>,
+    pub on_disk: Option<RunningHash>,
     /// `true` for a text that was generated here from a binary table.
     pub is_generated: bool,
 }
@@ -73,9 +73,9 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a
     let (mut first, mut bytes) = peek(input)?;
     let mut on_disk = None;
     if first.starts_with(&[0x1f, 0x8b]) {
-        let (hashed, hash) = Hashed::new(bytes);
+        let (hashed, hash) = HashingReader::new(bytes);
         on_disk = Some(hash);
-        let unpacked = Limited::new(Box::new(MultiGzDecoder::new(hashed)), RECORD, None);
+        let unpacked = LimitedReader::new(Box::new(MultiGzDecoder::new(hashed)), RECORD, None);
         (first, bytes) = peek(Box::new(unpacked))?;
     }
     let refused = |format, cure| Err(Problem::Format { format, cure });
@@ -92,7 +92,7 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a
     if let Some(kind) = BinaryFormat::detect(&first) {
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
-        let hash = on_disk.unwrap_or_else(|| Hash::of(&all));
+        let hash = on_disk.unwrap_or_else(|| RunningHash::from_bytes(&all));
         return Ok(Content::Table(Text { bytes: kind.read_as_text(all)?, on_disk: Some(hash), is_generated: true }));
     }
     match first.as_slice() {

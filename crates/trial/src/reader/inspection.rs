@@ -89,7 +89,7 @@ impl Log {
         let inner = read(y).into_iter().filter(|&row| time[row] > ends[0] + reach && time[row] < ends[1] - reach);
         let inner: Vec<usize> = thinned(inner).collect();
         let slope = |lag: f64| {
-            let row = |&row: &usize| [1.0, time[row] - ends[0], path.at(time[row] + lag), y[row]];
+            let row = |&row: &usize| [1.0, time[row] - ends[0], path.value_at(time[row] + lag), y[row]];
             partial_slope(inner.iter().map(row).collect())
         };
         let step = reach / f64::from(LAGS);

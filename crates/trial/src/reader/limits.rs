@@ -1,6 +1,6 @@
 //! Limits of the size of a record.
 
-use crate::file::Kind;
+use crate::file::FileKind;
 use crate::record::Trial;
 
 use super::error::Problem;
@@ -12,7 +12,7 @@ pub const MAX_ROWS: usize = 20_000_000;
 pub const MAX_CELLS: usize = 50_000_000;
 
 /// Kind of file of a record; its maximum size is 20 characters for each of [`MAX_CELLS`].
-pub const RECORD: Kind = Kind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
+pub const RECORD: FileKind = FileKind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
 
 /// Problem of a table without rows after a line.
 pub(super) fn no_rows_problem(line: usize) -> Problem {

@@ -14,11 +14,11 @@ pub const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// SHA-256 of the bytes read so far.
 #[derive(Clone, Default)]
-pub struct Hash(Rc<RefCell<Sha256>>);
+pub struct RunningHash(Rc<RefCell<Sha256>>);
 
-impl Hash {
+impl RunningHash {
     /// Hash of some bytes.
-    pub fn of(bytes: &[u8]) -> Self {
+    pub fn from_bytes(bytes: &[u8]) -> Self {
         Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
     }
 
@@ -29,19 +29,19 @@ impl Hash {
 }
 
 /// Reader that hashes its bytes in large pieces, which is faster than line by line.
-pub struct Hashed<R> {
+pub struct HashingReader<R> {
     input: R,
-    hash: Hash,
+    hash: RunningHash,
 }
 
-impl<R> Hashed<R> {
-    pub fn new(input: R) -> (Self, Hash) {
-        let hash = Hash::default();
+impl<R> HashingReader<R> {
+    pub fn new(input: R) -> (Self, RunningHash) {
+        let hash = RunningHash::default();
         (Self { input, hash: hash.clone() }, hash)
     }
 }
 
-impl<R: Read> Read for Hashed<R> {
+impl<R: Read> Read for HashingReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let length = self.input.read(buffer)?;
         self.hash.0.borrow_mut().update(&buffer[..length]);
@@ -51,8 +51,8 @@ impl<R: Read> Read for Hashed<R> {
 
 /// Lines of a file, in order.
 pub struct Lines<R> {
-    input: BufReader<Hashed<R>>,
-    hash: Hash,
+    input: BufReader<HashingReader<R>>,
+    hash: RunningHash,
     encoding: Encoding,
     /// Byte at which lines end, determined with the first line.
     end: u8,
@@ -65,7 +65,7 @@ pub struct Lines<R> {
 impl<R: Read> Lines<R> {
     /// Lines of `input` in `encoding`.
     pub fn new(input: R, encoding: Encoding) -> Self {
-        let (hashed, hash) = Hashed::new(input);
+        let (hashed, hash) = HashingReader::new(input);
         let input = BufReader::with_capacity(1 << 16, hashed);
         Self { input, hash, encoding, end: b'\n', bytes: Vec::new(), text: String::new(), number: 0, consumed: 0 }
     }
@@ -159,7 +159,7 @@ impl<R: Read> Lines<R> {
 
 /// SHA-256 of a text, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Hash::of(bytes).finish()
+    RunningHash::from_bytes(bytes).finish()
 }
 
 #[cfg(test)]

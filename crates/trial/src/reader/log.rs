@@ -100,7 +100,7 @@ impl Log {
                 of_series(path, messages::read(Lines::new(text.bytes, Encoding::Utf8), &format), &sidecar, whole)?
             }
         };
-        let sha256 = on_disk.map_or(log.sha256, lines::Hash::finish);
+        let sha256 = on_disk.map_or(log.sha256, lines::RunningHash::finish);
         let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
         if whole {
             log.complete()?;

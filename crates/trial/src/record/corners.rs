@@ -31,9 +31,9 @@ pub struct Corner {
 /// Recorded rudder: its rows and the corners between them.
 #[derive(Debug, Clone)]
 pub(super) struct RecordedRudder {
-    /// Rows.
+    /// Rudder angle at the rows.
     pub rows: Polyline,
-    /// Corners between them.
+    /// Corners between the rows.
     pub corners: Vec<Corner>,
     /// Rows and corners together, if there are corners.
     path: Option<Polyline>,
@@ -152,7 +152,7 @@ mod tests {
         let path = Polyline::new(time, angle).expect("a path");
         let rows = (path.times()[path.times().len() - 1] / period) as usize;
         let time: Vec<f64> = (0..=rows).map(|row| row as f64 * period).collect();
-        let angle = time.iter().map(|&t| reading(path.at(t))).collect();
+        let angle = time.iter().map(|&t| reading(path.value_at(t))).collect();
         Polyline::new(time, angle).expect("rows")
     }
 

@@ -44,7 +44,7 @@ impl ZigZag {
     /// Fails if the record is not a zig-zag (see [`ZigZagError`]): the rudder is not laid by at least half a degree to
     /// both sides with two reversals, is not held there, or the heading moves against it; or if headings are missing
     /// at an execute.
-    pub fn of(trial: &Trial) -> Result<Self, ZigZagError> {
+    pub fn from_trial(trial: &Trial) -> Result<Self, ZigZagError> {
         read(trial)
     }
 }
@@ -92,8 +92,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     };
     let from_first = side.is_some();
     Ok(ZigZag {
-        pair,
-        side,
+        nominal_angles: pair,
+        first_side: side,
         base_course,
         initial_turning_time: since_first(turned),
         initial_turning_distance: (turned.filter(|_| !begins_moving))
@@ -113,7 +113,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
 fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagError> {
     let time = movement.start;
     let psi = heading
-        .at(time.value)
+        .heading_at(time.value)
         .ok_or(ZigZagError::NoHeading { time: time.value, reach: heading.widest_half_width() })?;
     let yaw_rate = heading.rate_at(time.value);
     // An error of the execute time shifts the heading along the turn.

@@ -2,7 +2,7 @@
 //! within a sample, and on quantised, drifting and noisy rudders. Whether the first movement of a record is the first
 //! execute of the trial depends on the heading; see `characteristics`.
 
-use super::holds::{Hold, LAID_SHARE};
+use super::holds::{Hold, MIN_HOLD_ANGLE_SHARE};
 use document::Quantity;
 use estimation::statistics::median;
 
@@ -176,7 +176,7 @@ impl<'a> RudderMovements<'a> {
             ([], rate) => {
                 // A faster rudder may have started later: a lower bound of the rate leaves the whole interval.
                 let under_way =
-                    rate.filter(|_| !self.rate_is_bound).map_or(0.0, |rate| LAID_SHARE * travel.abs() / rate);
+                    rate.filter(|_| !self.rate_is_bound).map_or(0.0, |rate| MIN_HOLD_ANGLE_SHARE * travel.abs() / rate);
                 (uniform(earliest, (latest - under_way).max(earliest)), None)
             }
         };

@@ -49,7 +49,7 @@ pub enum Side {
 
 impl Side {
     /// Side of a signed angle.
-    pub fn of(angle: f64) -> Self {
+    pub fn from_angle(angle: f64) -> Self {
         if angle < 0.0 { Self::Port } else { Self::Starboard }
     }
 
@@ -128,7 +128,7 @@ pub struct Execute {
 impl Execute {
     /// Side to which the rudder is put.
     pub fn side(&self) -> Side {
-        Side::of(self.rudder_after)
+        Side::from_angle(self.rudder_after)
     }
 }
 
@@ -160,9 +160,9 @@ pub struct Overshoot {
 pub struct ZigZag {
     /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` if those headings differ by more
     /// than half their size.
-    pub pair: Option<NominalAngles>,
+    pub nominal_angles: Option<NominalAngles>,
     /// Side of the first execute; `None` if the record begins within the trial.
-    pub side: Option<Side>,
+    pub first_side: Option<Side>,
     /// Base course of the trial.
     pub base_course: BaseCourse,
     /// Executes in the order of time; including the first one if recorded.
@@ -203,7 +203,7 @@ impl ZigZag {
     /// Yaw rate at the first execute after a straight approach, rad/s: at most [`MAX_APPROACH_RATE_SHARE`] of the
     /// maximum yaw rate, within its error. `None` for a record that begins in a turn or within the trial.
     pub fn straight_yaw_rate(&self) -> Option<Quantity> {
-        self.side?;
+        self.first_side?;
         let (rate, largest) = (self.executes.first()?.yaw_rate?, self.largest_yaw_rate?);
         let limit = MAX_APPROACH_RATE_SHARE * largest.value + TOLERANCE_SDS * rate.sd.unwrap_or(0.0);
         (rate.value.abs() <= limit).then_some(rate)
@@ -216,26 +216,26 @@ impl ZigZag {
 
     /// Period from the first executes.
     pub fn period_of(&self, executes: usize) -> Option<Quantity> {
-        period(self.executes.get(..executes).unwrap_or(&self.executes), self.side.is_some())
+        period(self.executes.get(..executes).unwrap_or(&self.executes), self.first_side.is_some())
     }
 
     /// `true` if the record begins within the trial, without its first execute.
     pub fn lacks_first_execute(&self) -> bool {
-        self.side.is_none()
+        self.first_side.is_none()
     }
 
     /// The n-th overshoot of the trial, counted from 1 at the second execute; `None` if the record begins within the
     /// trial (no overshoot can be counted) or does not contain that peak.
     pub fn nth_overshoot(&self, n: usize) -> Option<&Overshoot> {
-        self.side?;
+        self.first_side?;
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
 
     /// Overshoots in the order of their executes, from the first of the record on; `None` for a peak that was not
     /// recorded.
-    pub fn swings(&self) -> impl Iterator<Item = Option<&Overshoot>> {
+    pub fn overshoots_by_execute(&self) -> impl Iterator<Item = Option<&Overshoot>> {
         let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
-        (usize::from(self.side.is_some())..end)
+        (usize::from(self.first_side.is_some())..end)
             .map(|execute| self.overshoots.iter().find(|overshoot| overshoot.execute == execute))
     }
 }

@@ -110,7 +110,7 @@ impl Heading {
     }
 
     /// Heading at time `t` relative to the origin.
-    pub fn at(&self, t: f64) -> Option<Quantity> {
+    pub fn heading_at(&self, t: f64) -> Option<Quantity> {
         Some(self.local(t, self.half_width)?.value_at(t, self.noise))
     }
 

@@ -8,7 +8,7 @@ use estimation::statistics::median;
 
 /// Minimum rudder angle of a hold, as a share of the median angle held on that side. It is high because manual
 /// steering before a first execute can use more than half the rudder of the trial.
-pub const LAID_SHARE: f64 = 0.85;
+pub const MIN_HOLD_ANGLE_SHARE: f64 = 0.85;
 
 /// Minimum rudder angle of a zig-zag, degrees.
 const MIN_RUDDER_DEG: f64 = 0.5;
@@ -22,9 +22,9 @@ const MIN_HELD_SHARE: f64 = 0.3;
 pub struct Hold {
     /// +1 starboard, −1 port.
     pub side: f64,
-    /// First row beyond [`LAID_SHARE`] of the level.
+    /// First row beyond [`MIN_HOLD_ANGLE_SHARE`] of the level.
     pub first: usize,
-    /// Last row beyond [`LAID_SHARE`] of the level.
+    /// Last row beyond [`MIN_HOLD_ANGLE_SHARE`] of the level.
     pub last: usize,
     /// Median rudder angle, rad, signed.
     pub level: f64,
@@ -44,7 +44,7 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     let side_of = |delta: f64| {
         [(1.0, starboard), (-1.0, port)]
             .into_iter()
-            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID_SHARE * level)
+            .find(|&(side, level)| level > 0.5 * largest && side * delta >= MIN_HOLD_ANGLE_SHARE * level)
             .map(|(side, _)| side)
     };
     let mut holds: Vec<Hold> = Vec::new();

@@ -73,7 +73,7 @@ static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
         let (_, rows) = in_memory(&study);
         (study, rows)
     });
-    BenchDocument::of(&studies, &[])
+    BenchDocument::from_studies(&studies, &[])
 });
 
 #[test]
@@ -92,7 +92,7 @@ fn scores_are_what_the_models_are_worth() {
                 assert!(of(STRAIGHT_ON).is_none(), "it has no K and no T");
                 let slow = of("slow").expect("it answers");
                 assert!((median("slow") - 20.0).abs() < 1e-9, "T is 24 s where it is 20 s");
-                let holds = slow.holds.expect("intervals").map(|share| (share.count, share.of));
+                let holds = slow.holds.expect("intervals").map(|share| (share.count, share.cases));
                 assert_eq!(holds, [(2, 2), (0, 2)], "K is inside, 20 s is not within 24 s ± 10 %");
             }
             _ => assert!(median(STRAIGHT_ON) > 2.0 * median("slow"), "{:?}", board.task),
@@ -109,7 +109,10 @@ fn scores_are_what_the_models_are_worth() {
 fn only_who_names_effects_is_asked_for_one() {
     let results = &*RESULTS;
     let [line] = &results.naming[..] else { panic!("{:?}", results.naming) };
-    assert_eq!((line.method.as_str(), line.missing.as_deref(), line.named.of), ("trace", Some("nonlinear_damping"), 2));
+    assert_eq!(
+        (line.method.as_str(), line.missing.as_deref(), line.named.cases),
+        ("trace", Some("nonlinear_damping"), 2)
+    );
     assert!(results.cases.iter().filter(|case| case.task == BenchTask::Name).all(|case| case.answers.len() == 1));
 }
 

@@ -22,12 +22,12 @@ fn labels_have_few_digits_whatever_the_size() {
     let labels: Vec<&str> = sizes.points.iter().map(|point| point.label.as_str()).collect();
     assert_eq!(labels, ["1e308", "-2.346e-30", "1e-12", "0.1", "12346", "0"]);
     let refused = SweepSetting {
-        key: KeyPath::dotted("a"),
+        key: KeyPath::from_dotted("a"),
         value: Value::Float(1e308),
         key_place: KeyPath::default(),
         value_place: KeyPath::default(),
     }
-    .attributed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+    .attributed(KeyFault::value(KeyPath::from_dotted("a"), "`b` is wrong", "", ""), None);
     assert_eq!(refused.problem, "the sweep sets `a` to 1e308: `b` is wrong");
 }
 
@@ -55,7 +55,7 @@ fn cells_are_the_product_in_order() {
 #[test]
 fn sets_keys_in_tables_and_arrays() {
     let mut document: Table = "x = 1\n[[identifier]]\nsrivc = {}".parse().expect("well formed");
-    let mut set = |key: &str, value: Value| super::set(&mut document, &KeyPath::dotted(key), value);
+    let mut set = |key: &str, value: Value| super::set(&mut document, &KeyPath::from_dotted(key), value);
     set("sensor.noise", Value::Float(0.5)).expect("makes the table");
     set("identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
     assert!(set("x.y", Value::Integer(1)).is_err());

@@ -103,7 +103,7 @@ fn a_way_carries_its_derivatives() {
                 end(moved.map(Tangent::from)).value
             };
             let slope = (moved(1e-5) - moved(-1e-5)) / (2e-5 * values[place]);
-            assert!((whole.by[place] - slope).abs() < 1e-5 * slope.abs().max(0.1), "{line}, {place}: {slope}");
+            assert!((whole.derivatives[place] - slope).abs() < 1e-5 * slope.abs().max(0.1), "{line}, {place}: {slope}");
         }
     }
 }

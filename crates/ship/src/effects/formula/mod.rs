@@ -104,14 +104,18 @@ impl Formula {
     ///
     /// Fails with the position and the expected symbols.
     pub fn parse(line: &str) -> Result<Arc<Self>, FormulaError> {
-        let error = |at: usize, problem: &str| FormulaError { text: line.to_owned(), at, problem: problem.to_owned() };
+        let error = |at: usize, problem: &str| FormulaError {
+            text: line.to_owned(),
+            position: at,
+            problem: problem.to_owned(),
+        };
         let Some((name, formula)) = line.split_once('=') else {
             return Err(error(line.chars().count(), "expected `name = formula`, as in `bank = c * r * abs(v)`"));
         };
         let before = name.chars().count() + 1;
         Self::named(name.trim(), formula.trim()).map_err(|inner| {
             let blanks = formula.chars().take_while(|letter| letter.is_whitespace()).count();
-            FormulaError { text: line.to_owned(), at: before + blanks + inner.at, ..inner }
+            FormulaError { text: line.to_owned(), position: before + blanks + inner.position, ..inner }
         })
     }
 
@@ -154,7 +158,7 @@ impl Formula {
     }
 
     fn made(name: &str, text: &str) -> Result<Self, FormulaError> {
-        let error = |at: usize, problem: String| FormulaError { text: text.to_owned(), at, problem };
+        let error = |at: usize, problem: String| FormulaError { text: text.to_owned(), position: at, problem };
         let is_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic())
             && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !is_name || name.len() > MAX_NAME_CHARS {

@@ -13,12 +13,12 @@ const MAX_CONSTANTS: usize = 4;
 
 /// Syntax error of a formula, with its position.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{problem}\n{}", marked(text, *at))]
+#[error("{problem}\n{}", marked(text, *position))]
 pub struct FormulaError {
     /// Text of the formula.
     pub text: String,
     /// Position: number of characters before it.
-    pub at: usize,
+    pub position: usize,
     /// Problem at the position: symbol found and symbols expected.
     pub problem: String,
 }
@@ -80,7 +80,7 @@ impl FormulaParser {
     }
 
     fn error(&self, at: usize, problem: impl Into<String>) -> FormulaError {
-        FormulaError { text: self.letters.iter().collect(), at, problem: problem.into() }
+        FormulaError { text: self.letters.iter().collect(), position: at, problem: problem.into() }
     }
 
     /// Next character that is not white space; `None` at the end.
@@ -401,7 +401,7 @@ mod tests {
             ("c*é", 2, "without accents"),
         ] {
             let error = parse(text, false).expect_err(text);
-            assert!(error.at == at && error.problem.contains(message), "{text}: {error:?}");
+            assert!(error.position == at && error.problem.contains(message), "{text}: {error:?}");
         }
         let marked = parse("c * dleta", false).expect_err("misspelt").to_string();
         assert!(marked.ends_with("\n  c * dleta\n      ^"), "{marked}");

@@ -137,7 +137,7 @@ fn what_is_no_effect_is_refused_where_it_stands() {
         ("bank = c * r; c near 5", 13, "expected `c about 5`"),
     ] {
         let error = Formula::parse(line).expect_err(line);
-        assert!(error.at == at && error.problem.contains(message), "{line}: {error:?}");
+        assert!(error.position == at && error.problem.contains(message), "{line}: {error:?}");
     }
 }
 

@@ -16,7 +16,7 @@ pub struct BySign<R = f64> {
 
 impl<R: Real> BySign<R> {
     /// Value at an angle.
-    pub fn at(&self, angle: R) -> R {
+    pub fn value_at(&self, angle: R) -> R {
         if angle.value() < 0.0 { self.negative } else { self.positive }
     }
 

@@ -8,7 +8,7 @@ use crate::vessel::mmg::Mmg;
 const MIN_SURGE: f64 = 0.15;
 
 /// Maximum speed or yaw rate, in U₀ and U₀/L, at which the equations are evaluated: a diverging state stays finite.
-pub const MAX_SPEED: f64 = 2.0;
+pub const MAX_PRIME_SPEED: f64 = 2.0;
 
 /// Minimum inflow to the rudder, in U₀.
 const MIN_INFLOW: f64 = 0.05;
@@ -104,7 +104,7 @@ impl<R: Real> CalmHull<R> {
     /// Accelerations without wind.
     #[inline]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
-        let [u, v, r] = [limited(u, MIN_SURGE), limited(v, -MAX_SPEED), limited(r, -MAX_SPEED)];
+        let [u, v, r] = [limited(u, MIN_SURGE), limited(v, -MAX_PRIME_SPEED), limited(r, -MAX_PRIME_SPEED)];
         match self {
             Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
             Self::Quadratic(p) => {
@@ -128,7 +128,7 @@ impl<R: Real> CalmHull<R> {
 /// Speed or yaw rate limited to the range of the equations.
 #[inline]
 fn limited<R: Real>(value: R, least: f64) -> R {
-    value.clamped(R::from(least), R::from(MAX_SPEED))
+    value.clamped(R::from(least), R::from(MAX_PRIME_SPEED))
 }
 
 /// Terms of both polynomials, with coefficients in the order of [`COMMON`].

@@ -94,7 +94,7 @@ fn law<const N: usize>(
     let linearised = |values: &DVector<f64>| {
         let variables = std::array::from_fn(|place| Dual::variable(values[place], place, 1.0));
         let rows = accelerations(&polynomial(variables));
-        let by = DMatrix::from_fn(rows.len(), N, |row, column| rows[row].by[column]);
+        let by = DMatrix::from_fn(rows.len(), N, |row, column| rows[row].derivatives[column]);
         let residual = DVector::from_fn(rows.len(), |row, _| truth[row] - rows[row].value);
         Some((by.tr_mul(&by).cholesky()?, by, residual))
     };

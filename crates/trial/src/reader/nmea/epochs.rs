@@ -29,7 +29,7 @@ struct Group {
 type Timing = (Option<Clock>, Vec<Warning>);
 
 /// Instants of a log with stamps before the sentences.
-pub(super) fn from_stamps(log: &mut NmeaLog) -> Timing {
+pub(super) fn timing_from_stamps(log: &mut NmeaLog) -> Timing {
     let (mut spread, mut disordered) = (0, 0);
     for instrument in &mut log.instruments {
         let mut latest = f64::NEG_INFINITY;
@@ -89,7 +89,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 /// Instants of a log with the time in some of its sentences.
 ///
 /// Fails without at least two different times, and if they decrease for more than one sentence.
-pub(super) fn from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
+pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
     let times = |clock: &NmeaInstrument| clock.column(NmeaQuantity::Second).map_or(0, |column| clock.readings(column));
     let rank = |clock: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|code| clock.sends(code));
     let clocks = log.instruments.iter().filter(|instrument| times(instrument) > 0);
@@ -175,7 +175,11 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
             let ahead = kept.len() == 1 || epoch.time >= kept[kept.len() - 2].time;
             if !ahead || next.is_some_and(|next| next.time < epoch.time) {
                 let line = epoch.line as usize;
-                return Err(Problem::ClockBack { line, before: clock.at(last.time), after: clock.at(epoch.time) });
+                return Err(Problem::ClockBack {
+                    line,
+                    before: clock.time_of_day_at(last.time),
+                    after: clock.time_of_day_at(epoch.time),
+                });
             }
             // The previous time was too late.
             kept.pop();

@@ -142,18 +142,18 @@ impl<'a> Fields<'a> {
     }
 
     /// Field by its number, from 1, counted after the address as in the standard.
-    pub fn at(&self, field: usize) -> &'a [u8] {
-        self.fields[field - 1]
+    pub fn field(&self, number: usize) -> &'a [u8] {
+        self.fields[number - 1]
     }
 
     /// `true` for a field with a single given letter.
     pub fn is(&self, field: usize, letter: u8) -> bool {
-        self.at(field) == [letter]
+        self.field(field) == [letter]
     }
 
     /// Number in a field.
     pub fn number(&self, field: usize) -> Number {
-        number(self.at(field))
+        number(self.field(field))
     }
 }
 

@@ -221,7 +221,7 @@ impl NmeaLog {
         }
         if let Some((line, after)) = self.late {
             let clock = self.stamps.clock();
-            let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.at(at));
+            let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.time_of_day_at(at));
             return Err(Problem::ClockBack { line, before: shown(latest), after: shown(after) });
         }
         self.counts.strayed += 1;

@@ -20,7 +20,7 @@ use std::io::Read;
 use document::{Warning, WarningCode};
 
 use self::choice::Choice;
-use self::epochs::{from_sentences, from_stamps, is_or_are, rounded};
+use self::epochs::{is_or_are, rounded, timing_from_sentences, timing_from_stamps};
 use self::frame::{Line, frame};
 use self::log::{Counts, NmeaLog};
 use self::stamp::PrefixReader;
@@ -106,7 +106,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
             Problem::NoReadings { sentences: counts.sentences }
         });
     }
-    let (clock, timing) = if log.stamped { from_stamps(&mut log) } else { from_sentences(&mut log)? };
+    let (clock, timing) = if log.stamped { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
     let mut warnings = count_warnings(&counts, lines);
     warnings.extend(timing);
     let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);

@@ -71,7 +71,7 @@ const SENTENCES: [Sentence; 19] = {
         (b"HDM", &[HeadingMagnetic], |row, fields| row.take_heading(fields, b"M")),
         (b"THS", &[HeadingTrue], |row, fields| {
             // A: autonomous, E: estimated; manual, simulated and invalid headings are not those of the ship.
-            if matches!(fields.at(2), b"A" | b"E") {
+            if matches!(fields.field(2), b"A" | b"E") {
                 row.take_direction(0, fields.number(1));
             }
         }),
@@ -102,9 +102,9 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"RMC", &[Second, Day, Latitude, Longitude, SpeedGround], |row, fields| {
             if fields.is(2, b'A') {
-                row.take_second(0, fields.at(1));
-                let day = date(fields.at(9));
-                row.invalid[1] = day.is_none() && !fields.at(9).is_empty();
+                row.take_second(0, fields.field(1));
+                let day = date(fields.field(9));
+                row.invalid[1] = day.is_none() && !fields.field(9).is_empty();
                 row.values[1] = day.unwrap_or(f64::NAN);
                 row.take_position(2, fields, 3);
                 row.take(4, fields.number(7), 0.0..=MAX_SPEED_KN, KNOT);
@@ -112,23 +112,23 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"GGA", &[Second, Latitude, Longitude], |row, fields| {
             // The quality is 0 without a position, and 6 to 8 for a position that is reckoned, entered or simulated.
-            if matches!(fields.at(6), b"1" | b"2" | b"3" | b"4" | b"5" | b"9") {
-                row.take_second(0, fields.at(1));
+            if matches!(fields.field(6), b"1" | b"2" | b"3" | b"4" | b"5" | b"9") {
+                row.take_second(0, fields.field(1));
                 row.take_position(1, fields, 2);
             }
         }),
         (b"GLL", &[Second, Latitude, Longitude], |row, fields| {
             if fields.is(6, b'A') {
-                row.take_second(0, fields.at(5));
+                row.take_second(0, fields.field(5));
                 row.take_position(1, fields, 1);
             }
         }),
         (b"ZDA", &[Second, Day], |row, fields| {
-            row.take_second(0, fields.at(1));
+            row.take_second(0, fields.field(1));
             row.values[1] = day([2, 3, 4].map(|field| fields.number(field))).unwrap_or(f64::NAN);
         }),
         (b"RPM", &[Revolutions], |row, fields| {
-            let shaft = fields.at(2).first().copied().unwrap_or(b'0');
+            let shaft = fields.field(2).first().copied().unwrap_or(b'0');
             row.part = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
             row.take_valid(fields, 5, &[(0, 3)], -10_000.0..=10_000.0, 1.0 / 60.0);
         }),
@@ -203,7 +203,7 @@ impl Row {
 
     /// Stores the heading of HDT or HDM, with the letter of its reference.
     fn take_heading(&mut self, fields: &Fields, reference: &[u8]) {
-        if fields.at(2) == reference || fields.at(2).is_empty() {
+        if fields.field(2) == reference || fields.field(2).is_empty() {
             self.take_direction(0, fields.number(1));
         }
     }
@@ -224,7 +224,7 @@ impl Row {
             let degrees = (value / 100.0).floor();
             let minutes = value - 100.0 * degrees;
             let angle = degrees + minutes / 60.0;
-            let sign = match fields.at(at + 1) {
+            let sign = match fields.field(at + 1) {
                 letter if letter == [positive] => 1.0,
                 letter if letter == [negative] => -1.0,
                 _ => f64::NAN,
@@ -265,7 +265,7 @@ const KILOMETRE_PER_HOUR: f64 = 1.0 / 3.6;
 
 /// Decoder of HTC and HTD: the ordered rudder with its side.
 fn read_order(row: &mut Row, fields: &Fields) {
-    match fields.at(3) {
+    match fields.field(3) {
         b"R" => row.take(0, fields.number(2), 0.0..=90.0, DEGREE),
         b"L" => row.take(0, fields.number(2), 0.0..=90.0, -DEGREE),
         // Amidships has no side.
@@ -276,7 +276,7 @@ fn read_order(row: &mut Row, fields: &Fields) {
 
 /// Decoder of HDG: sensor, deviation and variation. Sensor and deviation add up to the magnetic heading.
 fn read_hdg(row: &mut Row, fields: &Fields) {
-    let signed = |at: usize| match (fields.number(at), fields.at(at + 1)) {
+    let signed = |at: usize| match (fields.number(at), fields.field(at + 1)) {
         (Number::Value(value), b"E") if (0.0..=180.0).contains(&value) => Ok(value * DEGREE),
         (Number::Value(value), b"W") if (0.0..=180.0).contains(&value) => Ok(-value * DEGREE),
         (Number::Empty, _) => Ok(f64::NAN),
@@ -296,8 +296,8 @@ fn read_hdg(row: &mut Row, fields: &Fields) {
 
 /// Decoder of MWV: directions are clockwise from the bow, also for the true wind.
 fn read_mwv(row: &mut Row, fields: &Fields) {
-    row.part = [fields.at(2).first().copied().unwrap_or(0), 0];
-    let factor = match fields.at(4) {
+    row.part = [fields.field(2).first().copied().unwrap_or(0), 0];
+    let factor = match fields.field(4) {
         b"K" => KILOMETRE_PER_HOUR,
         b"M" => 1.0,
         b"N" => KNOT,
@@ -305,7 +305,7 @@ fn read_mwv(row: &mut Row, fields: &Fields) {
         b"S" => 0.447_04,
         _ => f64::NAN,
     };
-    if !fields.is(5, b'A') || !matches!(fields.at(2), b"R" | b"T") {
+    if !fields.is(5, b'A') || !matches!(fields.field(2), b"R" | b"T") {
         return;
     }
     row.take_direction(1, fields.number(1));

@@ -31,8 +31,8 @@ fn check([delta_deg, psi_deg, rate_deg_s]: [f64; 3], step: f64) {
     let within = |tolerance: f64, name: &str, measured: f64, expected: f64| {
         assert!((measured - expected).abs() < tolerance, "{label}: {name} is {measured:.6}, expected {expected:.6}");
     };
-    assert!(zigzag.pair.expect("has a pair").is_deg(delta_deg, psi_deg), "{label}");
-    assert_eq!(zigzag.side, Some(Side::Starboard));
+    assert!(zigzag.nominal_angles.expect("has a pair").is_deg(delta_deg, psi_deg), "{label}");
+    assert_eq!(zigzag.first_side, Some(Side::Starboard));
     assert_eq!(zigzag.base_course.source, BaseCourseSource::FirstHeading);
     let executes: Vec<f64> = zigzag.executes.iter().map(|execute| execute.time.value).collect();
     let expected = plant.execute_times(900.0);

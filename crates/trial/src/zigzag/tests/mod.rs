@@ -13,7 +13,7 @@ use document::Quantity;
 
 fn of_plant(plant: Plant, duration: f64, step: f64) -> ZigZag {
     let (time, heading, rudder) = plant.record(duration, step);
-    ZigZag::of(&trial(time, heading, rudder)).expect("a zig-zag")
+    ZigZag::from_trial(&trial(time, heading, rudder)).expect("a zig-zag")
 }
 
 /// Reach and complete cycle are the base-course crossings of the closed-form response, found here on a 1 ms grid.
@@ -67,11 +67,12 @@ fn mirrored(quantity: Quantity) -> Quantity {
 fn a_mirrored_record_has_exactly_the_mirrored_characteristics() {
     let (time, heading, rudder) = rough_record();
     let negative = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<f64>>();
-    let port_first = ZigZag::of(&trial(time.clone(), negative(&heading), negative(&rudder))).expect("a zig-zag");
-    let starboard_first = ZigZag::of(&trial(time, heading, rudder)).expect("a zig-zag");
-    assert_eq!(starboard_first.side, Some(Side::Starboard));
+    let port_first =
+        ZigZag::from_trial(&trial(time.clone(), negative(&heading), negative(&rudder))).expect("a zig-zag");
+    let starboard_first = ZigZag::from_trial(&trial(time, heading, rudder)).expect("a zig-zag");
+    assert_eq!(starboard_first.first_side, Some(Side::Starboard));
     let mut mirror = starboard_first;
-    mirror.side = Some(Side::Port);
+    mirror.first_side = Some(Side::Port);
     mirror.base_course.heading = mirrored(mirror.base_course.heading);
     for execute in &mut mirror.executes {
         execute.heading = mirrored(execute.heading);
@@ -90,9 +91,9 @@ fn the_base_course_does_not_matter() {
     let (time, heading, rudder) = rough_record();
     let offset = from_deg(213.0) + 2.0 * std::f64::consts::TAU;
     let turned: Vec<f64> = heading.iter().map(|psi| psi + offset).collect();
-    let north = ZigZag::of(&trial(time.clone(), heading, rudder.clone())).expect("a zig-zag");
-    let other = ZigZag::of(&trial(time, turned, rudder)).expect("a zig-zag");
-    assert_eq!(north.pair, other.pair);
+    let north = ZigZag::from_trial(&trial(time.clone(), heading, rudder.clone())).expect("a zig-zag");
+    let other = ZigZag::from_trial(&trial(time, turned, rudder)).expect("a zig-zag");
+    assert_eq!(north.nominal_angles, other.nominal_angles);
     assert_relative_eq!(other.base_course.heading.value, north.base_course.heading.value + offset, epsilon = 1e-10);
     assert_eq!(north.overshoots.len(), other.overshoots.len());
     for (a, b) in north.overshoots.iter().zip(&other.overshoots) {
@@ -112,11 +113,11 @@ fn a_record_that_begins_within_the_trial() {
         let every_second = |values: &[f64]| values[from..].iter().step_by(10).copied().collect::<Vec<f64>>();
         let turned: Vec<f64> = heading.iter().map(|psi| psi + 2.0).collect();
         let record = trial(every_second(&time), every_second(&turned), every_second(&rudder));
-        let zigzag = ZigZag::of(&record).expect("a zig-zag");
+        let zigzag = ZigZag::from_trial(&record).expect("a zig-zag");
         assert!(zigzag.lacks_first_execute(), "cut at {start} s");
         assert_eq!(zigzag.base_course.source, BaseCourseSource::Executes);
         assert_relative_eq!(to_deg(zigzag.base_course.heading.value - 2.0), 0.0, epsilon = 0.02);
-        assert!(zigzag.pair.expect("headings agree").is_deg(10.0, 20.0));
+        assert!(zigzag.nominal_angles.expect("headings agree").is_deg(10.0, 20.0));
         assert_eq!((zigzag.initial_turning_time, zigzag.reach, zigzag.complete_cycle_time), (None, None, None));
         assert_eq!(zigzag.nth_overshoot(1), None);
         assert_relative_eq!(zigzag.executes[0].time.value, 114.60, epsilon = 0.02);
@@ -137,9 +138,9 @@ fn a_record_that_begins_at_a_reversal_does_not_tell_its_overshoot() {
         let from = ((reversal + start) * 10.0).round() as usize;
         let every_second = |values: &[f64]| values[from..].iter().step_by(10).copied().collect::<Vec<f64>>();
         let noisy = every_second(&heading).into_iter().map(|psi| psi + from_deg(0.1 * gaussian.draw())).collect();
-        let zigzag = ZigZag::of(&trial(every_second(&time), noisy, every_second(&rudder))).expect("a zig-zag");
+        let zigzag = ZigZag::from_trial(&trial(every_second(&time), noisy, every_second(&rudder))).expect("a zig-zag");
         assert!(zigzag.begins_at_reversal && zigzag.lacks_first_execute(), "{start} s");
-        assert_eq!(zigzag.swings().next(), Some(None), "{start} s");
+        assert_eq!(zigzag.overshoots_by_execute().next(), Some(None), "{start} s");
         let next = zigzag.overshoots[0].angle;
         assert!((next.value - second.angle.value).abs() < 4.0 * next.sd.expect("noise"), "{start} s: {next:?}");
     }
@@ -152,9 +153,9 @@ fn a_record_that_begins_within_the_first_movement_has_no_times_from_it() {
     for late in [1, 2, 3] {
         let (time, heading, rudder) = Plant::default().record(300.0, 1.0);
         let cut = |values: Vec<f64>| values[late..].to_vec();
-        let zigzag = ZigZag::of(&trial(cut(time), cut(heading), cut(rudder))).expect("a zig-zag");
+        let zigzag = ZigZag::from_trial(&trial(cut(time), cut(heading), cut(rudder))).expect("a zig-zag");
         assert_eq!((zigzag.initial_turning_time, zigzag.reach, zigzag.complete_cycle_time), (None, None, None));
-        assert_eq!(zigzag.side, Some(Side::Starboard));
+        assert_eq!(zigzag.first_side, Some(Side::Starboard));
         let [cut, uncut] = [&zigzag, &whole].map(|zigzag| zigzag.nth_overshoot(1).expect("seen").angle.value);
         assert_relative_eq!(cut, uncut, epsilon = 1e-3);
     }
@@ -167,8 +168,8 @@ fn a_record_read_off_indicators() {
     let rounded = |values: Vec<f64>, step_deg: f64| {
         values.into_iter().map(|angle| from_deg(step_deg * (to_deg(angle) / step_deg).round())).collect::<Vec<f64>>()
     };
-    let zigzag = ZigZag::of(&trial(time, rounded(heading, 0.1), rounded(rudder, 1.0))).expect("a zig-zag");
-    assert!(zigzag.pair.expect("headings agree").is_deg(10.0, 10.0));
+    let zigzag = ZigZag::from_trial(&trial(time, rounded(heading, 0.1), rounded(rudder, 1.0))).expect("a zig-zag");
+    assert!(zigzag.nominal_angles.expect("headings agree").is_deg(10.0, 10.0));
     for (execute, expected) in zigzag.executes.iter().zip([30.0, 54.09, 109.20, 167.37, 225.68]) {
         assert!((execute.time.value - expected).abs() < 0.35, "{} for {expected}", execute.time.value);
     }
@@ -197,7 +198,7 @@ fn scatter(noise_deg: f64, pick: impl Fn(&ZigZag) -> Quantity) -> (f64, f64, f64
     for seed in 0..SEEDS {
         let mut gaussian = Gaussian::new(1000 + seed);
         let noisy = heading.iter().map(|psi| psi + from_deg(noise_deg * gaussian.draw())).collect();
-        let zigzag = ZigZag::of(&trial(time.clone(), noisy, rudder.clone())).expect("a zig-zag");
+        let zigzag = ZigZag::from_trial(&trial(time.clone(), noisy, rudder.clone())).expect("a zig-zag");
         let quantity = pick(&zigzag);
         sum += quantity.value;
         squares += quantity.value * quantity.value;
@@ -241,7 +242,7 @@ fn reported_uncertainty_is_the_scatter_over_seeds() {
 fn declared_noise_wins_over_the_estimate() {
     let (time, heading, rudder) = Plant::default().record(300.0, 1.0);
     let noise = Noise { heading: Some(from_deg(0.3)), ..Noise::default() };
-    let zigzag = ZigZag::of(&trial(time, heading, rudder).with_noise(noise)).expect("a zig-zag");
+    let zigzag = ZigZag::from_trial(&trial(time, heading, rudder).with_noise(noise)).expect("a zig-zag");
     assert_eq!(zigzag.heading_noise, noise.heading);
     let sd = to_deg(zigzag.overshoots[0].angle.sd.expect("declared"));
     assert!((0.1..0.3).contains(&sd), "{sd}");
@@ -251,8 +252,9 @@ fn declared_noise_wins_over_the_estimate() {
 fn other_records_are_refused() {
     let time: Vec<f64> = (0..300).map(f64::from).collect();
     let zero = vec![0.0; 300];
-    let of =
-        |heading: Vec<f64>, rudder: Vec<f64>| ZigZag::of(&trial(time.clone(), heading, rudder)).expect_err("refused");
+    let of = |heading: Vec<f64>, rudder: Vec<f64>| {
+        ZigZag::from_trial(&trial(time.clone(), heading, rudder)).expect_err("refused")
+    };
     assert!(matches!(of(zero.clone(), zero.clone()), ZigZagError::NoRudder { .. }));
 
     let mut gaussian = Gaussian::new(5);
@@ -286,7 +288,7 @@ fn executes_of_a_noisy_rudder() {
             for seed in 0..20 {
                 let mut gaussian = Gaussian::new(seed);
                 let noisy = rudder.iter().map(|delta| delta + from_deg(0.3 * gaussian.draw())).collect();
-                let zigzag = ZigZag::of(&trial(time.clone(), heading.clone(), noisy)).expect("a zig-zag");
+                let zigzag = ZigZag::from_trial(&trial(time.clone(), heading.clone(), noisy)).expect("a zig-zag");
                 for (execute, expected) in zigzag.executes.iter().zip(&expected) {
                     let error = execute.time.value - expected;
                     assert!(error.abs() < 0.5, "every {step} s: {} for {expected}", execute.time.value);
@@ -307,7 +309,7 @@ fn sparse_sampling() {
     for (delta_deg, psi_deg) in [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)] {
         let plant = Plant { approach: 60.0, ..Plant::new(delta_deg, psi_deg, 2.5) };
         let zigzag = of_plant(plant, 500.0, 5.0);
-        assert!(zigzag.pair.expect("headings agree").is_deg(delta_deg, psi_deg));
+        assert!(zigzag.nominal_angles.expect("headings agree").is_deg(delta_deg, psi_deg));
         for (execute, expected) in zigzag.executes.iter().zip(plant.execute_times(500.0)) {
             let sd = execute.time.sd.expect("always known");
             let error = (execute.time.value - expected).abs();

@@ -32,7 +32,7 @@ fn frames_are_those_of_nmea_kit() {
                 assert_eq!(&sentence.address[..2], other.talker.as_bytes());
                 let fields = Fields::new(sentence.body);
                 for (index, field) in other.fields.iter().take(MAX_FIELDS).enumerate() {
-                    assert_eq!(fields.at(index + 1), field.as_bytes());
+                    assert_eq!(fields.field(index + 1), field.as_bytes());
                 }
             }
             (Line::Foreign, Ok(other)) => assert!(other.sentence_type.starts_with('P')),

@@ -47,7 +47,7 @@ fn ten_headings_a_second_under_a_clock_of_one() {
     assert!(has_warning(&source, expected), "{:?}", source.1.warnings);
     assert!(has_warning(&source, "1 sentence before the first time is left out"));
     let clock = source.1.clock.expect("RMC has one");
-    assert_eq!((clock.date_at(0.0), clock.at(0.0)), (Some("2026-11-20".into()), "14:03:05".into()));
+    assert_eq!((clock.date_at(0.0), clock.time_of_day_at(0.0)), (Some("2026-11-20".into()), "14:03:05".into()));
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn midnight_is_passed_with_and_without_dates() {
         let lines: Vec<String> = (0..4).flat_map(|k| [clock(k), summed("HEHDT,10.0,T")]).collect();
         let source = source(&lines);
         assert_eq!(series(&source, Channel::Heading).time, expected, "{}", lines[0]);
-        assert_eq!(source.1.clock.expect("it has one").at(0.0), "23:59:58");
+        assert_eq!(source.1.clock.expect("it has one").time_of_day_at(0.0), "23:59:58");
     }
     // The clock has the date of another sentence.
     let mut lines: Vec<String> = (0..4).flat_map(|k| [clocks[1](k), summed("HEHDT,10.0,T")]).collect();

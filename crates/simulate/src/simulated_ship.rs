@@ -1,4 +1,4 @@
-//! Vessel: a ship for the simulator, with its equations and its closed form, if any.
+//! Ship for the simulator, with its equations and its closed form, if any.
 
 use std::sync::Arc;
 
@@ -19,16 +19,16 @@ pub enum Solver {
 
 /// Ship for simulation: equations, closed form, if any, and random headings of its response.
 #[derive(Clone)]
-pub struct Vessel {
+pub struct SimulatedShip {
     dynamics: Arc<dyn Dynamics>,
     first_order: Option<FirstOrder>,
     random_headings: Vec<NarrowBand>,
     particulars: Option<Particulars>,
 }
 
-impl std::fmt::Debug for Vessel {
+impl std::fmt::Debug for SimulatedShip {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Vessel")
+        f.debug_struct("SimulatedShip")
             .field("states", &self.dynamics.dimension())
             .field("first_order", &self.first_order)
             .field("random_headings", &self.random_headings)
@@ -37,39 +37,39 @@ impl std::fmt::Debug for Vessel {
     }
 }
 
-impl Vessel {
-    /// Vessel of a response model; without effects it has a closed form.
+impl SimulatedShip {
+    /// Ship of a response model; without effects it has a closed form.
     pub fn from_response(response: Response) -> Self {
         let first_order = response.model().effects().is_empty().then(|| response.first_order());
         let random_headings = response.random_headings().collect();
         Self { dynamics: Arc::new(response), first_order, random_headings, particulars: None }
     }
 
-    /// Vessel of a first-order response.
+    /// Ship of a first-order response.
     pub fn from_first_order(ship: FirstOrder) -> Self {
         Self::from_response(Response::first_order_ship(ship))
     }
 
-    /// Vessel of any system of equations.
+    /// Ship of any system of equations.
     pub fn from_dynamics(dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }
 
-    /// Vessel of a ship of the registry, with its particulars.
+    /// Ship of a ship of the registry, with its particulars.
     pub fn from_ship(ship: &Ship) -> Self {
-        let vessel = match &ship.model {
+        let simulated = match &ship.model {
             Model::Response(response) => Self::from_response(response.clone()),
             Model::Hull(hull) => Self::from_dynamics(Arc::clone(hull)),
         };
-        Self { particulars: ship.particulars, ..vessel }
+        Self { particulars: ship.particulars, ..simulated }
     }
 
-    /// Vessel with other equations, without a closed form.
+    /// Ship with other equations, without a closed form.
     pub fn with_dynamics(self, dynamics: Arc<dyn Dynamics>) -> Self {
         Self { dynamics, first_order: None, ..self }
     }
 
-    /// Vessel with declared length and approach speed.
+    /// Ship with declared length and approach speed.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }
     }
