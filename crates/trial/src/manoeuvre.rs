@@ -360,7 +360,8 @@ impl FromStr for Manoeuvre {
         let (rudder, side) = angle(rudder)?;
         Ok(match name {
             "zig-zag" => {
-                let (heading, _) = angle(heading.ok_or_else(refused)?)?;
+                // The sign of the rudder says which side comes first; the heading is a change to either side.
+                let (heading, Side::Starboard) = angle(heading.ok_or_else(refused)?)? else { return Err(refused()) };
                 Self::ZigZag { rudder, heading, first: side, executes: None, duration: None }
             }
             "initial-turning" => Self::InitialTurning { rudder, side },
@@ -402,7 +403,7 @@ mod tests {
             assert_eq!(manoeuvre.to_string(), name);
             assert_eq!(name.parse::<Manoeuvre>(), Ok(manoeuvre));
         }
-        for wrong in ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "circle:35", "spiral:x", "pull-out:90"] {
+        for wrong in ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "zig-zag:10/-10", "circle:35", "spiral:x", "pull-out:90"] {
             let message = wrong.parse::<Manoeuvre>().expect_err("refused").to_string();
             assert!(message.contains("zig-zag:RUDDER/HEADING"), "{message}");
         }

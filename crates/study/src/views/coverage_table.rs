@@ -65,7 +65,7 @@ pub fn scaled_by_other_ships(lines: &[PredictionSummary], design: &Design) -> Op
         return None;
     }
     let head = TableHead::default().texts(["ship", "method"]).numbers(["factor of the others"]);
-    let columns = ["inside 90 %", "scaled", "interval score of the value", "scaled"];
+    let columns = ["inside 90 %", "inside scaled", "interval score of the value", "score scaled"];
     let mut table = Table::new(head.numbers(columns).unit("%"));
     for ((method, name), judged) in &by_ship {
         let others: Vec<_> = lines.iter().filter(|line| line.method == *method && ship(line) != name).collect();

@@ -92,27 +92,12 @@ pub fn write_files(
         let reference = &design.methods[summary.reference];
         write_csv(folder, "pairs.csv", &summary.pairs, |lines| tables::pairs(lines, reference, design))?;
     }
-    if !summary.tracing.is_empty() {
-        write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
-            tracing_table::table(lines, &summary, design, true)
-        })?;
-        folder.write(
-            "reliability.csv",
-            tracing_table::reliability(&study_figures::highlighted_trace(design, &summary)).to_csv(),
-        )?;
-        if let Some(outcomes) = outcomes::table(design, &summary) {
-            folder.write("outcomes.csv", outcomes.to_csv())?;
-        }
-        let spots = blind_spots(&summary.tracing, design);
-        if !spots.is_empty() {
-            folder.write("blind-spots.csv", blind_spots_table::table(&spots, design, str::to_owned).to_csv())?;
-        }
-    }
+    write_trace_tables(&summary, design, folder)?;
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
-        if let Some(criteria) = coverage_table::criteria(&summary.predictions, design) {
-            folder.write("criteria.csv", criteria.to_csv())?;
-        }
+        write_table(folder, "criteria.csv", coverage_table::criteria(&summary.predictions, design))?;
+        let factors = coverage_table::scaled_by_other_ships(&summary.predictions, design);
+        write_table(folder, "interval-factors.csv", factors)?;
     }
     let brief = (design.cells.len() <= MAX_LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
@@ -130,6 +115,26 @@ pub fn write_files(
     curve_tables::write_showcases(stored, &figures, folder)?;
     write_page(folder, page(stored, &summary, brief, figures), Some(theme))?;
     Ok(summary)
+}
+
+/// Writes the tables of the effects that traces named.
+fn write_trace_tables(summary: &Summary, design: &Design, folder: &ResultFolder) -> Result<(), Failure> {
+    let tracing = &summary.tracing;
+    if tracing.is_empty() {
+        return Ok(());
+    }
+    write_csv(folder, "tracing.csv", tracing, |lines| tracing_table::table(lines, summary, design, true))?;
+    let reliability = tracing_table::reliability(&study_figures::highlighted_trace(design, summary));
+    write_table(folder, "reliability.csv", Some(reliability))?;
+    write_table(folder, "outcomes.csv", outcomes::table(design, summary))?;
+    let spots = blind_spots(tracing, design);
+    let spots = (!spots.is_empty()).then(|| blind_spots_table::table(&spots, design, str::to_owned));
+    write_table(folder, "blind-spots.csv", spots)
+}
+
+/// Writes a table as CSV, if there is one.
+fn write_table(folder: &ResultFolder, name: &str, table: Option<Table>) -> Result<(), Failure> {
+    table.map_or(Ok(()), |table| folder.write(name, table.to_csv()))
 }
 
 /// `summary.tex`: the methods over all cells, and each against the reference method on the same trials.

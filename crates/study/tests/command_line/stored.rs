@@ -296,6 +296,31 @@ fn coverage_of_predictions_is_drawn() {
     assert_eq!(serde_json::from_str::<Value>(&desk.text("out/cells.json")).expect("it is JSON"), whole);
 }
 
+/// The intervals of every ship are scaled by the factor that the other ships need.
+#[test]
+fn intervals_are_scaled_by_other_ships() {
+    let desk = Desk::new();
+    let sweep = "[[sweep]]\nname = \"ship\"\nkey = \"ship.yukun.T-s\"\nvalues = [10.0, 16.3, 25.0]\n";
+    let predict = "[predict]\nmanoeuvres = [\"zig-zag:20/20\"]\ndraws = 50\n";
+    let (head, _) = STUDY.split_once("[[sweep]]").expect("a sweep");
+    let head = head.replace("integral-least-squares", "output-error").replace("replicates = 4", "replicates = 2");
+    desk.file("study.toml", format!("{head}[sensor]\nheading-noise-deg = 0.1\n{sweep}{predict}"));
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    let table = desk.text("out/interval-factors.csv");
+    assert_eq!(table.lines().count(), 1 + 3 * 2, "{table}");
+    assert!(table.starts_with("ship,method,factor of the others,"), "{table}");
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    for line in table.lines().filter(|line| line.contains("output-error")) {
+        let cells: Vec<f64> = line.split(',').skip(2).map(number).collect();
+        // A factor above 1 covers no less, one below 1 no more.
+        assert!((cells[2] - cells[1]) * (cells[0] - 1.0) >= 0.0 && cells[3] > 0.0, "{line}");
+    }
+    let (two, _) = sweep.split_once(", 25.0").expect("three ships");
+    desk.file("two.toml", format!("{head}[sensor]\nheading-noise-deg = 0.1\n{two}]\n{predict}"));
+    desk.run(&["two.toml", "--out", "two", "--quiet"]).is_done();
+    assert!(!desk.path("two/interval-factors.csv").exists());
+}
+
 /// Where a sweep has sizes of an effect, the size from which on it is named is a table of its own.
 #[test]
 fn sizes_of_effects_make_a_table_of_blind_spots() {
