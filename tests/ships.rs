@@ -180,11 +180,11 @@ fn every_manoeuvre_leaves_a_record() {
         ("pull-out", Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 100.0, duration: 80.0 }, Some(180.0)),
         ("replay", Manoeuvre::replay(signal), Some(90.0)),
     ];
-    for (what, manoeuvre, length) in manoeuvres {
+    for (what, manoeuvre, duration) in manoeuvres {
         let (trial, truth) = run(&training_ship(manoeuvre), what);
         assert_finite(what, &truth);
         assert!(trial.len() > 60, "{what}: {} rows", trial.len());
-        assert!(length.is_none_or(|length| trial.duration() == length), "{what}: {} s", trial.duration());
+        assert!(duration.is_none_or(|duration| trial.duration() == duration), "{what}: {} s", trial.duration());
         assert!(trial.rudder().iter().any(|delta| delta.abs() > 0.1), "{what}");
     }
 }

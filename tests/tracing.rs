@@ -87,7 +87,7 @@ fn sizes() -> Vec<Missing> {
         (listed_effect("port_starboard_asymmetry", "moment by drift"), vec![3.0]),
         (listed_effect("moment_drift", "linear trend"), vec![7e-5]),
         (Arc::new(TransientDisturbance::Passing), vec![0.04, 150.0, 30.0]),
-        (Arc::new(WaveYaw), vec![from_deg(0.4), 0.6, 0.1]),
+        (Arc::new(WaveHeading), vec![from_deg(0.4), 0.6, 0.1]),
     ]
 }
 

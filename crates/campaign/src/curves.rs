@@ -43,9 +43,9 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         extremum: mark(overshoot.peak_time, overshoot.peak_heading),
         angle_deg: to_deg(overshoot.angle.value),
     };
-    let from = |execute: Option<&Execute>, length: Option<Quantity>| {
-        let (begin, length) = execute.map(|execute| execute.time.value).zip(length)?;
-        Some(TimeSpan { from_s: begin, to_s: begin + length.value })
+    let from = |execute: Option<&Execute>, duration: Option<Quantity>| {
+        let (begin, duration) = execute.map(|execute| execute.time.value).zip(duration)?;
+        Some(TimeSpan { from_s: begin, to_s: begin + duration.value })
     };
     let check_yaw = |peak: &Overshoot| from(zigzag.executes.get(peak.execute), Some(peak.time_to_check_yaw));
     // The cycle from the second execute on contains the starting transient: plotted only if there is no later one.

@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Prefix of the message of a failure.
 const ERROR: &str = "error: ";
 
-/// Failure: its message, its parts, and its kind.
+/// Failure of a command, as it is reported to the user.
 #[derive(Debug)]
 pub struct Failure {
     /// Kind of failure: wrong input, failed work, or a request to stop.

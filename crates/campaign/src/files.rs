@@ -4,13 +4,13 @@
 pub const ROWS: &str = "rows";
 /// Folder of the timings, one file per block.
 pub const BLOCK_TIMINGS: &str = "timings";
-/// Durations of simulation and methods.
+/// File of the durations of simulation and methods.
 pub const TIMINGS: &str = "timings.csv";
 /// Manifest: program, machine and scenario; written first, and again at the end of the study.
 pub const MANIFEST: &str = "manifest.toml";
-/// Design: axes, methods, cells.
+/// File of the design.
 pub const DESIGN: &str = "cells.json";
-/// First trial of every cell in detail.
+/// File with the first trial of every cell in detail.
 pub const SHOWCASES: &str = "showcase.json";
 /// Rows in one file, as versions before 0.3 stored them.
 pub const LEGACY_ROWS: &str = "rows.parquet";

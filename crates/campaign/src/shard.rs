@@ -19,7 +19,7 @@ pub struct TrialId {
 pub struct Shard {
     /// Number of the shard, from 1.
     pub number: u64,
-    /// Number of shards.
+    /// Number of shards of the study.
     pub of: u64,
 }
 

@@ -204,7 +204,7 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
     }
 }
 
-/// Characteristics of the validation record, predicted by replaying its rudder with sampled ships at its scale, after
+/// Characteristics of the validation record, predicted by replaying its rudder with drawn ships at its scale, after
 /// removing the current determined from its track.
 fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedCharacteristic]> {
     let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {

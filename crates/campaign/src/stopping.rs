@@ -2,7 +2,7 @@
 //! (sequential estimation, Chow and Robbins 1965).
 
 use crate::rows::StudyRow;
-use crate::scenario::{ResponseIndex, StopFigure, StopRule};
+use crate::scenario::{NomotoIndex, StopFigure, StopRule};
 use crate::statistics::Moments;
 
 /// State of a stopping rule in the current cell.
@@ -31,8 +31,8 @@ impl StopCheck {
         }
         let sums = &mut self.methods[row.method];
         let (place, ends) = match self.rule.figure.index() {
-            ResponseIndex::K => (0, row.k_ci95_per_s),
-            ResponseIndex::T => (1, row.t_ci95_s),
+            NomotoIndex::K => (0, row.k_ci95_per_s),
+            NomotoIndex::T => (1, row.t_ci95_s),
         };
         if let Some(error) = row.errors()[place] {
             sums.errors.add(100.0 * error);

@@ -1,8 +1,8 @@
 //! Plot data stored for the first trial of a cell, and the plots.
 
 use report::figures::{
-    AxisSpec, Division, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn,
-    Stack,
+    AxisSpec, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Stack,
+    TickRule,
 };
 use report::number::{self, MISSING};
 use report::palette::{HEADING, INK, RECORD};
@@ -41,7 +41,7 @@ impl CurveFit {
             Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
             Layer::new("", self.residual.clone(), LayerKind::Dots(INK)),
         ];
-        let residual = AxisSpec::new("residual [°]", Division::Angle);
+        let residual = AxisSpec::new("residual [°]", TickRule::Angle);
         let rows = vec![(PanelRow::new(AxisSpec::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         // Five decimals, because the fit of a smooth record differs from 1 in the fourth.
@@ -148,7 +148,7 @@ impl Replays {
                 ..LayeredPanel::default()
             }
         };
-        let residual = AxisSpec::new("residual [°]", Division::Angle).about_zero(RESIDUAL_ROOM);
+        let residual = AxisSpec::new("residual [°]", TickRule::Angle).about_zero(RESIDUAL_ROOM);
         let across = if self.replays.len() < 3 { 1 } else { 2 };
         let multiples = self.replays.iter().map(below).collect();
         let lower = Stack::multiples(across, AxisSpec::time(), PanelRow::zeroed(residual, 0.085), multiples);

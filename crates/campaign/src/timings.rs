@@ -13,7 +13,7 @@ use crate::statistics::Moments;
 /// Name of the simulation among the methods.
 const SIMULATION: &str = "(simulation)";
 
-/// Wall time of one trial.
+/// Wall times of the simulation and the methods of one trial.
 pub struct TrialTiming {
     /// Index of the cell.
     pub cell: u64,

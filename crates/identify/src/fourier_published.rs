@@ -108,7 +108,7 @@ impl FourierPublished {
     fn instants(&self, trial: &Trial, samples: &Samples, fitted: &FittedSeries) -> Vec<RegressionPoint> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
-        let length = samples.time[samples.len() - 1];
+        let duration = samples.time[samples.len() - 1];
         let rate = fitted.basis.derivative(&fitted.projection.coefficients);
         let yaw_rate = fitted.basis.values(&rate);
         let yaw_acceleration = fitted.basis.values(&fitted.basis.derivative(&rate));
@@ -117,7 +117,7 @@ impl FourierPublished {
                 Selection::Uniform => true,
                 Selection::WellConditioned => {
                     let t = samples.time[row];
-                    (t - 0.5 * length).abs() <= 0.5 * INTERIOR_SHARE * length
+                    (t - 0.5 * duration).abs() <= 0.5 * INTERIOR_SHARE * duration
                         && range_about(trial.rudder_signal(), start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })

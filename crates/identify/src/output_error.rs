@@ -21,7 +21,7 @@ use crate::likelihood::track::Track;
 use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::checked_track;
-use crate::scan::{self, Fit};
+use crate::scan::{self, FitAtTime};
 use crate::settings::{SettingsError, check_iterations, require};
 
 /// Settings of the method.
@@ -247,7 +247,7 @@ const LOCAL_MINIMA: usize = 4;
 struct RangeScan {
     /// 1/T, 1/s, increasing.
     grid: Vec<f64>,
-    fits: Vec<Option<Fit>>,
+    fits: Vec<Option<FitAtTime>>,
 }
 
 impl RangeScan {
@@ -272,7 +272,9 @@ impl RangeScan {
     fn refusal(&self, condition: f64) -> IdentifyError {
         let fits = self.grid.iter().zip(&self.fits).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
         match fits.min_by(|(_, a), (_, b)| a.rss.total_cmp(&b.rss)) {
-            Some((inverse_time, Fit { gain, .. })) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
+            Some((inverse_time, FitAtTime { gain, .. })) if gain <= 0.0 => {
+                IdentifyError::NotAShip { inverse_time, gain }
+            }
             _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
         }
     }

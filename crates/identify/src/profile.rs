@@ -143,7 +143,7 @@ impl Profile {
         self.parts.iter().map(|part| part.residual.as_slice())
     }
 
-    /// (b, b δ_r) of the last evaluated point.
+    /// b = K/T (1/s²) and b δ_r (rad/s²) of the last evaluated point.
     pub fn steering(&self) -> (f64, f64) {
         (self.steering[0], self.steering[1])
     }

@@ -34,7 +34,7 @@ const MIN_RANDOM: f64 = 0.33;
 /// the moment would have to cancel the steering. In gusts the ratio is at most about five.
 const MAX_REPLAY_RATIO: f64 = 30.0;
 
-/// Recommended method with the reason.
+/// Reason for a recommendation, and the figures from which it follows; [`Self::method`] is the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recommendation {
     /// Reason for the recommendation.

@@ -8,7 +8,7 @@ use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
-use crate::likelihood::track::{Track, TrackStep, is_backward, lengths_differ};
+use crate::likelihood::track::{Track, TrackStep, durations_differ, is_backward};
 use crate::profile::solve2;
 
 /// Number of values of 1/T in parallel.
@@ -18,7 +18,7 @@ type Lanes = [f64; LANES];
 
 /// Best fit of a ship with a given 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fit {
+pub(crate) struct FitAtTime {
     /// Sum of squares, rad².
     pub rss: f64,
     /// b = K/T, 1/s², of any sign.
@@ -29,7 +29,7 @@ pub(crate) struct Fit {
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
 /// [thinned](Track::thinned) tracks.
-pub(crate) fn scan_inverse_times(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
+pub(crate) fn scan_inverse_times(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<FitAtTime>> {
     let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
     let mut fits = Vec::with_capacity(inverse_time.len());
@@ -76,11 +76,11 @@ impl Products {
     }
 
     /// Fit, for headings whose squares about their means add up to `squares`.
-    fn fit(&self, squares: f64) -> Option<Fit> {
+    fn fit(&self, squares: f64) -> Option<FitAtTime> {
         let moment = Vector2::new(self.g_psi, self.h_psi);
         let steering = solve2(&Matrix2::new(self.gg, self.gh, self.gh, self.hh), &moment)?;
         let rss = squares - self.explained - steering.dot(&moment);
-        rss.is_finite().then_some(Fit { rss, gain: steering[0] })
+        rss.is_finite().then_some(FitAtTime { rss, gain: steering[0] })
     }
 }
 
@@ -136,13 +136,13 @@ impl estimation::lanes::Kernel for Sweep<'_> {
         let mut sums = Sums::default();
         let (mut f, mut g, mut h) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut f_rate, mut g_rate, mut h_rate) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let mut length = 0.0;
+        let mut duration = 0.0;
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let rudder = &track.rudder;
         let backward = is_backward(inverse_time[0]);
-        for TrackStep { from, to, length: step, rudder_rate: rate, .. } in track.steps(backward) {
-            if lengths_differ(length, step) {
-                length = step;
+        for TrackStep { from, to, duration: step, rudder_rate: rate, .. } in track.steps(backward) {
+            if durations_differ(duration, step) {
+                duration = step;
                 for lane in 0..LANES {
                     let transition = Transition::new(inverse_time[lane], step);
                     (decay[lane], phi1[lane]) = (transition.decay, transition.phi1);

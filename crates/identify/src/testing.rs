@@ -110,8 +110,8 @@ impl Case {
     /// Noise-free motion at the rows.
     pub fn truth(&self) -> Truth {
         let ship = self.ship();
-        let length = (self.samples - 1) as f64 * self.period_s;
-        let (pieces, executes) = self.run(&ship, length);
+        let duration = (self.samples - 1) as f64 * self.period_s;
+        let (pieces, executes) = self.run(&ship, duration);
         let start = match self.start {
             Start::Rest => 0.0,
             Start::Mid => executes[1] + 1.2,
@@ -149,26 +149,26 @@ impl Case {
 
     /// Times of the first `count` executes, s after the first.
     pub fn executes(&self, count: usize) -> Vec<f64> {
-        let mut length = 100.0;
+        let mut duration = 100.0;
         loop {
-            let (_, executes) = self.run(&self.ship(), length);
+            let (_, executes) = self.run(&self.ship(), duration);
             if executes.len() >= count {
                 return executes[..count].to_vec();
             }
-            length *= 2.0;
+            duration *= 2.0;
         }
     }
 
-    /// Pieces and executes from the first execute until `length` seconds after the second (or after [`Start::At`]).
-    fn run(&self, ship: &FirstOrder, length: f64) -> (Vec<Piece>, Vec<f64>) {
+    /// Pieces and executes from the first execute until `duration` seconds after the second (or after [`Start::At`]).
+    fn run(&self, ship: &FirstOrder, duration: f64) -> (Vec<Piece>, Vec<f64>) {
         let (angle, rate, limit) = (from_deg(self.rudder_deg), from_deg(self.rate_deg_s), from_deg(self.heading_deg));
         let mut side = angle.signum();
         let mut executes = vec![0.0];
         let mut pieces: Vec<Piece> = Vec::new();
         let mut now = Piece { t: 0.0, state: State::default(), rudder: 0.0, slope: side * rate };
         let last = |executes: &[f64]| match self.start {
-            Start::At(t) => t + length,
-            Start::Rest | Start::Mid => executes.get(1).map_or(f64::INFINITY, |t| t + 1.2 + length),
+            Start::At(t) => t + duration,
+            Start::Rest | Start::Mid => executes.get(1).map_or(f64::INFINITY, |t| t + 1.2 + duration),
         };
         while now.t <= last(&executes) {
             assert!(now.t < 1e5, "the ship of this case never reaches its heading");

@@ -125,7 +125,7 @@ pub fn difference_warning(what: &str, full: &str, trial: &str, loading: &str) ->
     WarningCode::ModelsApart.warning(text)
 }
 
-/// Results of the sampled ships in order; `None` for a ship that does not complete the manoeuvre.
+/// Results of the drawn ships in order; `None` for a ship that does not complete the manoeuvre.
 type Draws = Vec<Option<SampleResult>>;
 
 /// Manoeuvre of a record, simulated with both models.
@@ -147,7 +147,7 @@ struct PairedManoeuvre {
 /// for a slower ship. Characteristics at the end of a turn are read at the end of the record. Characteristics that the
 /// record does not show are left out; a record that is neither a zig-zag nor a turn has none.
 ///
-/// Fails if less than half of the sampled ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
+/// Fails if less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
 pub fn correct(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -227,7 +227,7 @@ fn turned(
     let Some([_, rate]) = ballast.initial_motion(record)? else { return Ok(None) };
     let manoeuvre = Manoeuvre::replay(simplified(&rudder));
     let sail = |mixture: &ShipMixture, number| {
-        let mut ship = mixture.sample_ship(number, &UncertaintySource::ALL);
+        let mut ship = mixture.draw_ship(number, &UncertaintySource::ALL);
         // Both ships start with the yaw rate of the record.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
         let standard_normal: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
@@ -325,8 +325,8 @@ mod tests {
             let correction = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
             let manoeuvre = crate::standard::with_end(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
-            let mut ship = full.sample_ship(2000 + number, &UncertaintySource::ALL);
-            (ship.yaw_rate, ship.gear) = (0.0, ballast.sample_ship(1000 + number, &UncertaintySource::ALL).gear);
+            let mut ship = full.draw_ship(2000 + number, &UncertaintySource::ALL);
+            (ship.yaw_rate, ship.gear) = (0.0, ballast.draw_ship(1000 + number, &UncertaintySource::ALL).gear);
             let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, full.timescale()).expect("sails");
             let truth = crate::figures::characteristics(&kind, &passage, full.particulars());
             for name in names {

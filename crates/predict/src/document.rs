@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{Correction, FULL_LOAD};
-use crate::drawn_parameters::SampledParameters;
+use crate::drawn_parameters::DrawnParameters;
 use crate::form::ImoFormEntry;
 use crate::imo::PredictedCriterion;
 use crate::prediction::{BandedCurve, ManoeuvreCurves, Prediction};
@@ -63,9 +63,9 @@ pub struct PredictDocument {
     #[serde(default)]
     #[serde(rename = "seen")]
     pub validity_range: ValidityRange,
-    /// Parameters of the sampled ships, if requested.
+    /// Parameters of the drawn ships, if requested.
     #[serde(skip)]
-    pub drawn: Vec<SampledParameters>,
+    pub drawn: Vec<DrawnParameters>,
     /// Warnings of models, records and manoeuvres, the worst first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,

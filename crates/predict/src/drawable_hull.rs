@@ -81,7 +81,7 @@ impl HullSampler {
         self.with_coefficients(values).unwrap_or_else(|| self.most_probable())
     }
 
-    /// Sample of the coefficients, by their covariance and within their ranges. At another loading `rng` samples the
+    /// Draw of the coefficients, by their covariance and within their ranges. At another loading `rng` draws the
     /// hull of the trials, which this hull follows, and `independent` the part that is independent of the trials.
     pub fn sample(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
         let mean = DVector::from(self.stored.values());
@@ -96,7 +96,7 @@ impl HullSampler {
         values.as_slice().to_vec()
     }
 
-    /// Sample of the coefficients about a mean, within their ranges; the stored values after [`MAX_TRIES`] rejections.
+    /// Draw of the coefficients about a mean, within their ranges; the stored values after [`MAX_TRIES`] rejections.
     fn values(&self, rng: &mut impl rand::Rng, mean: &DVector<f64>) -> DVector<f64> {
         let is_within = |values: &DVector<f64>| {
             self.coefficients.iter().zip(values).all(|(prior, value)| (prior.ends[0]..=prior.ends[1]).contains(value))
@@ -133,7 +133,7 @@ mod tests {
         stored.hulls[0].weight = 2.0;
         let mixture = testing::mixture(stored);
         let is_first = |number| {
-            let hull = mixture.sample_ship(number, &[UncertaintySource::Structure]).hull.expect("a hull");
+            let hull = mixture.draw_ship(number, &[UncertaintySource::Structure]).hull.expect("a hull");
             hull == mixture.most_probable().hull.expect("a hull")
         };
         assert_eq!((0..1000).filter(|&number| is_first(number)).count(), 500);
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn one_number_is_one_draw() {
         let mixture = testing::mixture(ship());
-        let draw = |number| mixture.sample_ship(number, &UncertaintySource::ALL).hull.expect("a hull");
+        let draw = |number| mixture.draw_ship(number, &UncertaintySource::ALL).hull.expect("a hull");
         assert_eq!(draw(7), draw(7));
         assert_ne!(draw(7), draw(8));
         assert_eq!(circle(&mixture, 20).figures, circle(&mixture, 20).figures);
@@ -196,7 +196,7 @@ mod tests {
             .map(|hull| testing::mixture(IdentifiedShip { hulls: vec![hull], ..testing::identified_ship() }));
         let full = full.independent_of(&trial);
         let values = |ship: &ShipMixture, number| {
-            let hull = ship.sample_ship(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
+            let hull = ship.draw_ship(number, &[UncertaintySource::Parameters]).hull.expect("a hull").hull.in_calm;
             let ship::vessel::prime::CalmHull::Quadratic(values) = hull else { panic!("{hull:?}") };
             [0, 8].map(|place| (values[place] - one.coefficients[place].value) / one.covariance[place][place].sqrt())
         };

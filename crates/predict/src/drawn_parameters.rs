@@ -1,15 +1,15 @@
-//! Structure and parameters of a sampled ship or estimate, for other programs.
+//! Structure and parameters of a drawn ship or estimate, for other programs.
 
 use document::IdentifiedShip;
 use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{GOLDEN, SampledShip, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
+use crate::mixture::{DrawnShip, GOLDEN, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
 
-/// Structure and parameters of a sampled ship; SI units and radians.
+/// Structure and parameters of a drawn ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SampledParameters {
+pub struct DrawnParameters {
     /// Index of the file in the mixture.
     pub file: usize,
     /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for none.
@@ -26,12 +26,11 @@ pub struct SampledParameters {
 }
 
 impl ShipMixture {
-    /// Structure and parameters of ship `number`, sampled from all sources of uncertainty as for the prediction of
+    /// Structure and parameters of ship `number`, drawn from all sources of uncertainty as for the prediction of
     /// manoeuvres.
-    pub fn sample_parameters(&self, number: u64) -> SampledParameters {
-        let part = self.structure_of_sample(number);
-        let SampledShip { response, coefficients, gear, yaw_rate, .. } =
-            self.sample_ship(number, &UncertaintySource::ALL);
+    pub fn draw_parameters(&self, number: u64) -> DrawnParameters {
+        let part = self.structure_of_draw(number);
+        let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
                 let form = hull.stored.form.clone();
@@ -42,7 +41,7 @@ impl ShipMixture {
             None => named(response.model(), response.parameters()),
         };
         let (file, weight) = (part.file, part.weight);
-        SampledParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
+        DrawnParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
     }
 }
 
@@ -57,9 +56,9 @@ fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) 
     (structure, base.chain(of_effects).zip(values.iter().copied()).collect())
 }
 
-/// Structure and parameters of a response, sampled from the law of an estimate; SI units and radians.
+/// Structure and parameters of a response, drawn from the law of an estimate; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SampledEstimate {
+pub struct DrawnEstimate {
     /// Effects of the response, joined by ` + `; `first_order` for none.
     pub structure: String,
     /// Probability of this structure.
@@ -68,7 +67,7 @@ pub struct SampledEstimate {
     pub parameters: Vec<(String, f64)>,
 }
 
-/// Samples of an estimate: a structure by its probability, the parameters by their covariance. A sample is a response,
+/// Draws from an estimate: a structure by its probability, the parameters by their covariance. A draw is a response,
 /// not a ship: it has no hull, no steering gear and no random moment.
 #[derive(Debug, Clone)]
 pub struct EstimateSampler {
@@ -77,7 +76,7 @@ pub struct EstimateSampler {
 }
 
 impl EstimateSampler {
-    /// Samples of an estimate with this seed; fails if the estimate is not valid.
+    /// Draws from an estimate with this seed; fails if the estimate is not valid.
     pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
         let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
         let structures = estimate.members.iter().map(|member| StructureSampler::new(member, member.weight / total, 0));
@@ -85,13 +84,13 @@ impl EstimateSampler {
         if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
     }
 
-    /// Sample number `number`: equal for equal seeds, whatever else is sampled.
-    pub fn sample(&self, number: u64) -> SampledEstimate {
+    /// Draw number `number`: equal for equal seeds, whatever else is drawn.
+    pub fn sample(&self, number: u64) -> DrawnEstimate {
         let share = (0.5 + number as f64 * GOLDEN).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));
-        SampledEstimate { structure: name, weight: structure.weight, parameters }
+        DrawnEstimate { structure: name, weight: structure.weight, parameters }
     }
 }
 
@@ -100,11 +99,11 @@ mod tests {
     use super::*;
     use crate::testing;
 
-    /// Samples of a seed are repeatable and have the mean of the estimate.
+    /// Draws of a seed are repeatable and have the mean of the estimate.
     #[test]
     fn an_estimate_is_drawn_again_with_its_seed() {
         let estimate = testing::identified_ship();
-        let draws = |seed: u64| -> Vec<SampledEstimate> {
+        let draws = |seed: u64| -> Vec<DrawnEstimate> {
             let draws = EstimateSampler::new(&estimate, seed).expect("made up");
             (0..2000).map(|number| draws.sample(number)).collect()
         };
@@ -124,7 +123,7 @@ mod tests {
     #[test]
     fn a_drawn_ship_is_reported_as_it_is_steered() {
         let mixture = testing::mixture(testing::identified_ship());
-        let (drawn, ship) = (mixture.sample_parameters(7), mixture.sample_ship(7, &UncertaintySource::ALL));
+        let (drawn, ship) = (mixture.draw_parameters(7), mixture.draw_ship(7, &UncertaintySource::ALL));
         let keys = drawn.parameters.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>();
         assert_eq!(keys[..3], ["inverse_T", "K_over_T", "rudder_bias"]);
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");
@@ -135,7 +134,7 @@ mod tests {
 
         let hulls = ["quadratic", "mmg"].map(testing::hull).to_vec();
         let mixture = testing::mixture(IdentifiedShip { hulls, ..testing::identified_ship() });
-        let mmg = (0..20).map(|number| mixture.sample_parameters(number)).find(|drawn| drawn.structure == "mmg");
+        let mmg = (0..20).map(|number| mixture.draw_parameters(number)).find(|drawn| drawn.structure == "mmg");
         let drawn = mmg.expect("half of them");
         assert!(drawn.parameters.iter().all(|(key, _)| key.starts_with("mmg.")) && drawn.weight == 0.5, "{drawn:?}");
     }

@@ -26,7 +26,7 @@ pub enum PredictError {
         /// Effect for the option `--without` of a trace.
         option: &'static str,
     },
-    /// Too few sampled ships complete a manoeuvre.
+    /// Too few drawn ships complete a manoeuvre.
     #[error("{kind}: only {made} of {draws} drawn ships complete it; the model is not valid there")]
     Lost {
         /// The manoeuvre.

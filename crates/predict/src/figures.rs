@@ -159,10 +159,10 @@ mod tests {
     use ship::angle::from_deg;
     use simulate::{Disturbances, SteeringGear, StreamKey};
 
-    use crate::mixture::SampledShip;
+    use crate::mixture::DrawnShip;
 
     fn yukun(kind: &Manoeuvre) -> SimulatedManoeuvre {
-        let ship = SampledShip {
+        let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             hull: None,
             coefficients: Vec::new(),

@@ -15,7 +15,7 @@ use crate::standard::{self, EXECUTES};
 /// Relative tolerance between a mean angle of a zig-zag and the nominal angle.
 const TOLERANCE: f64 = 0.05;
 
-/// Result of one sampled ship.
+/// Result of one drawn ship.
 pub(crate) struct SampleResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Characteristics,
@@ -23,7 +23,7 @@ pub(crate) struct SampleResult {
     pub largest_rate: f64,
 }
 
-/// Manoeuvre, initial yaw rate and rudder rate of a measured zig-zag, with which sampled ships are steered.
+/// Manoeuvre, initial yaw rate and rudder rate of a measured zig-zag, with which drawn ships are steered.
 pub(crate) struct SteeredZigZag {
     pub kind: Manoeuvre,
     /// Change of heading that ends the initial turning, rad: the nominal change, also if the helm is late.
@@ -68,14 +68,14 @@ impl SteeredZigZag {
         Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
-    /// Results of sampled ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
+    /// Results of drawn ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<SampleResult>> {
         let manoeuvre = standard::with_end(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         // The record gives the yaw rate of the approach.
         let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
         let sources: Vec<UncertaintySource> = UncertaintySource::ALL.into_iter().filter(is_drawn).collect();
         in_parallel(draws, |number| {
-            let mut ship = mixture.sample_ship(number, &sources);
+            let mut ship = mixture.draw_ship(number, &sources);
             ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;

@@ -7,7 +7,7 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | sampled ships | [`mixture`], [`drawn_parameters`] |
+//! | drawn ships | [`mixture`], [`drawn_parameters`] |
 //! | the manoeuvres and their ends | [`standard`] |
 //! | figures of merit | [`figures`] |
 //! | the prediction of a manoeuvre | [`prediction`] |
@@ -46,7 +46,7 @@ mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;
-pub use drawn_parameters::{EstimateSampler, SampledEstimate, SampledParameters};
+pub use drawn_parameters::{DrawnEstimate, DrawnParameters, EstimateSampler};
 pub use error::PredictError;
 pub use interval::PredictionInterval;
 pub use mixture::{ShipMixture, UncertaintySource};

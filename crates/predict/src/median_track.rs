@@ -1,4 +1,4 @@
-//! Median turning circle of sampled ships: at every change of heading the median position of the ships that reach it.
+//! Median turning circle of drawn ships: at every change of heading the median position of the ships that reach it.
 //! Its advance, transfer and tactical diameter are the medians of the samples; no single ship has all three.
 
 use std::f64::consts::{PI, TAU};

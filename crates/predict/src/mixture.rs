@@ -48,7 +48,7 @@ impl UncertaintySource {
     }
 }
 
-/// Maximum number of samples outside the range of a parameter; then it is set to its bound.
+/// Maximum number of draws outside the range of a parameter; then it is set to its bound.
 const MAX_TRIES: usize = 100;
 
 /// Correlation time of the process that approximates a white moment, in timescales of the ship.
@@ -87,9 +87,9 @@ pub struct ShipMixture {
     pub(crate) wind: Option<Wind>,
 }
 
-/// Ship for one trial.
+/// Ship drawn from a mixture, to be steered through one manoeuvre.
 #[derive(Debug, Clone)]
-pub struct SampledShip {
+pub struct DrawnShip {
     /// Yaw response.
     pub response: Response,
     /// Hull, if one was fitted; it replaces the response.
@@ -163,15 +163,15 @@ impl ShipMixture {
     }
 
     /// Most probable ship of the most probable file, without disturbances.
-    pub fn most_probable(&self) -> SampledShip {
-        self.sample_ship(0, &[])
+    pub fn most_probable(&self) -> DrawnShip {
+        self.draw_ship(0, &[])
     }
 
-    /// Ship number `number`, sampled from the given sources of uncertainty and otherwise the most probable ship.
-    pub fn sample_ship(&self, number: u64, sources: &[UncertaintySource]) -> SampledShip {
+    /// Ship number `number`, drawn from the given sources of uncertainty and otherwise the most probable ship.
+    pub fn draw_ship(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
-        let part = if has(UncertaintySource::Structure) { self.structure_of_sample(number) } else { self.likeliest() };
+        let part = if has(UncertaintySource::Structure) { self.structure_of_draw(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
@@ -203,7 +203,7 @@ impl ShipMixture {
         let error = random_part(UncertaintySource::ProcessNoise, start_normal * of_hull);
         let is_random = has(UncertaintySource::ProcessNoise);
         let moment = if is_random { part.moment(stored) } else { RandomMoment::None };
-        SampledShip {
+        DrawnShip {
             response: part.model.clone().with_parameters(values),
             hull,
             coefficients: coefficients.unwrap_or_default(),
@@ -238,9 +238,9 @@ impl ShipMixture {
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
-    /// Structure of a sample, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities for
-    /// any number of samples. An independent mixture uses √2, which is incommensurable with it.
-    pub(crate) fn structure_of_sample(&self, number: u64) -> &StructureSampler {
+    /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
+    /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
+    pub(crate) fn structure_of_draw(&self, number: u64) -> &StructureSampler {
         let step =
             if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
@@ -299,7 +299,7 @@ impl StructureSampler {
         }
     }
 
-    /// Sample of the parameters, by their covariance and within the ranges of the effects: normal, or Student's t.
+    /// Draw of the parameters, by their covariance and within the ranges of the effects: normal, or Student's t.
     pub(crate) fn sample(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let WeightedStructure { parameters: stored, fitted, degrees_of_freedom, .. } = &self.stored;
         let mut values = stored.clone();
@@ -332,14 +332,14 @@ mod tests {
     use crate::testing;
     use document::identified_hull::IdentifiedHull;
 
-    /// Mean and covariance of the samples agree with the stored law.
+    /// Mean and covariance of the draws agree with the stored law.
     #[test]
     fn draws_have_the_stored_law() {
         let mixture = testing::mixture(testing::identified_ship());
         let stored = &mixture.first().members[0];
         let count = 4000;
         let draws: Vec<Vec<f64>> = (0..count)
-            .map(|k| mixture.sample_ship(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
+            .map(|k| mixture.draw_ship(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
             .collect();
         let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
         for (row, &first) in stored.fitted.iter().enumerate() {
@@ -364,10 +364,10 @@ mod tests {
         (simple.weight, stored.members[0].weight) = (0.2, 0.6);
         stored.members.push(simple);
         let mixture = ShipMixture::new(vec![(stored, 2.0)]).expect("made up");
-        let is_simple = |k| mixture.sample_ship(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
+        let is_simple = |k| mixture.draw_ship(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
-        assert!((0..100).all(|k| mixture.sample_ship(k, &[]).response.parameters().len() == 4));
+        assert!((0..100).all(|k| mixture.draw_ship(k, &[]).response.parameters().len() == 4));
     }
 
     /// Of two equally probable files the first is chosen, although its two hulls share the weight.
@@ -391,7 +391,7 @@ mod tests {
         let stored = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::identified_ship() };
         let of = |stored: IdentifiedShip, sources: &[UncertaintySource]| {
             let mixture = testing::mixture(stored);
-            let squares = (0..1000).map(|number| mixture.sample_ship(number, sources).yaw_rate.powi(2));
+            let squares = (0..1000).map(|number| mixture.draw_ship(number, sources).yaw_rate.powi(2));
             (squares.sum::<f64>() / 1000.0).sqrt()
         };
         let found = of(stored.clone(), &UncertaintySource::ALL);
@@ -423,7 +423,7 @@ mod tests {
     #[test]
     fn one_number_is_one_ship() {
         let mixture = testing::mixture(testing::identified_ship());
-        let [one, again, other] = [7, 7, 8].map(|k| mixture.sample_ship(k, &UncertaintySource::ALL));
+        let [one, again, other] = [7, 7, 8].map(|k| mixture.draw_ship(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
         assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);

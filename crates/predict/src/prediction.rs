@@ -19,10 +19,10 @@ use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, row_interval};
 use crate::steady::SteadyCurve;
 
-/// Number of samples, relative to the number for a single source.
+/// Number of draws, relative to the number for a single source.
 const RATIO: usize = 4;
 
-/// Minimum share of the samples that complete a manoeuvre.
+/// Minimum share of the drawn ships that complete a manoeuvre.
 const MIN_COMPLETED_SHARE: f64 = 0.5;
 
 /// Tolerance of the range of the records: a rudder overshoots its order, and the maximum rate comes from a single
@@ -42,13 +42,14 @@ pub struct PredictedFigure {
     pub defined: f64,
     /// Share of every source of uncertainty in the spread.
     pub shares: IndexMap<String, f64>,
-    /// Samples, in the order of their numbers.
+    /// Value of the figure in every drawn ship, by its number; `None` where the ship does not have it. The unit is in
+    /// the name of the figure.
     #[serde(skip)]
     pub draws: Vec<Option<f64>>,
 }
 
 impl PredictedFigure {
-    /// Share of the sampled ships within a limit; a ship without the figure of merit counts as outside.
+    /// Share of the drawn ships within a limit; a ship without the figure of merit counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
         let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
         kept as f64 / self.draws.len() as f64
@@ -110,7 +111,7 @@ pub struct ManoeuvreCurves {
     pub steady: Vec<SteadyCurve>,
 }
 
-/// Results kept from the manoeuvre of a sampled ship.
+/// Results kept from the manoeuvre of a drawn ship.
 struct DrawnSeries {
     heading: Vec<f64>,
     largest_rate: f64,
@@ -132,15 +133,15 @@ impl Prediction {
     }
 }
 
-/// Number of samples whose tracks are kept.
+/// Number of drawn ships whose tracks are kept.
 const TRACKS: u64 = 40;
 
-/// Error for a manoeuvre that too few sampled ships complete.
+/// Error for a manoeuvre that too few drawn ships complete.
 pub(crate) fn too_few_error(what: impl ToString, made: usize, draws: usize) -> PredictError {
     PredictError::Lost { kind: what.to_string(), made, draws }
 }
 
-/// Fails if less than half of the sampled ships complete a manoeuvre.
+/// Fails if less than half of the drawn ships complete a manoeuvre.
 pub(crate) fn check_completed(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
     if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 {
         Err(too_few_error(what, made, draws))
@@ -155,16 +156,16 @@ impl ShipMixture {
         self.first().particulars()
     }
 
-    /// Predicts a manoeuvre from `draws` samples; `shares` adds the share of every source of uncertainty.
+    /// Predicts a manoeuvre from `draws` drawn ships; `shares` adds the share of every source of uncertainty.
     ///
-    /// Fails if less than half of the sampled ships complete the manoeuvre.
+    /// Fails if less than half of the drawn ships complete the manoeuvre.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
         let Some(manoeuvre) = crate::standard::with_end(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
         };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let passage =
-                SimulatedManoeuvre::simulate(&self.sample_ship(number, sources), &manoeuvre, self.timescale()).ok()?;
+                SimulatedManoeuvre::simulate(&self.draw_ship(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::characteristics(kind, &passage, self.particulars()), passage))
         };
         let is_circle = matches!(kind, Manoeuvre::TurningCircle { .. });
@@ -207,7 +208,7 @@ impl ShipMixture {
     /// Prediction of the steady turns of a spiral, without disturbances.
     fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
-            SteadyCurve::from_ship(&self.sample_ship(number, sources), kind.max_rudder(), self.timescale())
+            SteadyCurve::from_ship(&self.draw_ship(number, sources), kind.max_rudder(), self.timescale())
         };
         let all: Vec<SteadyCurve> = in_parallel(draws, |number| curve(number, &UncertaintySource::ALL));
         let values: Vec<Option<Characteristics>> =
@@ -233,7 +234,7 @@ impl ShipMixture {
     }
 }
 
-/// Results of `draws` samples, computed in parallel, in the order of their numbers.
+/// Results of `draws` drawn ships, computed in parallel, in the order of their numbers.
 pub(crate) fn in_parallel<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
@@ -267,7 +268,7 @@ fn predicted(
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
-/// Quantiles row by row, up to the row that a tenth of the samples reach.
+/// Quantiles row by row, up to the row that a tenth of the drawn ships reach.
 fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> BandedCurve {
     let mut bands = BandedCurve::default();
     let mut values = Vec::with_capacity(draws.len());
@@ -300,7 +301,7 @@ mod tests {
         text.parse().expect("known")
     }
 
-    /// Without uncertainty every sample is the most probable ship.
+    /// Without uncertainty every drawn ship is the most probable ship.
     #[test]
     fn what_is_known_for_certain_has_no_interval() {
         let sure = mixture(|known| {

@@ -121,7 +121,7 @@ impl ShipMixture {
         let ships = self.in_wind_of(trial);
         let Some([first, rate]) = ships.initial_motion(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
-            let mut ship = ships.sample_ship(number, sources);
+            let mut ship = ships.draw_ship(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let noise_factor = if sources.is_empty() { 0.0 } else { 1.0 };
@@ -323,7 +323,7 @@ mod tests {
         let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
         let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
         let of =
-            |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).sample_ship(1, &UncertaintySource::ALL);
+            |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
         let met = of(known.clone()).disturbances.wind.expect("a wind");
         assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
         assert_eq!(of(testing::identified_ship()).disturbances.wind, None);

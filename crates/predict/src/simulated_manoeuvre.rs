@@ -1,4 +1,4 @@
-//! Simulation of one manoeuvre of a sampled ship.
+//! Simulation of one manoeuvre of a drawn ship.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use simulate::simulation::{SimulatedTrial, Truth};
 use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, SimulatedShip, Simulation, StreamKey};
 use trial::{Channel, Trial};
 
-use crate::mixture::SampledShip;
+use crate::mixture::DrawnShip;
 
 /// Rows per timescale of the ship.
 const ROWS_PER_TIMESCALE: f64 = 20.0;
@@ -75,8 +75,8 @@ pub(crate) fn row_interval(timescale: f64) -> f64 {
 const MAX_CELL_S: f64 = 60.0;
 const MAX_CORRELATION_SHARE: f64 = 0.5;
 
-/// Ship of the simulation from a sampled ship.
-fn simulated_ship(ship: &SampledShip) -> SimulatedShip {
+/// Ship of the simulation from a drawn ship.
+fn simulated_ship(ship: &DrawnShip) -> SimulatedShip {
     match &ship.hull {
         Some(hull) => SimulatedShip::from_dynamics(Arc::new(hull.clone()))
             .with_particulars(Particulars { length: hull.length, speed: hull.speed }),
@@ -111,7 +111,7 @@ impl SimulatedManoeuvre {
     ///
     /// Fails if the ship does not reach a heading that the helm waits for, turns without end, or exceeds the speeds for
     /// which the equations of a hull are valid.
-    pub fn simulate(ship: &SampledShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
+    pub fn simulate(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(simulated_ship(ship), manoeuvre.clone());
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
             simulation.gear = ship.gear;

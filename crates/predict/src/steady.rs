@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
 use crate::figures::Characteristics;
-use crate::mixture::SampledShip;
+use crate::mixture::DrawnShip;
 
 /// Number of points to either side of a straight course.
 const POINTS: usize = 24;
@@ -34,7 +34,7 @@ pub struct InstabilityLoop {
 impl SteadyCurve {
     /// Curve of a ship up to `largest` rad of rudder to either side; `timescale` is the timescale of the ship, s. Rates
     /// without a rudder are left out.
-    pub fn from_ship(ship: &SampledShip, largest: f64, timescale: f64) -> Self {
+    pub fn from_ship(ship: &DrawnShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),

@@ -97,10 +97,10 @@ pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
     ShipMixture::new(vec![(known, 1.0)]).expect("made up")
 }
 
-/// Record of a sampled ship, a row every `period` s, with noise of the heading in rad; number 0 is the most probable
+/// Record of a drawn ship, a row every `period` s, with noise of the heading in rad; number 0 is the most probable
 /// ship in a calm.
 pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
-    let ship = if number == 0 { mixture.most_probable() } else { mixture.sample_ship(number, &UncertaintySource::ALL) };
+    let ship = if number == 0 { mixture.most_probable() } else { mixture.draw_ship(number, &UncertaintySource::ALL) };
     let requested: Manoeuvre = kind.parse().expect("known");
     let manoeuvre = standard::with_end(&requested, mixture.timescale()).expect("steered");
     let mut simulation = Simulation::new(SimulatedShip::from_response(ship.response), manoeuvre);

@@ -1,4 +1,4 @@
-//! Recorded turn with a held rudder: its characteristics, and the characteristics of sampled ships under the same
+//! Recorded turn with a held rudder: its characteristics, and the characteristics of drawn ships under the same
 //! rudder.
 
 use rand::RngExt;
@@ -24,7 +24,7 @@ const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
 /// Assumed duration of a record of unknown length and speed, in timescales of the ship.
 const DEFAULT_TIMESCALES: f64 = 40.0;
 
-/// Number of sampled ships whose tracks are kept.
+/// Number of drawn ships whose tracks are kept.
 const DRAWN_TRACKS: usize = 40;
 
 /// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
@@ -48,7 +48,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
     }
 }
 
-/// Motion of a sampled ship with a random error of the removed current, from the first row on.
+/// Motion of a drawn ship with a random error of the removed current, from the first row on.
 pub(crate) fn with_current_error(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed_rng(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
@@ -194,9 +194,9 @@ pub struct TurnTracks {
     pub measured: Vec<[f64; 2]>,
     /// Track of the most probable ship.
     pub most_probable: Vec<[f64; 2]>,
-    /// Tracks of some sampled ships.
+    /// Tracks of some drawn ships.
     pub drawn: Vec<Vec<[f64; 2]>>,
-    /// Median position of the sampled ships at every change of heading.
+    /// Median position of the drawn ships at every change of heading.
     pub median: Vec<[f64; 2]>,
 }
 

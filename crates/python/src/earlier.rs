@@ -3,14 +3,29 @@
 use std::path::PathBuf;
 
 use campaign::failure::Failure;
+use pyo3::prelude::*;
 use study::work::earlier_trials::EarlierModel;
 
-/// Name of a model, with its text unless the model is a file.
-pub type ModelText = (String, Option<String>);
+/// Model passed from Python, as a pair of name and text.
+pub struct NamedModel {
+    /// Name for messages; the file name if there is no text.
+    pub name: String,
+    /// Text of the model; `None` if it is in the file.
+    pub text: Option<String>,
+}
+
+impl<'py> FromPyObject<'_, 'py> for NamedModel {
+    type Error = PyErr;
+
+    fn extract(pair: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let (name, text): (String, Option<String>) = pair.extract()?;
+        Ok(Self { name, text })
+    }
+}
 
 /// Models of earlier trials, read from files or texts. Fails if a file or text is not a model.
-pub fn earlier(models: &[ModelText]) -> Result<Vec<EarlierModel>, Failure> {
-    let read = |(name, text): &ModelText| match text {
+pub fn earlier(models: &[NamedModel]) -> Result<Vec<EarlierModel>, Failure> {
+    let read = |NamedModel { name, text }: &NamedModel| match text {
         Some(text) => EarlierModel::from_document(name, text).map(|model| vec![model]),
         None => EarlierModel::from_files(&[PathBuf::from(name)]),
     };

@@ -12,7 +12,7 @@ use study::work;
 use trial::Trial;
 
 use crate::curve::{ReplayArrays, curve};
-use crate::earlier::{ModelText, earlier};
+use crate::earlier::{NamedModel, earlier};
 use crate::python_method::{PyIdentifier, PythonMethods};
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
@@ -53,7 +53,7 @@ pub fn fit(
     methods: Vec<String>,
     functions: PythonMethods,
     seed: Option<u64>,
-    priors: Vec<ModelText>,
+    priors: Vec<NamedModel>,
 ) -> PyResult<PyFit> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();

@@ -9,7 +9,7 @@ use study::documents;
 use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
-use crate::earlier::{ModelText, earlier};
+use crate::earlier::{NamedModel, earlier};
 use crate::options::request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
@@ -19,21 +19,21 @@ use crate::wait::patiently;
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
-    models: Vec<(String, Option<String>)>,
+    models: Vec<NamedModel>,
     replay: Vec<Py<PyRecord>>,
     options: Vec<String>,
-    priors: Vec<ModelText>,
+    priors: Vec<NamedModel>,
 ) -> PyResult<(String, Vec<String>)> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&replay).collect();
     let records = trials(&replay);
     patiently(py, move || {
-        let names = models.iter().map(|(name, _)| name.clone());
+        let names = models.iter().map(|model| model.name.clone());
         let mut asked: PredictRequest =
             request(options.into_iter().chain([String::from("--")]).chain(names).collect())?;
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
         let mut warnings = Warnings::default();
-        let read = |(name, text): &(String, Option<String>)| match text {
+        let read = |NamedModel { name, text }: &NamedModel| match text {
             Some(text) => StoredModel::from_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
             None => StoredModel::from_file(Path::new(name), &asked, &mut warnings),
         };

@@ -9,7 +9,7 @@ use study::records::repetition_warnings;
 use study::work;
 
 use crate::curve::{ReplayArrays, curve};
-use crate::earlier::{ModelText, earlier};
+use crate::earlier::{NamedModel, earlier};
 use crate::options::request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
@@ -45,7 +45,7 @@ pub fn trace(
     records: Vec<Py<PyRecord>>,
     validate: Vec<Py<PyRecord>>,
     options: Vec<String>,
-    priors: Vec<ModelText>,
+    priors: Vec<NamedModel>,
 ) -> PyResult<PyTrace> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();

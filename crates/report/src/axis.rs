@@ -8,10 +8,10 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::IntoLogRange;
 
-pub use crate::division::Division;
 use crate::fonts::text_width;
 use crate::lines::wrap;
 use crate::number;
+pub use crate::tick_rule::TickRule;
 
 /// Share of a logarithmic axis that belongs to zero and the break; the places of zero and of the break.
 const ZERO_SLOT: f64 = 0.21;
@@ -30,7 +30,7 @@ const MAX_TICKED_DECADES: i32 = 6;
 
 #[derive(Debug, Clone, PartialEq)]
 enum AxisScale {
-    Linear(Division),
+    Linear(TickRule),
     Log {
         zero: bool,
     },
@@ -58,7 +58,7 @@ impl Axis {
     }
 
     /// Linear axis from `lo` to `hi`; a range that is empty or not finite is widened to one that can be drawn.
-    pub(crate) fn linear(lo: f64, hi: f64, division: Division) -> Self {
+    pub(crate) fn linear(lo: f64, hi: f64, tick_rule: TickRule) -> Self {
         let (lo, hi) = match (lo.is_finite(), hi.is_finite()) {
             (true, true) => (lo.min(hi), lo.max(hi)),
             (true, false) => (lo, lo),
@@ -70,13 +70,13 @@ impl Axis {
         let smallest = (1e-9 * lo.abs().max(hi.abs())).max(1e-15);
         let half = if lo.abs() < smallest { 1.0 } else { 0.05 * lo.abs() };
         let (lo, hi) = if hi - lo > smallest { (lo, hi) } else { (lo - half, hi + half) };
-        Self::new(lo, hi, AxisScale::Linear(division))
+        Self::new(lo, hi, AxisScale::Linear(tick_rule))
     }
 
     /// Axis over the finite `values`, with a margin of `pad` times their range on either side.
-    pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, division: Division) -> Self {
+    pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, tick_rule: TickRule) -> Self {
         let (lo, hi) = range(values).unwrap_or((f64::NAN, f64::NAN));
-        Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), division)
+        Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), tick_rule)
     }
 
     /// Logarithmic axis over the positive `values`; a zero among them gets a separate place before a break.
@@ -179,7 +179,7 @@ impl Axis {
     /// The axis with about `count` intervals between its ticks, and at least two ticks; names are all shown.
     pub(crate) fn ticked(mut self, count: usize) -> Self {
         match self.scale {
-            AxisScale::Linear(division) => self.ticks = self.linear_ticks(count.max(1), division),
+            AxisScale::Linear(tick_rule) => self.ticks = self.linear_ticks(count.max(1), tick_rule),
             AxisScale::Log { zero } => self.ticks = self.log_ticks(count.max(1), zero),
             AxisScale::Names => {}
         }
@@ -214,9 +214,9 @@ impl Axis {
         self.ticks.windows(2).all(is_clear) && end <= width + MARGIN * font
     }
 
-    fn linear_ticks(&self, count: usize, division: Division) -> Vec<(f64, String)> {
+    fn linear_ticks(&self, count: usize, tick_rule: TickRule) -> Vec<(f64, String)> {
         let (lo, hi) = (self.lo, self.hi.min(self.last));
-        let unit = division.unit(hi - lo);
+        let unit = tick_rule.unit(hi - lo);
         // A single label does not determine the scale, so the step shrinks until there are two.
         let mut values =
             (count + 1..count + 20).map(|most| RangedCoordf64::from(lo / unit..hi / unit).key_points(most));
@@ -251,7 +251,7 @@ impl Axis {
         let sparse = (1..=every).rev().map(|every| (every, LEADING[fewest]));
         let dense = LEADING.iter().skip(fewest + 1).map(|leading| (1, *leading));
         let marked = sparse.chain(dense).map(ticks).find(|ticks| ticks.len() > 1);
-        let marked = marked.unwrap_or_else(|| self.linear_ticks(count, Division::Decimal));
+        let marked = marked.unwrap_or_else(|| self.linear_ticks(count, TickRule::Decimal));
         zero.then(|| (0.0, String::from("0"))).into_iter().chain(marked).collect()
     }
 }
@@ -339,14 +339,14 @@ mod tests {
     #[test]
     fn degenerate_ranges_can_be_drawn() {
         for axis in [
-            Axis::covering([], 0.1, Division::Time),
-            Axis::covering([3.0, 3.0], 0.1, Division::Angle),
-            Axis::covering([0.0], 0.1, Division::Decimal),
-            Axis::linear(f64::NAN, 4.0, Division::Decimal),
-            Axis::linear(-1e308, 1e308, Division::Angle),
-            Axis::linear(1e-320, 2e-320, Division::Time),
-            Axis::linear(1e9, 1e9 + 1e-3, Division::Time),
-            Axis::linear(1e-12, 3e-12, Division::Decimal),
+            Axis::covering([], 0.1, TickRule::Time),
+            Axis::covering([3.0, 3.0], 0.1, TickRule::Angle),
+            Axis::covering([0.0], 0.1, TickRule::Decimal),
+            Axis::linear(f64::NAN, 4.0, TickRule::Decimal),
+            Axis::linear(-1e308, 1e308, TickRule::Angle),
+            Axis::linear(1e-320, 2e-320, TickRule::Time),
+            Axis::linear(1e9, 1e9 + 1e-3, TickRule::Time),
+            Axis::linear(1e-12, 3e-12, TickRule::Decimal),
             Axis::log_covering(&[0.0]),
             Axis::log_covering(&[5.0]),
             Axis::rows(&[], 0.6),
@@ -371,14 +371,14 @@ mod tests {
                 assert!(axis.ticks.len() > 1 && axis.ticks.len() < 12, "{count}: {:?}", axis.ticks);
             }
         }
-        let large = labels(&Axis::linear(1.7e9, 1.7e9 + 100.0, Division::Decimal), 4);
+        let large = labels(&Axis::linear(1.7e9, 1.7e9 + 100.0, TickRule::Decimal), 4);
         assert!(large[0] != large[1], "{large:?}");
-        for division in [Division::Decimal, Division::Time, Division::Angle] {
+        for tick_rule in [TickRule::Decimal, TickRule::Time, TickRule::Angle] {
             for (exponent, leading) in (-10..10).flat_map(|e| [1.0, 1.3, 2.7, 4.9, 9.99].map(|leading| (e, leading))) {
                 for count in [3_usize, 5, 8] {
                     let span = leading * 10f64.powi(exponent);
-                    let axis = Axis::linear(-0.37 * span, 0.63 * span, division).ticked(count);
-                    let case = format!("{division:?}, span {span}, {count}: {:?}", axis.ticks);
+                    let axis = Axis::linear(-0.37 * span, 0.63 * span, tick_rule).ticked(count);
+                    let case = format!("{tick_rule:?}, span {span}, {count}: {:?}", axis.ticks);
                     assert!((2..=count + 1).contains(&axis.ticks.len()), "{case}");
                     let is_inside = |value: f64| value >= axis.lo - 1e-9 * span && value <= axis.hi + 1e-9 * span;
                     assert!(axis.ticks.iter().all(|(value, _)| is_inside(*value)), "{case}");
@@ -392,12 +392,12 @@ mod tests {
 
     #[test]
     fn ticks_are_numbers_that_a_reader_counts_in() {
-        assert_eq!(labels(&Axis::linear(0.0, 240.0, Division::Time), 8)[1], "30");
-        assert_eq!(labels(&Axis::linear(0.0, 120.0, Division::Angle), 6)[1], "30");
-        assert_eq!(labels(&Axis::linear(0.0, 540.0, Division::Angle), 8)[1], "90");
-        assert_eq!(labels(&Axis::linear(0.0, 5.0, Division::Decimal).with_room(0.4), 9).last().unwrap(), "5");
-        assert_eq!(labels(&Axis::linear(-2.5, 2.6, Division::Decimal), 6), ["−2", "−1", "0", "1", "2"]);
-        assert_eq!(labels(&Axis::linear(0.0, 3e-7, Division::Decimal), 3)[..2], ["0", "1.00×10⁻⁷"]);
+        assert_eq!(labels(&Axis::linear(0.0, 240.0, TickRule::Time), 8)[1], "30");
+        assert_eq!(labels(&Axis::linear(0.0, 120.0, TickRule::Angle), 6)[1], "30");
+        assert_eq!(labels(&Axis::linear(0.0, 540.0, TickRule::Angle), 8)[1], "90");
+        assert_eq!(labels(&Axis::linear(0.0, 5.0, TickRule::Decimal).with_room(0.4), 9).last().unwrap(), "5");
+        assert_eq!(labels(&Axis::linear(-2.5, 2.6, TickRule::Decimal), 6), ["−2", "−1", "0", "1", "2"]);
+        assert_eq!(labels(&Axis::linear(0.0, 3e-7, TickRule::Decimal), 3)[..2], ["0", "1.00×10⁻⁷"]);
     }
 
     #[test]

@@ -153,7 +153,7 @@ impl Canvas {
     }
 
     /// Draws elements at places in backend units, such as a marker or a ship outline.
-    pub(crate) fn elements(&self, elements: Vec<Element<(i32, i32)>>) -> PlotResult {
+    pub(crate) fn draw_elements(&self, elements: Vec<Element<(i32, i32)>>) -> PlotResult {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
 

@@ -80,10 +80,10 @@ impl LegendEntry {
             LegendSymbol::Nothing | LegendSymbol::Line(_) => {}
             LegendSymbol::Dots(colour) => {
                 let dot = Look { colour, ..CurveOrigin::Record.look() };
-                canvas.elements(marker(page_units(centre), 1.2 * theme.dot, &dot))?;
+                canvas.draw_elements(marker(page_units(centre), 1.2 * theme.dot, &dot))?;
             }
             LegendSymbol::Marker(look) | LegendSymbol::LineAndMarker(_, look) => {
-                canvas.elements(marker(page_units(centre), theme.marker, &look))?;
+                canvas.draw_elements(marker(page_units(centre), theme.marker, &look))?;
             }
             LegendSymbol::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
             LegendSymbol::Outline(dash) => {
@@ -91,7 +91,7 @@ impl LegendEntry {
                 canvas.outline(cell, outline_stroke(dash, theme))?;
             }
             LegendSymbol::Hull(colour) => {
-                canvas.elements(ship_outline(page_units(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
+                canvas.draw_elements(ship_outline(page_units(centre), (1.0, 0.0), 1.6 * theme.small_font, colour))?;
             }
         }
         let lines = self.lines(room, theme);

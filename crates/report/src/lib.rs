@@ -48,13 +48,13 @@ mod backend;
 mod canvas;
 mod changes;
 mod chart;
-mod division;
 mod fonts;
 mod indexed;
 mod legend;
 mod lines;
 mod markup;
 mod sheet;
+mod tick_rule;
 
 pub use curve::PlotCurve;
 pub use drawing::Drawing;

@@ -309,14 +309,14 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Division;
+    use crate::axis::TickRule;
     use crate::legend::LegendSymbol;
 
     #[test]
     fn panels_share_edges_and_stay_on_the_page() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
         let mut sheet = Sheet::new(&theme, "title").unwrap();
-        let side = |hi: f64| AxisSide::new(Axis::linear(0.0, hi, Division::Decimal), "quantity [unit]");
+        let side = |hi: f64| AxisSide::new(Axis::linear(0.0, hi, TickRule::Decimal), "quantity [unit]");
         let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
         let charts =
             sheet.grid(Grid { panels: Some(3), columns: vec![side(1.0), side(2.0)], rows, ..Grid::default() }).unwrap();
@@ -336,7 +336,7 @@ mod tests {
     #[test]
     fn heads_and_keys_that_are_too_long_go_on_below() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
-        let side = AxisSide::new(Axis::linear(0.0, 1.0, Division::Decimal), "x");
+        let side = AxisSide::new(Axis::linear(0.0, 1.0, TickRule::Decimal), "x");
         let head = |text: &str| Some(LegendEntry::new(LegendSymbol::Nothing, text));
         let drawn = |text: &str| {
             let mut sheet = Sheet::new(&theme, "").unwrap();

@@ -1,22 +1,22 @@
-//! Division of an axis by its ticks.
+//! Rule by which an axis places its ticks.
 
-/// Division of an axis.
+/// Rule by which an axis places its ticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Division {
+pub enum TickRule {
     /// Equal steps of 1, 2 or 5 times a power of ten.
     #[default]
     Decimal,
-    /// Degrees.
+    /// Degrees: multiples of 30° or 90° over a wide range.
     Angle,
-    /// Seconds and minutes, without free space at the ends.
+    /// Seconds, in multiples of 30 s or 60 s over a long time; no free space at the ends.
     Time,
-    /// Equal factors; zero has a separate place beyond a break, and negative values are omitted.
-    Factors,
+    /// Equal factors (a logarithmic scale); zero has a separate place beyond a break, and negative values are omitted.
+    Logarithmic,
     /// From 0 to 100 %, whatever the data.
     Percent,
 }
 
-impl Division {
+impl TickRule {
     /// Unit of the ticks over a span: one, 30° or 30 s, 90° or 60 s.
     pub(crate) fn unit(self, span: f64) -> f64 {
         match (self, span) {

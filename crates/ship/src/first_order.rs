@@ -54,7 +54,7 @@ pub struct State {
 /// φₙ(h) = ∫₀ʰ φₙ₋₁, φ₀ = exp(−a t). Regular at a = 0; h may be negative (a step back in time).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transition {
-    /// Length of the interval, s.
+    /// Duration of the interval, s.
     pub h: f64,
     /// exp(−a h).
     pub decay: f64,

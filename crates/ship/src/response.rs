@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling, Targets};
+use crate::effects::{ActsOn, BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -34,7 +34,7 @@ pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
-    acts: Targets,
+    acts_on: ActsOn,
 }
 
 impl Place {
@@ -79,7 +79,7 @@ impl ResponseModel {
             let place = Place {
                 parameters: (parameters, parameters + effect.parameters().len()),
                 states: (states, states + effect.states()),
-                acts: effect.targets(),
+                acts_on: effect.acts_on(),
             };
             (parameters, states) = (place.parameters.1, place.states.1);
             if effect.states() > 0 {
@@ -207,7 +207,7 @@ impl<R: EffectReal> Response<R> {
     #[inline]
     fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
-        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts.rudder) {
+        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts_on.rudder) {
             rudder = R::action(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
@@ -215,12 +215,12 @@ impl<R: EffectReal> Response<R> {
         let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
-            if place.acts.scale {
+            if place.acts_on.scale {
                 let factor = R::action(effect).base_factors(p, z, &now);
                 scale.damping = scale.damping * factor.damping;
                 scale.gain = scale.gain * factor.gain;
             }
-            if place.acts.moment {
+            if place.acts_on.moment {
                 acceleration = acceleration + R::action(effect).yaw_acceleration(p, z, &now);
             }
         }
@@ -326,7 +326,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
                 if !z.is_empty() {
                     R::action(effect).rates(p, z, &now, before, &mut rate[place.states()]);
                 }
-                if place.acts.rudder {
+                if place.acts_on.rudder {
                     before = R::action(effect).rudder(p, z, before);
                 }
             }

@@ -94,19 +94,19 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     let analysis = trace(&[damped(TrialPlan::default())], &[held_out], &Settings::default()).expect("a base");
     let error = &analysis.document.error;
     let horizons = &error.validation[0].horizons;
-    let lengths: Vec<f64> = horizons.iter().map(|entry| entry.horizon_s).collect();
-    assert_eq!(lengths, [5.0, 10.0, 20.0, 40.0, 60.0, 80.0, 160.0, 300.0]);
+    let windows: Vec<f64> = horizons.iter().map(|entry| entry.horizon_s).collect();
+    assert_eq!(windows, [5.0, 10.0, 20.0, 40.0, 60.0, 80.0, 160.0, 300.0]);
     let (residual, base) = (&analysis.validation[0].before.replay.residual, analysis.base.response);
     for entry in &horizons[..7] {
         let expected = to_deg(less_two_solutions(residual, entry.horizon_s as usize, base.inverse_T.recip()));
         assert!((entry.before_deg / expected - 1.0).abs() < 0.02, "{entry:?}: {expected}");
     }
     for (when, of) in [("before", &error.validation[0].before), ("after", &error.validation[0].after)] {
-        let error_at = |length: f64| {
-            let entry = horizons.iter().find(|entry| entry.horizon_s == length).expect("a horizon");
+        let error_at = |window: f64| {
+            let entry = horizons.iter().find(|entry| entry.horizon_s == window).expect("a horizon");
             Some(if when == "before" { entry.before_deg } else { entry.after_deg })
         };
-        assert_eq!([error_at(20.0), error_at(60.0)], ["20", "60"].map(|length| of.horizon_rmse_deg[length]), "{when}");
+        assert_eq!([error_at(20.0), error_at(60.0)], ["20", "60"].map(|window| of.horizon_rmse_deg[window]), "{when}");
         assert_eq!(error_at(300.0), Some(of.heading_rmse_deg), "{when}");
     }
     assert!(horizons[3..].iter().all(|entry| entry.after_deg < 0.5 * entry.before_deg), "{horizons:?}");
@@ -114,9 +114,9 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     let quick = Settings { thorough: false, ..Settings::default() };
     let short = damped(TrialPlan { rows: 26, ..TrialPlan::default() });
     let analysis = trace(&[damped(TrialPlan::default())], &[short], &quick).expect("a base");
-    let lengths: Vec<f64> =
+    let windows: Vec<f64> =
         analysis.document.error.validation[0].horizons.iter().map(|entry| entry.horizon_s).collect();
-    assert_eq!(lengths, [25.0], "no window of 20 s is less than the whole of 25 s");
+    assert_eq!(windows, [25.0], "no window of 20 s is less than the whole of 25 s");
 }
 
 /// The weights of the structures are their evidence times the prior odds of their terms; the probabilities of the

@@ -38,11 +38,11 @@ pub struct AveragedModel<'a> {
 /// Replay of an average on a record.
 #[derive(Debug, Clone)]
 pub struct AverageReplay {
-    /// Combined full replay.
+    /// Full replay averaged over the members.
     pub replay: Replay,
     /// Full replay of every member.
     pub members: Vec<Replay>,
-    /// Errors of the restarted replays, by window length.
+    /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
 }
 
@@ -94,18 +94,18 @@ impl Average {
         };
         let [heading, yaw_rate] = [combined(|replay| &replay.heading), combined(|replay| &replay.yaw_rate)];
         let residual = record.heading.iter().zip(&heading).map(|(measured, replayed)| measured - replayed).collect();
-        let within = |length: f64| {
+        let within = |duration: f64| {
             let all: Option<Vec<Vec<f64>>> = replays
                 .iter()
-                .map(|(_, ship, replay)| restarted_headings(*ship, record, replay.initial(), length))
+                .map(|(_, ship, replay)| restarted_headings(*ship, record, replay.initial(), duration))
                 .collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
             let residual = record.heading.iter().zip(combine(&columns)).map(|(measured, mean)| measured - mean);
             root_mean_square(&residual.filter(|residual| residual.is_finite()).collect::<Vec<f64>>())
         };
-        let lengths = depth.lengths(&record.time).into_iter();
-        let windows = lengths.map(|length| WindowError { length, heading: within(length) }).collect();
+        let durations = depth.window_durations(&record.time).into_iter();
+        let windows = durations.map(|duration| WindowError { duration, heading: within(duration) }).collect();
         let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
         Some(AverageReplay { replay, members: replays.into_iter().map(|(.., replay)| replay).collect(), windows })
     }

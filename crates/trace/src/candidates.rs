@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Backlash, CandidateEffect, Effect, RecordScales, SecondOrder, SteeringLag, WaveYaw};
+use ship::effects::{Backlash, CandidateEffect, Effect, RecordScales, SecondOrder, SteeringLag, WaveHeading};
 use ship::{Polyline, Regressor};
 use trial::Trial;
 
@@ -63,7 +63,7 @@ pub fn is_excluded_by_calm(effect: &dyn Effect, only: Option<usize>, trials: &[T
 
 /// `true` if waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
-    selection.allows(WaveYaw.id()) && !is_excluded_by_calm(&WaveYaw, None, trials, selection)
+    selection.allows(WaveHeading.id()) && !is_excluded_by_calm(&WaveHeading, None, trials, selection)
 }
 
 /// Candidate terms that these records allow. Waves are not among them, because they are a noise law. A moment that
@@ -169,7 +169,7 @@ mod tests {
         let [calm, _] = trials();
         let settings = Settings { thorough: false, ..Settings::default() };
         let analysis = trace(&[calm], &[], &settings).expect("a base");
-        for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveYaw.id()] {
+        for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveHeading.id()] {
             let entry = analysis.document.candidates.iter().find(|entry| entry.id == id).expect("on the list");
             assert_eq!((entry.outcome, entry.forms.len()), (Outcome::NotObservable, 0), "{id}");
             assert_eq!(entry.reason.as_deref(), Some("the record declares a calm (weather = \"none\")"), "{id}");

@@ -92,7 +92,7 @@ impl ReplayResult {
 impl From<&ReplayResult> for ErrorsEntry {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
-        let horizon = HORIZONS_S.map(|length| (format!("{length:.0}"), errors.restarted_rms(length).map(to_deg)));
+        let horizon = HORIZONS_S.map(|window| (format!("{window:.0}"), errors.restarted_rms(window).map(to_deg)));
         Self {
             heading_rmse_deg: to_deg(errors.heading),
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
@@ -120,9 +120,9 @@ impl RecordComparison {
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
-        let shorter = before.windows.iter().filter(|window| has_several_windows(window.length, time));
-        let windows =
-            shorter.filter_map(|window| Some((window.length, window.heading?, after.restarted_rms(window.length)?)));
+        let shorter = before.windows.iter().filter(|window| has_several_windows(window.duration, time));
+        let windows = shorter
+            .filter_map(|window| Some((window.duration, window.heading?, after.restarted_rms(window.duration)?)));
         let all = windows.chain([(duration(time), before.heading, after.heading)]);
         let entry = |(horizon_s, before, after)| HorizonEntry {
             horizon_s,

@@ -25,7 +25,7 @@ pub fn sums_of_squares(all: &[RecordComparison]) -> [f64; 2] {
 /// are white, normal and of unit variance if model and noise law describe the record (Ljung 1999, chapter 16).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Innovations {
-    /// Time, s.
+    /// Times of the innovations, s.
     pub time: Vec<f64>,
     /// Usual sampling period, s.
     pub spacing: f64,

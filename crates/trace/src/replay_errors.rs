@@ -18,7 +18,7 @@ use crate::record::PreparedRecord;
 /// Solver steps per minimum time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
 
-/// Window lengths of the restarted replays on every record, s.
+/// Window durations of the restarted replays on every record, s.
 pub const HORIZONS_S: [f64; 2] = [20.0, 60.0];
 
 /// Minimum window of [`ReplayDepth::Growth`], s; every further window is twice as long.
@@ -49,11 +49,11 @@ pub struct MomentErrors {
     pub slow: f64,
 }
 
-/// Error of replays restarted at intervals of one length.
+/// Error of replays restarted after every window of one duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowError {
-    /// Window length, s.
-    pub length: f64,
+    /// Duration of the windows, s.
+    pub duration: f64,
     /// Root mean square heading error, rad; `None` if a window holds too few headings.
     pub heading: Option<f64>,
 }
@@ -69,16 +69,16 @@ pub struct ReplayErrors {
     pub yaw_rate: Option<f64>,
     /// Mean absolute error of the overshoot angles, rad, if record and replay are zig-zags.
     pub overshoot: Option<f64>,
-    /// Errors of the restarted replays, by window length.
+    /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
     /// Heading errors with a fitted moment of the record, on held-out records.
     pub with_moment: Option<MomentErrors>,
 }
 
 impl ReplayErrors {
-    /// Root mean square heading error of replays restarted every `length` seconds, rad.
-    pub fn restarted_rms(&self, length: f64) -> Option<f64> {
-        self.windows.iter().find(|window| window.length == length)?.heading
+    /// Root mean square heading error of replays restarted every `duration` seconds, rad.
+    pub fn restarted_rms(&self, duration: f64) -> Option<f64> {
+        self.windows.iter().find(|window| window.duration == duration)?.heading
     }
 }
 
@@ -94,23 +94,25 @@ pub enum ReplayDepth {
 }
 
 impl ReplayDepth {
-    /// Window lengths (s) for a record with rows at these times (s), ascending.
-    pub fn lengths(self, time: &[f64]) -> Vec<f64> {
-        let doubled = std::iter::successors(Some(MIN_WINDOW_S), |length| Some(2.0 * length));
-        let mut lengths: Vec<f64> = match self {
+    /// Window durations (s) for a record with rows at these times (s), ascending.
+    pub fn window_durations(self, time: &[f64]) -> Vec<f64> {
+        let doubled = std::iter::successors(Some(MIN_WINDOW_S), |duration| Some(2.0 * duration));
+        let mut durations: Vec<f64> = match self {
             Self::Heading => Vec::new(),
             Self::Windows => HORIZONS_S.into(),
-            Self::Growth => doubled.take_while(|length| has_several_windows(*length, time)).chain(HORIZONS_S).collect(),
+            Self::Growth => {
+                doubled.take_while(|duration| has_several_windows(*duration, time)).chain(HORIZONS_S).collect()
+            }
         };
-        lengths.sort_by(f64::total_cmp);
-        lengths.dedup();
-        lengths
+        durations.sort_by(f64::total_cmp);
+        durations.dedup();
+        durations
     }
 }
 
-/// `true` if a record with rows at these times holds more than one window of a length, s.
-pub fn has_several_windows(length: f64, time: &[f64]) -> bool {
-    (1.0 + MIN_LAST_PIECE) * length <= duration(time)
+/// `true` if a record with rows at these times holds more than one window of this duration, s.
+pub fn has_several_windows(window: f64, time: &[f64]) -> bool {
+    (1.0 + MIN_LAST_PIECE) * window <= duration(time)
 }
 
 /// Time from the first to the last of some instants, s; 0 without any.
@@ -178,13 +180,13 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)
 }
 
-/// Headings (rad) of a replay restarted every `length` seconds from the best initial heading and yaw rate of each
+/// Headings (rad) of a replay restarted every `duration` seconds from the best initial heading and yaw rate of each
 /// window; other states continue. `None` if a window holds too few headings.
 pub fn restarted_headings(
     ship: &dyn ReplayedShip,
     record: &PreparedRecord,
     initial: [f64; 2],
-    length: f64,
+    duration: f64,
 ) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; ship.dimension()];
@@ -192,9 +194,9 @@ pub fn restarted_headings(
     let mut headings = vec![0.0; count];
     let mut from = 0;
     while from < count {
-        let end = record.time[from] + length;
+        let end = record.time[from] + duration;
         let mut to = record.time.partition_point(|&t| t < end);
-        if record.time[count - 1] < end + MIN_LAST_PIECE * length {
+        if record.time[count - 1] < end + MIN_LAST_PIECE * duration {
             to = count;
         }
         // The window ends at the first row of the next window.
@@ -325,12 +327,12 @@ mod tests {
     fn the_ship_of_a_record_is_on_it_in_every_window() {
         let base = ship(Vec::new());
         let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
-        for length in HORIZONS_S {
+        for duration in HORIZONS_S {
             let headings =
-                restarted_headings(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], length).expect("a replay");
+                restarted_headings(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], duration).expect("a replay");
             let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());
             let largest = errors.fold(0.0, f64::max);
-            assert!(headings.len() == trial.len() && largest < 1e-5, "{length} s: {largest}");
+            assert!(headings.len() == trial.len() && largest < 1e-5, "{duration} s: {largest}");
         }
     }
 }

@@ -35,13 +35,13 @@ mod prior_odds;
 pub struct TraceParts<'a> {
     /// Fitted records.
     pub trials: &'a [Trial],
-    /// Settings.
+    /// Settings of the trace.
     pub settings: &'a Settings,
-    /// Base.
+    /// First-order base with its replays.
     pub base: &'a Base,
     /// Full model with its noise law.
     pub full: &'a FullModel,
-    /// Structures.
+    /// Structures with their probabilities.
     pub structures: &'a Structures,
     /// Candidates.
     pub candidates: &'a [Arc<Term>],
@@ -267,7 +267,7 @@ impl TraceParts<'_> {
     /// Waves as a named effect, if the noise law includes them.
     fn waves(&self) -> Option<EffectEntry> {
         let sea = self.full.law.colour.waves?;
-        let waves = effects::WaveYaw;
+        let waves = effects::WaveHeading;
         let sd = sea.sd * self.full.law.variance[0].sqrt();
         let values = [sd, sea.frequency, sea.damping];
         let parameters = waves.parameters().iter().zip(values).map(|(parameter, value)| {
@@ -295,7 +295,7 @@ impl TraceParts<'_> {
     fn candidate(&self, id: &'static str, named: &[EffectNaming]) -> CandidateEntry {
         let terms = self.candidates.iter().filter(|term| term.effect.id() == id);
         let forms: Vec<FormEntry> = terms.map(|term| self.form(term.name(), named)).collect();
-        let is_sea = id == effects::WaveYaw.id();
+        let is_sea = id == effects::WaveHeading.id();
         let sea = self.full.law.colour.waves.is_some();
         let selection = &self.settings.selection;
         let excluded = !selection.allows(id);

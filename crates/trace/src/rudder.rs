@@ -146,15 +146,15 @@ fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], r
     let unknowns: usize = pieces.iter().map(|piece| if piece.is_stroke { 2 } else { 1 }).sum();
     let variance = square(0, time.len()) / time.len().saturating_sub(unknowns).max(1) as f64;
     let last = time.len() - 1;
-    let length = |row: usize| 0.5 * (time[(row + 1).min(last)] - time[row.saturating_sub(1)]);
+    let row_duration = |row: usize| 0.5 * (time[(row + 1).min(last)] - time[row.saturating_sub(1)]);
     let mut growth = 0.0;
     for piece in pieces {
-        let lengths = (piece.from..piece.to).map(length);
-        let squares: f64 = lengths.clone().map(|h| h * h).sum();
+        let durations = (piece.from..piece.to).map(row_duration);
+        let squares: f64 = durations.clone().map(|h| h * h).sum();
         growth += variance * squares;
         if piece.is_stroke && rounding > 0.0 {
             let hidden = rounding * rounding - square(piece.from, piece.to) / piece.rows() as f64;
-            growth += hidden.max(0.0) * lengths.sum::<f64>().powi(2);
+            growth += hidden.max(0.0) * durations.sum::<f64>().powi(2);
         }
     }
     let error = RudderNoise { sd: variance.sqrt().max(rounding), intensity: growth / (time[last] - time[0]) };

@@ -65,7 +65,7 @@ fn percent(errors: Option<[f64; 2]>) -> Option<String> {
     Some(format!("{:.0} %", 100.0 * ratio))
 }
 
-/// Content of the headline.
+/// Results that the headline of a trace states.
 pub struct Headline<'a> {
     /// Verdict.
     pub verdict: Verdict,
@@ -112,7 +112,7 @@ impl Headline<'_> {
             ),
             (verdict, false) => {
                 let (more, residual) = match (verdict, self.disturbance) {
-                    (Verdict::Unexplained, _) => (" and more", String::from(" The residual is not noise.")),
+                    (Verdict::Unexplained, _) => (", and something more", String::from(" The residual is not noise.")),
                     (Verdict::Located, _) => ("", format!(" The residual depends on {}.", self.shapes())),
                     (_, Some(_)) => ("", format!(" The residual is random: {} of it.", self.moment())),
                     (_, None) => ("", String::new()),
@@ -136,9 +136,10 @@ impl Headline<'_> {
         };
         let replays = ratios(whole).map_or_else(String::new, |ratios| format!(" ({ratios})"));
         let windows = ratios(|errors| errors.horizon_rmse_deg.get(WINDOW).copied().flatten());
-        let windows = windows.map_or_else(String::new, |ratios| format!(" In replays of {WINDOW} s: {ratios}."));
+        let windows =
+            windows.map_or_else(String::new, |ratios| format!(" In replays restarted every {WINDOW} s: {ratios}."));
         let [before, after] = mean_errors(&self.error.identification, whole).unwrap_or([f64::NAN; 2]).map(short);
-        let hulls = if self.has_hulls { " and the fitted hulls" } else { "" };
+        let hulls = if self.has_hulls { ", averaged with fitted hulls," } else { "" };
         format!("{condition}{hulls} the heading error is {after}° instead of {before}°{replays}.{windows}")
     }
 
@@ -295,7 +296,8 @@ mod tests {
         assert_eq!(
             headline(&effects, &error),
             "The first-order response lacks nonlinear damping (r³) and speed loss (r³). With them the heading error is \
-             0.500° instead of 2.00° (25 %; held-out records 50 %). In replays of 60 s: 40 %; held-out records 60 %."
+             0.500° instead of 2.00° (25 %; held-out records 50 %). In replays restarted every 60 s: 40 %; held-out \
+             records 60 %."
         );
     }
 

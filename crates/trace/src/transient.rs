@@ -11,7 +11,7 @@ use crate::model::Term;
 use crate::weights::RecordWhitening;
 
 /// Durations of the boxes as shares of the record.
-const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
+const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 
 /// Spacing of the steps that are tried, as a share of the record.
 const STEP_SPACING: f64 = 1.0 / 80.0;
@@ -51,20 +51,22 @@ fn place(
     let boxes: Vec<[f64; 2]> = match lasts {
         // A step is a box that outlasts the record.
         true => vec![[2.0 * duration, STEP_SPACING * duration]],
-        false => LENGTHS
+        false => DURATION_SHARES
             .map(|share| share * duration)
             .into_iter()
-            .filter(|&length| length >= term.priors[2].lowest)
-            .map(|length| [length, 0.5 * length])
+            .filter(|&box_duration| box_duration >= term.priors[2].lowest)
+            .map(|box_duration| [box_duration, 0.5 * box_duration])
             .collect(),
     };
     let mut best: Option<(f64, Vec<f64>)> = None;
-    for [length, step] in boxes {
-        let last = start + duration - if lasts { 0.0 } else { length };
+    for [box_duration, step] in boxes {
+        let last = start + duration - if lasts { 0.0 } else { box_duration };
         let places = ((last - start) / step) as usize;
         for from in (0..=places).map(|k| start + step * k as f64) {
-            let mut column: Vec<f64> =
-                times.iter().map(|t| b * (step_response(a, t - from) - step_response(a, t - from - length))).collect();
+            let mut column: Vec<f64> = times
+                .iter()
+                .map(|t| b * (step_response(a, t - from) - step_response(a, t - from - box_duration)))
+                .collect();
             weights.apply(number, &mut [&mut column]);
             let mut cross = DVector::zeros(linear.unknowns);
             block.products(&column, &mut cross);
@@ -73,8 +75,8 @@ fn place(
             let product = dot(&column, &block.residual) - cross.dot(explained);
             let gain = product * product / square;
             if best.as_ref().is_none_or(|(largest, _)| gain > *largest) {
-                let middle = if lasts { from } else { from + 0.5 * length };
-                best = Some((gain, [product / square, middle, length][..term.priors.len()].to_vec()));
+                let middle = if lasts { from } else { from + 0.5 * box_duration };
+                best = Some((gain, [product / square, middle, box_duration][..term.priors.len()].to_vec()));
             }
         }
     }

@@ -68,14 +68,14 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
     warnings.extend(drop_impossible_rudder(columns, rejected));
     warnings.extend(straighten_rudder(columns));
     for channel in [Channel::Heading, Channel::YawRate] {
-        warnings.extend(drop_repeats(columns, channel));
+        warnings.extend(blank_repeats(columns, channel));
     }
-    warnings.extend(written::drop_held(columns));
-    warnings.extend(north::drop_sweeps(columns, rejected));
-    warnings.extend(drop_frozen(columns, rejected));
-    warnings.extend(readings::drop_lost_polls(columns, rejected));
-    warnings.extend(readings::drop_spikes(columns, rejected));
-    warnings.extend(readings::drop_clipped(columns, rejected));
+    warnings.extend(written::blank_held(columns));
+    warnings.extend(north::blank_sweeps(columns, rejected));
+    warnings.extend(blank_frozen(columns, rejected));
+    warnings.extend(readings::blank_lost_polls(columns, rejected));
+    warnings.extend(readings::blank_spikes(columns, rejected));
+    warnings.extend(readings::blank_clipped(columns, rejected));
     warnings
 }
 
@@ -206,7 +206,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
 }
 
 /// Sets the repetitions of a channel to missing.
-fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
+fn blank_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
     let rhythm = Rhythm::of(values)?;
     let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
@@ -238,7 +238,7 @@ fn has_rest(values: &[f64]) -> bool {
 
 /// Sets a frozen heading to missing: the heading leaves its value faster than the ship turns, or the ship turns before
 /// and after by much more than the heading resolves.
-fn drop_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
+fn blank_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     if !has_rest(heading) {

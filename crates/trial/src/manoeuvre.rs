@@ -232,14 +232,14 @@ impl Manoeuvre {
         if let Self::ZigZag { duration: Some(duration), .. } = self {
             return *duration;
         }
-        let mut length = 0.0;
+        let mut total = 0.0;
         for step in self.steps() {
             match step.trigger {
-                Trigger::Time(time) => length += time,
+                Trigger::Time(time) => total += time,
                 Trigger::Deviation { .. } | Trigger::Never => return f64::INFINITY,
             }
         }
-        length
+        total
     }
 
     /// Maximum number of executes.
@@ -328,7 +328,7 @@ pub fn rounded_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 
-/// Error of a text that is no manoeuvre.
+/// Text that is not a manoeuvre.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is not a manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
@@ -403,7 +403,9 @@ mod tests {
             assert_eq!(manoeuvre.to_string(), name);
             assert_eq!(name.parse::<Manoeuvre>(), Ok(manoeuvre));
         }
-        for wrong in ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "zig-zag:10/-10", "circle:35", "spiral:x", "pull-out:90"] {
+        for wrong in
+            ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "zig-zag:10/-10", "circle:35", "spiral:x", "pull-out:90"]
+        {
             let message = wrong.parse::<Manoeuvre>().expect_err("refused").to_string();
             assert!(message.contains("zig-zag:RUDDER/HEADING"), "{message}");
         }

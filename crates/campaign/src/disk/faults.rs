@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Root folder, numbers of the failing operations, and number of operations so far.
+/// Fault injected by tests: the disk operations below `root` with a number in `failing` fail; `seen` counts operations
+/// so far.
 struct DiskFault {
     root: PathBuf,
     failing: Range<u64>,

@@ -48,7 +48,7 @@ pub struct BlockLabel {
     pub design: String,
     /// Seed of the study.
     pub seed: u64,
-    /// Program that computed it.
+    /// Program that computed the block.
     pub program: String,
     /// Index of the cell.
     pub cell: usize,

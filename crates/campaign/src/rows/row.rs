@@ -77,7 +77,7 @@ pub struct LocatedMoment {
 pub struct PredictedCharacteristic {
     /// Manoeuvre and characteristic, with the unit: `zig-zag 20/20 first_overshoot_deg`.
     pub name: Box<str>,
-    /// True value.
+    /// True value of the characteristic, in its unit.
     pub truth: f64,
     /// Median of the prediction.
     pub median: f64,
@@ -109,7 +109,7 @@ pub struct TraceRow {
     pub expected: Option<f64>,
     /// Share of the headings of the trial inside the 95 % band of the traced model.
     pub band_fitted: Option<f64>,
-    /// Share inside the 95 % band on the validation manoeuvre.
+    /// Share of the headings of the validation manoeuvre inside the 95 % band of the traced model.
     pub band_held_out: Option<f64>,
 }
 
@@ -135,15 +135,15 @@ pub struct StudyRow {
     pub base_t_s: Option<f64>,
     /// Cramér–Rao bounds on the standard deviations of K (1/s), T (s) and K/T (1/s²) of this trial.
     pub bound: Option<[f64; 3]>,
-    /// K, 1/s.
+    /// Estimate of K, 1/s.
     pub k_per_s: Option<f64>,
     /// Lower and upper end of the 95 % interval of K, 1/s.
     pub k_ci95_per_s: Option<[f64; 2]>,
-    /// T, s.
+    /// Estimate of T, s.
     pub t_s: Option<f64>,
     /// 95 % interval of T, s.
     pub t_ci95_s: Option<[f64; 2]>,
-    /// δ_r, deg.
+    /// Estimate of δ_r, deg.
     pub rudder_bias_deg: Option<f64>,
     /// 95 % interval of δ_r, deg.
     pub rudder_bias_ci95_deg: Option<[f64; 2]>,
@@ -156,7 +156,7 @@ pub struct StudyRow {
     pub validation_windows_deg: Option<f64>,
     /// Number of model evaluations.
     pub evaluations: Option<f64>,
-    /// Reason of termination.
+    /// Reason why the method stopped.
     pub stop: Option<&'static str>,
     /// Result of a trace.
     pub traced: Option<Box<TraceRow>>,

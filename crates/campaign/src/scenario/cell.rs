@@ -31,7 +31,7 @@ pub struct DesignCell {
 
 /// Source of the trials of a cell.
 pub(crate) enum TrialSource {
-    /// Simulation.
+    /// Trials simulated from a specification.
     Simulated {
         /// Specification of a trial, with random values at the middle of their distributions.
         specification: Box<Specification>,

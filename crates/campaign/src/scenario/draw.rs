@@ -1,5 +1,5 @@
 //! Random values of every trial: `[[draw]]`. Each draw has its own random stream, keyed by the replicate and its index
-//! in the list but not by the cell. So a replicate has the same sampled ship in every cell, and further draws do not
+//! in the list but not by the cell. So a replicate has the same drawn ship in every cell, and further draws do not
 //! change it.
 
 use rand::rngs::ChaCha8Rng;
@@ -61,7 +61,7 @@ struct RangeWire {
 /// Scenario key that is sampled for every trial, with its distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledKey {
-    /// Key.
+    /// Key of the scenario that is sampled.
     pub key: KeyPath,
     index: u32,
     shape: DrawnDistribution,
@@ -101,7 +101,7 @@ impl DrawWire {
         &self.key
     }
 
-    /// Checks a draw; `index` is its index in the list.
+    /// Key to be sampled, checked; `index` is the index of the draw in `[[draw]]`, which selects its random numbers.
     pub fn resolve(&self, index: usize) -> Result<SampledKey, KeyFault> {
         let place = KeyPath::from_dotted("draw").child(index);
         let key = KeyPath::from_dotted(&self.key);

@@ -20,7 +20,7 @@ use crate::scenario::{effect, limits, name};
 pub struct Method {
     /// Label in tables and plots; unique in the scenario.
     pub label: String,
-    /// Procedure.
+    /// Procedure on the trial.
     pub procedure: Procedure,
 }
 

@@ -55,4 +55,4 @@ pub use predictions::Predictions;
 
 pub use prose::{Highlight, MarkedValue, Presentation, Prose, Published};
 pub use specification::{HULL, Specification};
-pub use stop::{ResponseIndex, StopFigure, StopRule};
+pub use stop::{NomotoIndex, StopFigure, StopRule};

@@ -24,12 +24,12 @@ fn draws() -> u64 {
 /// Allowed numbers of draws: sufficient for an interval, with an acceptable duration.
 const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 
-/// Manoeuvres to predict, and number of draws.
+/// Predictions made from every estimate of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predictions {
-    /// Manoeuvres.
+    /// Manoeuvres that are predicted.
     pub manoeuvres: Vec<Manoeuvre>,
-    /// Number of ships sampled for every prediction.
+    /// Number of ships drawn for every prediction.
     pub draws: usize,
 }
 

@@ -65,18 +65,18 @@ pub enum FaultMark {
 pub struct KeyFault {
     /// Faulty key.
     pub key: KeyPath,
-    /// Underlined part.
+    /// Part of key or value that the message underlines.
     pub mark: FaultMark,
     /// Problem, with key and value, in one sentence.
     pub problem: String,
     /// Expected text, printed below the underlined part.
     pub expected: String,
-    /// Remedy.
+    /// Advice on how to correct the fault.
     pub advice: String,
 }
 
 impl KeyFault {
-    /// Fault of a value.
+    /// Fault that underlines the value of a key.
     pub fn value(
         key: KeyPath,
         problem: impl Into<String>,
@@ -103,7 +103,7 @@ impl KeyFault {
         Self::value(key, problem, expected, advice)
     }
 
-    /// Fault of a key.
+    /// Fault that underlines the name of a key.
     pub fn name(
         key: KeyPath,
         problem: impl Into<String>,

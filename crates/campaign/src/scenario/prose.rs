@@ -105,7 +105,8 @@ pub struct Published {
 }
 
 impl Prose {
-    /// Prose of the text of a scenario; empty for an invalid text.
+    /// Reads question, analysis, finding and output settings from the text of a scenario; all are empty if it is not
+    /// valid TOML.
     pub fn from_scenario_text(scenario: &str) -> Self {
         let mut document: Table = scenario.parse().unwrap_or_default();
         Presentation::remove_unknown(&mut document);

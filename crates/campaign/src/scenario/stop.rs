@@ -18,12 +18,12 @@ pub struct StopRule {
     pub standard_error: f64,
 }
 
-/// Index of the response.
+/// Index of the first-order response (Nomoto): its gain or its time constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ResponseIndex {
-    /// Gain K.
+pub enum NomotoIndex {
+    /// Gain K, 1/s.
     K,
-    /// Time constant T.
+    /// Time constant T, s.
     T,
 }
 
@@ -57,11 +57,11 @@ pub enum StopFigure {
 }
 
 impl StopFigure {
-    /// Index of the statistic.
-    pub fn index(self) -> ResponseIndex {
+    /// Nomoto index whose errors the statistic describes.
+    pub fn index(self) -> NomotoIndex {
         match self {
-            Self::MeanK | Self::SdK | Self::RmsK | Self::CoverageK => ResponseIndex::K,
-            Self::MeanT | Self::SdT | Self::RmsT | Self::CoverageT => ResponseIndex::T,
+            Self::MeanK | Self::SdK | Self::RmsK | Self::CoverageK => NomotoIndex::K,
+            Self::MeanT | Self::SdT | Self::RmsT | Self::CoverageT => NomotoIndex::T,
         }
     }
 }

@@ -78,7 +78,7 @@ pub struct SweepPoint {
     pub label: String,
     /// Value on a numeric axis.
     pub value: Option<f64>,
-    /// Keys it sets.
+    /// Keys that the point sets, with their values.
     pub set: Vec<SweepSetting>,
 }
 
@@ -141,9 +141,9 @@ impl SweepSetting {
 }
 
 impl AxisWire {
-    /// Checks an axis; `index` is its index in `[[sweep]]`.
-    pub fn resolve(&self, index: usize) -> Result<SweepAxis, KeyFault> {
-        let place = KeyPath::from_dotted("sweep").child(index);
+    /// Axis of the sweep, checked; its index in `[[sweep]]` is only for error messages.
+    pub fn resolve(&self, index_in_messages: usize) -> Result<SweepAxis, KeyFault> {
+        let place = KeyPath::from_dotted("sweep").child(index_in_messages);
         let mut points = self.points(&place)?;
         if points.is_empty() {
             return Err(KeyFault::name(

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Statistic with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
-    /// Value.
+    /// Value of the statistic.
     pub value: f64,
     /// 95 % interval, if the sample is sufficiently large.
     pub ci95: Option<[f64; 2]>,

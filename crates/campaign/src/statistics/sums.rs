@@ -6,14 +6,14 @@ use std::iter::Sum;
 /// Number of batches.
 pub const BATCHES: usize = 256;
 
-/// Count, sum and sum of squares of a batch.
+/// Sums over the values of one batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BatchSums {
     /// Number of values.
     pub count: f64,
     /// Sum of the values minus the shift.
     pub first: f64,
-    /// Sum of squares of the same differences.
+    /// Sum of the squares of the values minus the shift.
     pub second: f64,
 }
 
@@ -36,7 +36,7 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     &mut batches[place]
 }
 
-/// Batch sums of one quantity.
+/// Batch sums of one quantity, in its unit, from which mean, standard deviation and root mean square follow.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorSums {
     /// First value, which is subtracted from every value so that a large bias does not cancel the digits of a small
@@ -63,19 +63,19 @@ impl ErrorSums {
         &self.batches
     }
 
-    /// Mean of a total; `None` without values.
-    pub fn mean(&self, total: &BatchSums) -> Option<f64> {
+    /// Mean of the values in a total of batches; `None` without values.
+    pub fn mean_of(&self, total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| self.shift + total.first / total.count)
     }
 
-    /// Standard deviation of a total; `None` below two values.
-    pub fn sd(&self, total: &BatchSums) -> Option<f64> {
+    /// Standard deviation of the values in a total of batches; `None` below two values.
+    pub fn sd_of(&self, total: &BatchSums) -> Option<f64> {
         let n = total.count;
         (n > 1.0).then(|| ((total.second - total.first * total.first / n).max(0.0) / (n - 1.0)).sqrt())
     }
 
-    /// Root mean square of a total; `None` without values.
-    pub fn rms(&self, total: &BatchSums) -> Option<f64> {
+    /// Root mean square of the values in a total of batches; `None` without values.
+    pub fn rms_of(&self, total: &BatchSums) -> Option<f64> {
         let (n, c) = (total.count, self.shift);
         (n > 0.0).then(|| ((total.second + 2.0 * c * total.first) / n + c * c).max(0.0).sqrt())
     }
@@ -91,7 +91,7 @@ pub struct PairSums {
 }
 
 impl PairSums {
-    /// Adds a replicate.
+    /// Adds the errors of the method and of the reference in a replicate.
     pub fn add(&mut self, replicate: u64, error: f64, reference: f64) {
         let batch = batch_of(&mut self.batches, replicate);
         batch.count += 1.0;
@@ -104,7 +104,7 @@ impl PairSums {
         };
     }
 
-    /// Batches.
+    /// Batches, up to the last one with a trial.
     pub fn batches(&self) -> &[BatchSums] {
         &self.batches
     }
@@ -114,13 +114,14 @@ impl PairSums {
         self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
     }
 
-    /// Difference of the root mean square errors of a total.
-    pub fn difference(total: &BatchSums) -> Option<f64> {
+    /// Root mean square error of the method minus that of the reference in a total of batches; `None` without trials.
+    pub fn difference_of(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Ratio of the root mean square errors of a total; `None` if the error of the reference is zero.
-    pub fn ratio(total: &BatchSums) -> Option<f64> {
+    /// Root mean square error of the method over that of the reference in a total of batches; `None` if the latter is
+    /// zero.
+    pub fn ratio_of(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }
 }
@@ -139,10 +140,10 @@ mod tests {
         (0..1000).for_each(|replicate| sums.add(replicate, -6.53 + 1e-9 * f64::from(u8::from(replicate % 2 == 0))));
         let total = total(sums.batches());
         assert_eq!(sums.batches().len(), BATCHES);
-        let sd = sums.sd(&total).expect("enough");
+        let sd = sums.sd_of(&total).expect("enough");
         assert!((sd / 0.5e-9 - 1.0).abs() < 1e-3, "{sd}");
-        assert!((sums.rms(&total).expect("some") - 6.53).abs() < 1e-8);
-        assert!((sums.mean(&total).expect("some") + 6.53).abs() < 1e-8);
+        assert!((sums.rms_of(&total).expect("some") - 6.53).abs() < 1e-8);
+        assert!((sums.mean_of(&total).expect("some") + 6.53).abs() < 1e-8);
     }
 
     #[test]
@@ -151,8 +152,8 @@ mod tests {
         [(3.0, 1.0), (-3.0, 1.0), (3.0, -3.0)].iter().zip(0..).for_each(|(&(a, b), r)| pairs.add(r, a, b));
         let total = total(pairs.batches());
         let rms = (11.0_f64 / 3.0).sqrt();
-        assert!((PairSums::difference(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
-        assert!((PairSums::ratio(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
+        assert!((PairSums::difference_of(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
+        assert!((PairSums::ratio_of(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
         assert_eq!(pairs.smaller, 0.5);
     }
 }

@@ -51,7 +51,7 @@ pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
         let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
         let mut place = cell.labels.clone();
         place.remove(axis);
-        let level = DetectionCount { size, trials: line.trials, detections: line.complete };
+        let level = DetectionCount { size, trials: line.trials, detections: line.all_named };
         Some(((effect, unit, place, line.method, &line.missing), level))
     });
     let groups = grouped(sized, |(kind, _)| kind.clone());
@@ -115,7 +115,7 @@ mod tests {
         let line = |cell: usize| TraceSummary {
             missing: design.cells[cell].missing.clone(),
             trials: 40,
-            complete: if (6..10).contains(&cell) { 40 } else { 0 },
+            all_named: if (6..10).contains(&cell) { 40 } else { 0 },
             cell,
             ..TraceSummary::default()
         };

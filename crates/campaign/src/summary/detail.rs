@@ -41,11 +41,11 @@ impl ErrorDensity {
 /// Joint distribution of the errors of K and T, %.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
-    /// First pairs of errors.
+    /// First pairs of errors of K and T, %.
     pub points: Vec<(f64, f64)>,
-    /// Mean of the winsorised errors.
+    /// Mean of the winsorised errors, %.
     pub centre: (f64, f64),
-    /// Covariance of the winsorised errors.
+    /// Covariance of the winsorised errors, %².
     pub covariance: [[f64; 2]; 2],
 }
 

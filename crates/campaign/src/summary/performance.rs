@@ -9,18 +9,18 @@ use super::predictions::PredictionSummary;
 use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
-/// Relative errors of one index over trials, %, except for shares.
+/// Statistics of the relative errors of one index over trials: errors in %, shares from 0 to 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct IndexErrors {
     /// Mean estimate, SI units, with its normal interval.
     pub answer: Option<Statistic>,
-    /// Mean error.
+    /// Mean error, %.
     pub mean: Option<Statistic>,
-    /// Median error.
+    /// Median error, %.
     pub median: Option<Statistic>,
-    /// Standard deviation.
+    /// Standard deviation of the errors, %.
     pub sd: Option<Statistic>,
-    /// Root mean square error.
+    /// Root mean square error, %.
     pub rms: Option<Statistic>,
     /// Median absolute deviation from the median, not scaled.
     pub mad: Option<Statistic>,
@@ -88,7 +88,7 @@ pub struct MethodSummary {
 pub struct Comparison {
     /// Difference of the rms errors, %; negative if the method is better.
     pub rms_difference: Option<Statistic>,
-    /// Ratio of the rms errors.
+    /// Ratio of the rms error of the method to that of the reference.
     pub rms_ratio: Option<Statistic>,
     /// Share of trials in which the error of the method is smaller.
     pub closer: Option<Statistic>,

@@ -85,7 +85,7 @@ pub struct ImoDecisionTally {
     pub name: Box<str>,
     /// Maximum allowed value.
     pub limit: f64,
-    /// Number of trials whose ship meets it.
+    /// Number of trials whose ship meets the criterion.
     pub kept: u64,
     /// Number of trials with a correct decision.
     pub right: u64,
@@ -113,17 +113,17 @@ impl PredictionSummary {
         self.sums[place] / self.trials as f64
     }
 
-    /// Mean error of the median.
+    /// Mean error of the median, in the unit of the characteristic.
     pub fn bias(&self) -> f64 {
         self.mean(0)
     }
 
-    /// Root mean square error of the median.
+    /// Root mean square error of the median, in the unit of the characteristic.
     pub fn rms(&self) -> f64 {
         self.mean(1).sqrt()
     }
 
-    /// Mean width of the 90 % interval.
+    /// Mean width of the 90 % interval, in the unit of the characteristic.
     pub fn width(&self) -> f64 {
         self.mean(2)
     }

@@ -28,9 +28,10 @@ pub struct RecordSummary {
     /// Median over trials of the heading error on the validation record, deg.
     #[serde(rename = "judged_deg")]
     pub validation_deg: Option<Statistic>,
-    /// Median over trials of the ratio of that error to the error of the first method; `None` for the first method.
+    /// Median over trials of the ratio of the validation error to that of the first method; `None` for the first
+    /// method.
     pub ratio: Option<Statistic>,
-    /// Median over trials of that ratio with replays restarted every 60 s.
+    /// Median over trials of the ratio of the validation errors of replays restarted every 60 s.
     pub window_ratio: Option<Statistic>,
     /// Number of fits that named each effect.
     pub named: BTreeMap<String, usize>,

@@ -38,16 +38,21 @@ pub struct TraceSummary {
     /// Number of trials by effect named as an alias of a missing one.
     pub aliases: BTreeMap<String, u64>,
     /// Number of trials without any named effect.
-    pub silent: u64,
+    #[serde(rename = "silent")]
+    pub without_names: u64,
     /// Number of trials whose named groups contain every missing effect.
-    pub complete: u64,
+    #[serde(rename = "complete")]
+    pub all_named: u64,
     /// Number of trials with a named group that contains no missing effect; for a hull, whose missing effects are not
     /// defined, a group of weather effects alone.
-    pub wrong: u64,
+    #[serde(rename = "wrong")]
+    pub falsely_named: u64,
     /// Number of trials in which exactly the missing effects were named, or correctly none.
-    pub exact: u64,
+    #[serde(rename = "exact")]
+    pub exactly_named: u64,
     /// Number of trials with a clear margin for the one missing effect, and number of those that name it.
-    pub clear: [u64; 2],
+    #[serde(rename = "clear")]
+    pub clearly_separable: [u64; 2],
     /// Mean expected likelihood ratio.
     pub expected: Option<f64>,
     /// Mean coverage of the heading band: on the trial, and on the validation manoeuvre.
@@ -92,18 +97,18 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 
 impl TraceSummary {
     /// Share of trials in which all missing effects were named; `None` without a missing effect, and for a hull.
-    pub fn complete_share(&self) -> Option<Statistic> {
-        if self.missing.is_empty() { None } else { self.share_of(self.complete) }
+    pub fn all_named_share(&self) -> Option<Statistic> {
+        if self.missing.is_empty() { None } else { self.share_of(self.all_named) }
     }
 
     /// Share of trials in which exactly the missing effects were named; `None` for a hull.
     pub fn exactly_named_share(&self) -> Option<Statistic> {
-        self.share_of(self.exact)
+        self.share_of(self.exactly_named)
     }
 
     /// Share of trials with a wrongly named group.
-    pub fn wrong_share(&self) -> Option<Statistic> {
-        wilson_share(self.wrong, self.trials)
+    pub fn falsely_named_share(&self) -> Option<Statistic> {
+        wilson_share(self.falsely_named, self.trials)
     }
 
     /// Share of the trials; `None` for a hull.
@@ -112,8 +117,8 @@ impl TraceSummary {
     }
 
     /// Share of trials with a clear margin in which the missing effect was named.
-    pub fn clear_share(&self) -> Option<Statistic> {
-        wilson_share(self.clear[1], self.clear[0])
+    pub fn clearly_separable_share(&self) -> Option<Statistic> {
+        wilson_share(self.clearly_separable[1], self.clearly_separable[0])
     }
 
     /// `true` for a hull, whose missing effects are not defined.
@@ -159,7 +164,7 @@ impl TraceTally {
         judgement.into_iter().for_each(|judgement| *summary.judgements.entry(judgement).or_default() += 1);
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
-        summary.silent += u64::from(answer.named.is_empty());
+        summary.without_names += u64::from(answer.named.is_empty());
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let missing = &summary.missing;
@@ -181,12 +186,12 @@ impl TraceTally {
             let ids = std::iter::once(&effect.id).chain(&effect.aliases);
             ids.into_iter().all(|id| WEATHER_IDS.contains(&**id))
         };
-        summary.wrong += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
-        summary.complete += u64::from(complete && !missing.is_empty());
-        summary.exact += u64::from(complete && wrong.is_empty());
+        summary.falsely_named += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
+        summary.all_named += u64::from(complete && !missing.is_empty());
+        summary.exactly_named += u64::from(complete && wrong.is_empty());
         if answer.margin.is_some_and(|margin| margin > MIN_CLEAR_MARGIN) {
-            summary.clear[0] += 1;
-            summary.clear[1] += u64::from(complete);
+            summary.clearly_separable[0] += 1;
+            summary.clearly_separable[1] += u64::from(complete);
         }
         let has_truth = !summary.is_hull();
         for id in effect_ids().filter(|_| has_truth) {
@@ -238,8 +243,8 @@ mod tests {
         let trials: [&[&[&str]]; 5] =
             [&[&["a"], &["b"]], &[&["c", "a"], &["b"]], &[&["a"]], &[&["a"], &["b"], &["d"]], &[]];
         let summary = summary(&["a", "b"], &trials);
-        assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
-        assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
+        assert_eq!((summary.trials, summary.all_named, summary.falsely_named, summary.without_names), (5, 3, 1, 1));
+        assert_eq!((summary.exactly_named, summary.clearly_separable), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"], summary.aliases.get("c")), (3, 1, Some(&1)));
         assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
     }
@@ -260,13 +265,13 @@ mod tests {
         let trials: [&[&[&str]]; 4] =
             [&[&["speed_loss"]], &[&["wind_moment", "speed_loss"]], &[&["wind_moment"]], &[&["moment_drift"], &["a"]]];
         let summary = summary(&[HULL], &trials);
-        assert_eq!((summary.wrong, summary.exactly_named_share()), (2, None));
-        assert_eq!(summary.wrong_share().map(|share| share.value), Some(0.5));
+        assert_eq!((summary.falsely_named, summary.exactly_named_share()), (2, None));
+        assert_eq!(summary.falsely_named_share().map(|share| share.value), Some(0.5));
     }
 
     #[test]
     fn any_name_is_wrong_where_nothing_is_missing() {
         let summary = summary(&[], &[&[], &[&["a"]]]);
-        assert_eq!((summary.wrong, summary.exact, summary.complete_share()), (1, 1, None));
+        assert_eq!((summary.falsely_named, summary.exactly_named, summary.all_named_share()), (1, 1, None));
     }
 }

@@ -35,7 +35,7 @@ pub enum Fundamental {
 /// Fundamental, and the reason why the search stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChosenFundamental {
-    /// w, rad/s.
+    /// Fundamental w, rad/s.
     pub fundamental: f64,
     /// Reason why the search stopped.
     pub stop: StopReason,
@@ -70,13 +70,15 @@ impl Fundamental {
     /// Fails with [`IdentifyError::TooFewPoints`] if a rule that needs the zig-zag period finds fewer than two
     /// crossings.
     pub fn choose(&self, time: &[f64], heading: &[f64], harmonics: usize) -> Result<ChosenFundamental, IdentifyError> {
-        let length = time[time.len() - 1] - time[0];
+        let duration = time[time.len() - 1] - time[0];
         let direct = |fundamental| ChosenFundamental { fundamental, stop: StopReason::Direct, evaluations: 0 };
         let peak = || spectral_peak(time, heading);
         Ok(match self {
-            Self::RecordAndPeriods(periods) => direct(TAU / (length + periods * zero_crossing_period(time, heading)?)),
+            Self::RecordAndPeriods(periods) => {
+                direct(TAU / (duration + periods * zero_crossing_period(time, heading)?))
+            }
             Self::ZeroCrossings => direct(TAU / zero_crossing_period(time, heading)?),
-            Self::Starts => search_from(&[peak(), TAU / length, PI / length], time, heading, harmonics),
+            Self::Starts => search_from(&[peak(), TAU / duration, PI / duration], time, heading, harmonics),
             Self::FftPeak => search_from(&[peak()], time, heading, harmonics),
             Self::Global => lowest(time, heading, harmonics),
         })
@@ -85,18 +87,18 @@ impl Fundamental {
 
 /// Lowest RSS of local searches from every start (rad/s).
 fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
-    let length = time[time.len() - 1] - time[0];
+    let duration = time[time.len() - 1] - time[0];
     let mut profile = Profile::new(time, heading, harmonics);
     let ends: Vec<(f64, ChosenFundamental)> =
-        starts.iter().map(|&start| descend(&mut profile, start, length, harmonics)).collect();
+        starts.iter().map(|&start| descend(&mut profile, start, duration, harmonics)).collect();
     let (_, choice) = ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("there is a start");
     ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
 /// Minimum found downhill from `from` in steps too small to leave a basin, then refined.
-fn descend(profile: &mut Profile, from: f64, length: f64, harmonics: usize) -> (f64, ChosenFundamental) {
-    let step = DESCENT_STEP * PI / (harmonics as f64 * length);
-    let (floor, ceiling) = (MIN_PERIODS * TAU / length, from.max(TAU / length) * 2.0);
+fn descend(profile: &mut Profile, from: f64, duration: f64, harmonics: usize) -> (f64, ChosenFundamental) {
+    let step = DESCENT_STEP * PI / (harmonics as f64 * duration);
+    let (floor, ceiling) = (MIN_PERIODS * TAU / duration, from.max(TAU / duration) * 2.0);
     let start = from.max(floor);
     let value = profile.rss(start);
     let direction = if profile.rss(start + step) < value { step } else { -step };
@@ -175,10 +177,10 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
 
 /// Lowest RSS on a grid of fundamentals, refined.
 fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
-    let length = time[time.len() - 1] - time[0];
+    let duration = time[time.len() - 1] - time[0];
     let peak = spectral_peak(time, heading);
-    let lowest = (MIN_PERIODS * TAU / length).max(MIN_REACH * peak / harmonics as f64);
-    let step = SCAN_STEP * PI / (harmonics as f64 * length);
+    let lowest = (MIN_PERIODS * TAU / duration).max(MIN_REACH * peak / harmonics as f64);
+    let step = SCAN_STEP * PI / (harmonics as f64 * duration);
     let last = ((MAX_OVER_PEAK * peak - lowest) / step).max(2.0).ceil() as usize;
     let mut profile = Profile::new(time, heading, harmonics);
     let rss = profile.scan(lowest, step, last + 1);

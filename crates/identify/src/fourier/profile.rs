@@ -28,8 +28,8 @@ const ANCHOR_STEPS: usize = 32;
 #[derive(Debug, Clone)]
 pub struct Profile {
     harmonics: usize,
-    /// Length of the record, s.
-    length: f64,
+    /// Duration of the record, s.
+    duration: f64,
     total: f64,
     /// Rows of the record.
     rows: Nodes,
@@ -64,7 +64,7 @@ impl Profile {
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
-            length: time[time.len() - 1] - time[0],
+            duration: time[time.len() - 1] - time[0],
             total: centred.iter().map(|v| v * v).sum(),
             phasor: vec![[1.0, 0.0]; rows.time.len()],
             rows,
@@ -102,7 +102,7 @@ impl Profile {
 
     fn rss_of_phasor(&mut self, fundamental: f64) -> f64 {
         self.evaluations += 1;
-        let share = cosine_share(fundamental, self.length);
+        let share = cosine_share(fundamental, self.duration);
         accumulate(&self.rows, &self.phasor, share, self.harmonics, &mut self.sums);
         self.assemble(share);
         match explained(&mut self.gram, &mut self.right) {
@@ -140,7 +140,7 @@ impl Profile {
     /// RSS from an orthogonal decomposition, for columns that are nearly dependent on the given rows.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
         let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
-        let (n, share) = (self.harmonics, cosine_share(fundamental, self.length));
+        let (n, share) = (self.harmonics, cosine_share(fundamental, self.duration));
         let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
         // A pair of instants has the weight √2; a single instant has the sign of its side in `skew`.
         let root: Vec<f64> = weight[..*used].iter().map(|weight| weight.sqrt()).collect();
@@ -199,8 +199,8 @@ pub const MAX_HARMONICS: usize = 64;
 const MAX_COLUMNS: usize = 2 * MAX_HARMONICS + 1;
 
 /// Share sin² ¼wL of [−1, 1] covered by cos w u over a record of length L; 1 from one period on.
-fn cosine_share(fundamental: f64, length: f64) -> f64 {
-    (0.25 * fundamental * length).min(FRAC_PI_2).sin().powi(2)
+fn cosine_share(fundamental: f64, duration: f64) -> f64 {
+    (0.25 * fundamental * duration).min(FRAC_PI_2).sin().powi(2)
 }
 
 /// cos and sin of an angle.

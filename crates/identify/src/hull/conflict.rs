@@ -25,7 +25,7 @@ const CONFLICT_P_VALUE: f64 = 0.01;
 /// Result of the check of a prior against records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorCheck {
-    /// χ².
+    /// χ² of the fitted values against the prior.
     pub chi_square: f64,
     /// Number of directions of the check.
     pub degrees_of_freedom: usize,

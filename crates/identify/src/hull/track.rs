@@ -9,7 +9,7 @@ use super::error::{HullFitError, MAX_DURATION_LENGTHS, MAX_INTERVAL_LENGTHS, MIN
 /// Interval between averaged rows, in L/U₀.
 const SPACING: f64 = 0.05;
 
-/// Length of the windows of a restarted replay, in L/U₀: about half a period of a zig-zag.
+/// Duration of the windows of a restarted replay, in L/U₀: about half a period of a zig-zag.
 const WINDOW: f64 = 3.5;
 
 /// Time over which positions are differenced for a speed, in L/U₀: over a ship length errors of a position weigh
@@ -40,7 +40,7 @@ impl HullReference {
         Some(Self { length: particulars.length, speed: particulars.speed, propeller })
     }
 
-    /// L/U₀, s.
+    /// Ship-length time L/U₀, s.
     pub fn time(&self) -> f64 {
         self.length / self.speed
     }
@@ -92,9 +92,9 @@ impl HullTrack {
         }
     }
 
-    /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `length` (L/U₀), without
+    /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
     /// headings.
-    pub fn of_rudder(rudder: f64, length: f64) -> Self {
+    pub fn of_rudder(rudder: f64, duration: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
             rudder: vec![rudder; 2],
@@ -106,7 +106,7 @@ impl HullTrack {
             start: [1.0, 0.0],
             second: 1.0,
             speed: None,
-            time: vec![0.0, length],
+            time: vec![0.0, duration],
         }
     }
 
@@ -161,7 +161,7 @@ impl HullTrack {
         })
     }
 
-    /// Duration in L/U₀.
+    /// Duration of the track, L/U₀.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }

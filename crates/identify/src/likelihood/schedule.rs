@@ -2,7 +2,7 @@
 
 use estimation::kalman::Reading;
 
-use super::track::{Track, lengths_differ};
+use super::track::{Track, durations_differ};
 
 /// Index of the compass among the sensors.
 pub const HEADING: usize = 0;
@@ -13,18 +13,18 @@ pub const YAW_RATE: usize = 1;
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
-    /// Lengths of the pieces, s.
+    /// Durations of the pieces, s.
     pub pieces: Vec<f64>,
 }
 
 impl Span {
-    /// Length of the span, s.
+    /// Duration of the span, s.
     pub fn duration(&self) -> f64 {
         self.pieces.iter().sum()
     }
 
     fn has_pieces(&self, pieces: &[f64]) -> bool {
-        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(a, b)| !lengths_differ(*a, *b))
+        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(a, b)| !durations_differ(*a, *b))
     }
 }
 

@@ -14,7 +14,7 @@ use trial::Trial;
 pub use super::columns::MotionColumns;
 use super::columns::keep;
 
-/// Relative tolerance of equal step lengths: far below the resolution of a clock.
+/// Relative tolerance of equal step durations: far below the resolution of a clock.
 const STEP_TOLERANCE: f64 = 1e-9;
 
 /// Rudder, heading and yaw rate of one trial, from the first to the last row with a heading.
@@ -41,8 +41,8 @@ pub struct Track {
 /// Interval between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Interval {
-    /// Length, s.
-    length: f64,
+    /// Duration, s.
+    duration: f64,
     /// Rudder rate, rad/s, before the corner if there is one.
     rudder_rate: f64,
 }
@@ -64,8 +64,8 @@ pub struct TrackStep {
     pub from: usize,
     /// Row after the step.
     pub to: usize,
-    /// Signed length, s.
-    pub length: f64,
+    /// Signed duration, s.
+    pub duration: f64,
     /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
     /// Corner of the rudder within the step.
@@ -135,8 +135,8 @@ impl Track {
 
     fn from_rows(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
         let interval = |(t, delta): (&[f64], &[f64])| {
-            let length = t[1] - t[0];
-            Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
+            let duration = t[1] - t[0];
+            Interval { duration, rudder_rate: (delta[1] - delta[0]) / duration }
         };
         let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
         let (corners, observed_rates, rates) = (Vec::new(), Vec::new(), Vec::new());
@@ -186,7 +186,7 @@ impl Track {
         self.heading.is_empty()
     }
 
-    /// Duration, s.
+    /// Duration of the track, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
@@ -201,7 +201,7 @@ impl Track {
         let (mut passed, mut next) = (0, corner_at(0));
         (0..rows).map(move |k| {
             let row = if backward { rows - 1 - k } else { k };
-            let Interval { length, rudder_rate } = self.intervals[row];
+            let Interval { duration, rudder_rate } = self.intervals[row];
             let corner = next.filter(|corner| corner.row == row);
             if corner.is_some() {
                 passed += 1;
@@ -210,11 +210,11 @@ impl Track {
             if backward {
                 let bend = corner.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
                 let rudder_rate = corner.map_or(rudder_rate, |corner| corner.rudder_rate);
-                TrackStep { from: row + 1, to: row, length: -length, rudder_rate, bend }
+                TrackStep { from: row + 1, to: row, duration: -duration, rudder_rate, bend }
             } else {
                 let bend =
-                    corner.map(|c| RudderCorner { remaining: length - c.after, change: c.rudder_rate - rudder_rate });
-                TrackStep { from: row, to: row + 1, length, rudder_rate, bend }
+                    corner.map(|c| RudderCorner { remaining: duration - c.after, change: c.rudder_rate - rudder_rate });
+                TrackStep { from: row, to: row + 1, duration, rudder_rate, bend }
             }
         })
     }
@@ -266,9 +266,9 @@ impl Track {
     fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
-        for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if lengths_differ(step.h, length) {
-                step = Transition::new(inverse_time, length);
+        for TrackStep { from, to, duration, rudder_rate: rate, bend } in self.steps(backward) {
+            if durations_differ(step.h, duration) {
+                step = Transition::new(inverse_time, duration);
             }
             let delta = self.rudder[from];
             let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
@@ -321,9 +321,9 @@ impl Track {
         let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
         let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for TrackStep { from, to, length, rudder_rate: slope, bend } in self.steps(backward) {
-            if lengths_differ(step.value.h, length) {
-                step = TangentTransition::new(inverse_time, length);
+        for TrackStep { from, to, duration, rudder_rate: slope, bend } in self.steps(backward) {
+            if durations_differ(step.value.h, duration) {
+                step = TangentTransition::new(inverse_time, duration);
             }
             let (f, d, delta) = (&step.value, &step.by_inverse_T, self.rudder[from]);
             let forced = |[one, two]: [f64; 2]| [0.0, one * delta + two * slope, one, 0.0];
@@ -363,9 +363,9 @@ impl Track {
         // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for TrackStep { from, to, length, rudder_rate: rate, bend } in self.steps(backward) {
-            if lengths_differ(step.value.h, length) {
-                step = TangentTransition::new(inverse_time, length);
+        for TrackStep { from, to, duration, rudder_rate: rate, bend } in self.steps(backward) {
+            if durations_differ(step.value.h, duration) {
+                step = TangentTransition::new(inverse_time, duration);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
@@ -415,9 +415,9 @@ impl Track {
         let mut state = coefficients.anchor;
         visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_time, 0.0);
-        for TrackStep { from, to, length, rudder_rate, bend } in self.steps(backward) {
-            if lengths_differ(step.h, length) {
-                step = Transition::new(inverse_time, length);
+        for TrackStep { from, to, duration, rudder_rate, bend } in self.steps(backward) {
+            if durations_differ(step.h, duration) {
+                step = Transition::new(inverse_time, duration);
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
             state = step.advance(state, u0, coefficients.gain * rudder_rate);
@@ -433,6 +433,6 @@ impl Track {
 
 /// `true` if a step requires a transition other than that of the last step.
 #[inline(always)]
-pub fn lengths_differ(last: f64, h: f64) -> bool {
+pub fn durations_differ(last: f64, h: f64) -> bool {
     (last - h).abs() > STEP_TOLERANCE * h.abs()
 }

@@ -33,7 +33,7 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
     let mut whole = match parameters.rudder {
         None => undisturbed(parameters, span.duration()),
         Some(size) => {
-            let piece = |&length: &f64| with_rudder(undisturbed(parameters, length), parameters, size, length);
+            let piece = |&duration: &f64| with_rudder(undisturbed(parameters, duration), parameters, size, duration);
             let mut pieces = span.pieces.iter().map(piece);
             let first = pieces.next().unwrap_or(Step { transition: identity(), process_noise: [[0.0; N]; N] });
             pieces.fold(first, |before, piece| before.followed_by(&piece))
@@ -48,10 +48,10 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
 }
 
 /// Step of ship and moment, without rudder error.
-fn undisturbed<const N: usize>(parameters: &NoiseParameters, length: f64) -> Step<N> {
+fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> Step<N> {
     let rates = parameters.inverse_time.abs() + parameters.rate;
-    let doublings = (rates * length / MAX_SCALED_STEP).log2().ceil().max(0.0);
-    let (mut f, mut q) = short(parameters, length / doublings.exp2());
+    let doublings = (rates * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);
+    let (mut f, mut q) = short(parameters, duration / doublings.exp2());
     for _ in 0..doublings as usize {
         q = sum(&q, &congruence(&f, &q));
         f = product(&f, &f);
@@ -67,10 +67,10 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, length: f64) -> Ste
 }
 
 /// Adds the error of the recorded rudder at both ends of a piece, between which it is linear.
-fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, size: f64, length: f64) -> Step<N> {
+fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, size: f64, duration: f64) -> Step<N> {
     let Some(place) = parameters.rudder_state() else { return step };
-    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_time, length);
-    let after = [phi3 / length, phi2 / length];
+    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_time, duration);
+    let after = [phi3 / duration, phi2 / duration];
     let before = [phi2 - after[0], phi1 - after[1]];
     let mut fresh = [0.0; N];
     for i in 0..2 {

@@ -85,7 +85,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
             })
             .collect();
         let count = entries.len();
-        let information = maximum.linearised.information.view((first, first), (count, count)).into_owned();
+        let information = maximum.derivatives.information.view((first, first), (count, count)).into_owned();
         let ridge = DMatrix::from_fn(count, count, |i, j| if i == j { 1e-9 * information[(i, i)] + 1e-9 } else { 0.0 });
         let factor = (information + ridge).cholesky();
         let is_tied = vector.rudder && record.declared.is_some();
@@ -96,7 +96,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
             let by_size = change(&(motions[number] * -2.0));
             let mut slopes = DVector::from_iterator(count, by_entry.iter().map(change));
             if !is_tied {
-                slopes -= &maximum.linearised.totals[number] * (by_size / (2.0 * readings));
+                slopes -= &maximum.derivatives.totals[number] * (by_size / (2.0 * readings));
                 *variance += by_size * by_size / (2.0 * readings);
             }
             *variance += factor.as_ref().map_or(0.0, |factor| slopes.dot(&factor.solve(&slopes)));
@@ -113,7 +113,7 @@ fn averaged_covariance(chosen: &ChosenLaw, freedom: f64) -> (Matrix3<f64>, f64) 
     let here = estimate_of(&chosen.maxima[0].1.point);
     let (mut total, mut weights, mut per_freedom) = (Matrix3::zeros(), 0.0, 0.0);
     for (weight, maximum) in &chosen.maxima {
-        let Ok((within, _)) = covariance(&maximum.linearised.information) else { continue };
+        let Ok((within, _)) = covariance(&maximum.derivatives.information) else { continue };
         let shift = estimate_of(&maximum.point) - here;
         total += (within + shift * shift.transpose()) * *weight;
         weights += weight;
@@ -132,14 +132,14 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let jumps: usize = records.iter().map(|record| record.jumps.len()).sum();
     let freedom = readings as f64 - (SHARED_PARAMETERS + 2 * trials.len() + jumps) as f64;
     let singular = |condition| IdentifyError::Singular { condition, limit: CONDITION_LIMIT };
-    let (inverse, condition) = covariance(&maximum.linearised.information).map_err(singular)?;
+    let (inverse, condition) = covariance(&maximum.derivatives.information).map_err(singular)?;
     let (averaged, degrees_of_freedom) = averaged_covariance(&chosen, freedom);
     let white = response_covariance(&averaged, &response, degrees_of_freedom);
     let gain_sd = white.matrix[(1, 1)].sqrt();
     if gain < MIN_GAIN_DEVIATIONS * gain_sd {
         return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
     }
-    let scores: Vec<[Vec<f64>; 3]> = (maximum.linearised.scores.iter().zip(parts))
+    let scores: Vec<[Vec<f64>; 3]> = (maximum.derivatives.scores.iter().zip(parts))
         .map(|(scores, part)| scores.each_ref().map(|column| column.iter().map(|x| x / part.variance).collect()))
         .collect();
     let long_run = robust::newey_west_of_three(&scores) * (readings as f64 / freedom);

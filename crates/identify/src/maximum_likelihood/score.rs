@@ -16,7 +16,7 @@ const DIFFERENCE: f64 = 1e-4;
 
 /// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the noise vectors, record by
 /// record.
-pub(super) struct Linearised {
+pub(super) struct ScoreAndInformation {
     /// Derivative of −log L with respect to 1/T, and of the restricted likelihood with respect to the entries; zero for
     /// b and b δ_r, which are at their optimum.
     pub score: DVector<f64>,
@@ -28,12 +28,12 @@ pub(super) struct Linearised {
     pub totals: Vec<DVector<f64>>,
 }
 
-/// Score and information at a point.
-pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
+/// Score and information at a point; `None` if they are not finite.
+pub(super) fn score_and_information(records: &[Record], point: &Point) -> Option<ScoreAndInformation> {
     let count = |(record, vector): (&Record, &NoiseVector)| vector.active_entries(record.has_gyro()).count();
     let counts: Vec<usize> = records.iter().zip(&point.vectors).map(count).collect();
     let unknowns = SHARED_PARAMETERS + counts.iter().sum::<usize>();
-    let mut all = Linearised {
+    let mut all = ScoreAndInformation {
         score: DVector::zeros(unknowns),
         information: DMatrix::zeros(unknowns, unknowns),
         scores: Vec::with_capacity(records.len()),
@@ -73,7 +73,7 @@ impl Slope {
     }
 }
 
-impl Linearised {
+impl ScoreAndInformation {
     /// Adds the contribution of a record, whose noise entries have these indices among the unknowns. `None` if it is
     /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {

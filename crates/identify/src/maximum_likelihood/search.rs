@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::point::{Point, Record, SHARED_PARAMETERS, evaluate};
-use super::score::{Linearised, linearise};
+use super::score::{ScoreAndInformation, score_and_information};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
 use trial::noise_model::MomentKind;
@@ -32,7 +32,7 @@ const MAX_LOG_STEP: f64 = 2.5;
 /// Scales of one record that set the ranges of the logarithms and the starts of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ranges {
-    /// Length of the record and usual time between its readings, s.
+    /// Duration of the record and usual time between its readings, s.
     pub duration: f64,
     pub spacing: f64,
     /// Root mean square residual of a fit without a moment, in units of the white part.
@@ -87,7 +87,7 @@ pub(super) struct Search<'a> {
 /// Maximum of the likelihood that a search found.
 pub(super) struct Maximum {
     pub point: Point,
-    pub linearised: Linearised,
+    pub derivatives: ScoreAndInformation,
     pub converged: bool,
 }
 
@@ -98,11 +98,11 @@ impl Search<'_> {
         evaluate(self.records, inverse_time, vectors)
     }
 
-    fn linearise(&mut self, point: &Point) -> Option<Linearised> {
-        let linearised = linearise(self.records, point)?;
+    fn score_and_information(&mut self, point: &Point) -> Option<ScoreAndInformation> {
+        let derivatives = score_and_information(self.records, point)?;
         // One filter for 1/T and one for every entry.
-        self.evaluations += 1 + linearised.score.len() - SHARED_PARAMETERS;
-        Some(linearised)
+        self.evaluations += 1 + derivatives.score.len() - SHARED_PARAMETERS;
+        Some(derivatives)
     }
 
     /// Start with the lowest −2 log L, or restricted −2 log L if only the noise differs.
@@ -187,18 +187,18 @@ impl Search<'_> {
     /// likelihood to the last digit.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
-        let mut linearised = self.linearise(&point)?;
-        let mut free = self.free(&point, &linearised.score);
-        let mut inverse = inverse_information(&linearised, &free);
+        let mut derivatives = self.score_and_information(&point)?;
+        let mut free = self.free(&point, &derivatives.score);
+        let mut inverse = inverse_information(&derivatives, &free);
         for _ in 0..self.iterations {
-            let score = picked(&linearised.score, &free);
+            let score = picked(&derivatives.score, &free);
             let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
-                return Some(Maximum { point, linearised, converged: false });
+                return Some(Maximum { point, derivatives, converged: false });
             };
             let promise = -step.dot(&score);
             let settled = if free.len() > 1 { MIN_DECREASE } else { MIN_DECREASE_ALONE };
             if promise <= settled {
-                return Some(Maximum { point, linearised, converged: true });
+                return Some(Maximum { point, derivatives, converged: true });
             }
             let largest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
@@ -213,19 +213,19 @@ impl Search<'_> {
             });
             let Some(lower) = lower else {
                 // No step decreases it any further: a minimum to rounding.
-                return Some(Maximum { point, linearised, converged: promise < SLACK });
+                return Some(Maximum { point, derivatives, converged: promise < SLACK });
             };
             point = lower;
-            linearised = self.linearise(&point)?;
-            let now = self.free(&point, &linearised.score);
+            derivatives = self.score_and_information(&point)?;
+            let now = self.free(&point, &derivatives.score);
             if now == free && share == 1.0 {
-                update(&mut inverse, &step, &(picked(&linearised.score, &free) - score));
+                update(&mut inverse, &step, &(picked(&derivatives.score, &free) - score));
             } else {
-                inverse = inverse_information(&linearised, &now);
+                inverse = inverse_information(&derivatives, &now);
                 free = now;
             }
         }
-        Some(Maximum { point, linearised, converged: false })
+        Some(Maximum { point, derivatives, converged: false })
     }
 
     /// Indices of the free unknowns in the score: an entry at the edge of its range is free only if the score points
@@ -270,8 +270,8 @@ fn picked(score: &DVector<f64>, free: &[usize]) -> DVector<f64> {
 }
 
 /// Inverse information of the free unknowns with b and b δ_r following.
-fn inverse_information(linearised: &Linearised, free: &[usize]) -> Option<DMatrix<f64>> {
-    let information = reduced(&linearised.information, free)?;
+fn inverse_information(derivatives: &ScoreAndInformation, free: &[usize]) -> Option<DMatrix<f64>> {
+    let information = reduced(&derivatives.information, free)?;
     let scale = DVector::from_iterator(free.len(), information.diagonal().iter().map(|x| x.sqrt().recip()));
     if scale.iter().any(|x| !x.is_finite()) {
         return None;

@@ -6,7 +6,7 @@ use trial::Noise;
 
 use super::choice::PreparedRecords;
 use super::point::{Record, evaluate};
-use super::score::linearise;
+use super::score::score_and_information;
 use trial::noise_model::{MomentKind, NoiseModel};
 
 use super::*;
@@ -116,13 +116,13 @@ fn the_score_is_the_derivative() {
         ];
         let a = 0.063;
         let point = evaluate(&records, a, &vectors).expect("a fit");
-        let linearised = linearise(&records, &point).expect("a fit");
+        let derivatives = score_and_information(&records, &point).expect("a fit");
         // With respect to 1/T: the likelihood with all other unknowns at their optimum.
         let height = |a: f64| evaluate(&records, a, &vectors).expect("a fit").deviance;
         let numeric = 0.5 * (height(a + 1e-6) - height(a - 1e-6)) / 2e-6;
         // The sizes of the compass errors, and so the weights of the records, come from the restricted likelihood: the
         // two differ by the fitted unknowns.
-        assert_relative_eq!(linearised.score[0], numeric, max_relative = 0.05);
+        assert_relative_eq!(derivatives.score[0], numeric, max_relative = 0.05);
         let mut at = 3;
         for number in 0..2 {
             for entry in vectors[number].active_entries(records[number].has_gyro()) {
@@ -132,7 +132,7 @@ fn the_score_is_the_derivative() {
                     evaluate(&records, a, &vectors).expect("a fit").restricted
                 };
                 let numeric = 0.5 * (height(1e-4) - height(-1e-4)) / 2e-4;
-                assert_relative_eq!(linearised.score[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
+                assert_relative_eq!(derivatives.score[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
                 at += 1;
             }
         }

@@ -7,7 +7,7 @@ use plotters::style::colors::colormaps::ViridisRGB;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
-use crate::axis::{self, Axis, Division};
+use crate::axis::{self, Axis, TickRule};
 use crate::backend::{PlotResult, SvgGroup};
 use crate::canvas::{Rect, Stroke, TextLine};
 use crate::chart::Chart;
@@ -45,9 +45,9 @@ pub enum Outline {
 /// Mapping from values to colours.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shades {
-    /// Colours from the lowest to the highest value over an axis of this division; a bar under the panels shows the
+    /// Colours from the lowest to the highest value over an axis with this tick rule; a bar under the panels shows the
     /// values, with this title and unit.
-    Range(Division, String),
+    Range(TickRule, String),
     /// Per cent from white to blue; zero is empty.
     Shares,
 }
@@ -129,7 +129,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
     let mut sheet = Sheet::new(theme, finding)?;
     let outlines = [
         (Outline::Right, SOLID, "right"),
-        (Outline::Alias, DOTTED, "mostly cannot be told from it"),
+        (Outline::Alias, DOTTED, "mostly indistinguishable from it"),
         (Outline::Finding, SOLID, "in the title"),
     ];
     let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
@@ -153,8 +153,8 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
         chart.frame(theme)?;
         cells.iter().try_for_each(|cell| cell.label(chart))?;
     }
-    if let Shades::Range(division, title) = &data.shades {
-        bar(&mut sheet, *division, title, &shading)?;
+    if let Shades::Range(tick_rule, title) = &data.shades {
+        bar(&mut sheet, *tick_rule, title, &shading)?;
     }
     let undefined = data.all().any(|cell| cell.value.is_none()).then_some("– is not defined.");
     let small = data.has_intervals(theme).then_some("Small: 95 % intervals, where there is room.");
@@ -166,16 +166,16 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
 const PIECES: usize = 64;
 
 /// Draws the colour bar with its values under the panels; no bar for one value or none.
-fn bar(sheet: &mut Sheet, division: Division, title: &str, shading: &Shading) -> PlotResult {
+fn bar(sheet: &mut Sheet, tick_rule: TickRule, title: &str, shading: &Shading) -> PlotResult {
     if shading.high <= shading.low {
         return Ok(());
     }
     let theme = sheet.theme.clone();
     let value = |along: f64| if shading.is_log { 10f64.powf(along) } else { along };
     let (low, high) = (value(shading.low), value(shading.high));
-    let axis = match division {
-        Division::Factors => Axis::log_covering(&[low, high]).between(low, high),
-        _ => Axis::linear(low, high, Division::Decimal),
+    let axis = match tick_rule {
+        TickRule::Logarithmic => Axis::log_covering(&[low, high]).between(low, high),
+        _ => Axis::linear(low, high, TickRule::Decimal),
     };
     let rows = vec![(AxisSide::new(Axis::rows(&[], 0.5), ""), 0.9 * theme.small_font)];
     let grid = Grid { columns: vec![AxisSide::new(axis, title)], rows, ..Grid::default() };
@@ -207,7 +207,7 @@ struct Shading {
 
 impl Shading {
     fn of(data: &CellMap) -> Self {
-        let is_log = matches!(data.shades, Shades::Range(Division::Factors, _));
+        let is_log = matches!(data.shades, Shades::Range(TickRule::Logarithmic, _));
         let is_shares = data.is_shares();
         let along = |value: f64| if is_log { value.log10() } else { value };
         let (low, high) = axis::range(data.all().filter_map(|cell| Some(along(cell.value?)))).unwrap_or_default();

@@ -8,7 +8,7 @@ use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, P
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
 use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, draw_record, spread_overlapping, zero_stroke};
 use super::side_labels;
-use crate::axis::{Axis, Division};
+use crate::axis::{Axis, TickRule};
 use crate::backend::{PlotResult, SvgGroup, UNITS, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::chart::Chart;
@@ -263,7 +263,7 @@ fn equalise(grid: &mut Grid, width: f64) {
     for (axis, points) in sides {
         let middle = 0.5 * (axis.ends().0 + axis.ends().1);
         let half = 0.5 * scale * points;
-        *axis = Axis::linear(middle - half, middle + half, Division::Decimal);
+        *axis = Axis::linear(middle - half, middle + half, TickRule::Decimal);
     }
 }
 
@@ -346,7 +346,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
             for ((x, y), heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
                 let (sine, cosine) = heading.to_radians().sin_cos();
                 let ship = |place| ship_outline(page_units(place), (sine, -cosine), 1.6 * theme.small_font, *colour);
-                chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.elements(ship))?;
+                chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.draw_elements(ship))?;
             }
         }
         LayerKind::Words(..) => {}
@@ -422,7 +422,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     let size = theme.marker * if joined.is_some() { 0.9 } else { 1.0 };
     chart.canvas.svg.begin(SvgGroup::named(name));
     for place in places.iter().filter(|place| is_inside(place)).flatten() {
-        chart.canvas.elements(marker(page_units(*place), size, look))?;
+        chart.canvas.draw_elements(marker(page_units(*place), size, look))?;
     }
     chart.canvas.svg.end();
     for (x, y) in places.iter().filter(|place| !is_inside(place)).flatten() {

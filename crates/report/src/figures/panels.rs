@@ -4,7 +4,7 @@
 
 use super::reach::{AxisReach, Extents};
 use super::shared::{Reference95, record_symbol};
-pub use crate::axis::Division;
+pub use crate::axis::TickRule;
 
 use plotters::style::RGBColor;
 
@@ -16,41 +16,41 @@ use crate::markup::symbol;
 use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
 use crate::theme::Theme;
 
-/// Specification of an axis: title with unit, tick division, and limits.
+/// Specification of an axis: title with unit, tick rule and limits.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AxisSpec {
     /// Title with the unit.
     pub title: String,
-    /// Division of the axis.
-    pub division: Division,
+    /// Rule by which the axis places its ticks.
+    pub tick_rule: TickRule,
     /// Reach of the axis for wild data; `None`: all data.
     pub reach: Option<AxisReach>,
 }
 
 impl AxisSpec {
     /// Axis over all data.
-    pub fn new(title: impl Into<String>, division: Division) -> Self {
-        Self { title: title.into(), division, reach: None }
+    pub fn new(title: impl Into<String>, tick_rule: TickRule) -> Self {
+        Self { title: title.into(), tick_rule, reach: None }
     }
 
     /// Axis of decimal numbers.
     pub fn decimal(title: impl Into<String>) -> Self {
-        Self::new(title, Division::Decimal)
+        Self::new(title, TickRule::Decimal)
     }
 
     /// Axis of time in seconds.
     pub fn time() -> Self {
-        Self::new(format!("time {} [s]", symbol("t")), Division::Time)
+        Self::new(format!("time {} [s]", symbol("t")), TickRule::Time)
     }
 
     /// Axis of heading in degrees.
     pub fn heading() -> Self {
-        Self::new(format!("heading {} [°]", symbol("ψ")), Division::Angle)
+        Self::new(format!("heading {} [°]", symbol("ψ")), TickRule::Angle)
     }
 
     /// Axis of rudder angle in degrees.
     pub fn rudder() -> Self {
-        Self::new(format!("rudder {} [°]", symbol("δ")), Division::Angle)
+        Self::new(format!("rudder {} [°]", symbol("δ")), TickRule::Angle)
     }
 
     /// Axis of yaw rate in degrees per second.
@@ -70,14 +70,14 @@ impl AxisSpec {
 
     /// The axis over some data with free space at the ends, and whether data are cut.
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
-        match self.division {
-            Division::Factors => return (Axis::log_covering(&data.positive()), false),
-            Division::Percent => return (Axis::linear(-3.0, 103.0, Division::Percent), false),
+        match self.tick_rule {
+            TickRule::Logarithmic => return (Axis::log_covering(&data.positive()), false),
+            TickRule::Percent => return (Axis::linear(-3.0, 103.0, TickRule::Percent), false),
             _ => {}
         }
-        let pad = if self.division == Division::Time { 0.0 } else { pad };
+        let pad = if self.tick_rule == TickRule::Time { 0.0 } else { pad };
         let (ends, is_cut) = data.ends(self.reach);
-        (Axis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, self.division), is_cut)
+        (Axis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, self.tick_rule), is_cut)
     }
 }
 

@@ -6,7 +6,7 @@ use plotters::style::{Color as _, RGBColor};
 use super::reach::{Extents, MAX_INTERVAL_SHARE};
 use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use super::shared::{BEYOND_AXIS_REMARK, Bars, Reference95, zero_stroke};
-use crate::axis::{Axis, Division};
+use crate::axis::{Axis, TickRule};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::{Bar, Chart};
@@ -194,7 +194,7 @@ fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
     let hi = if lo == hi { 1.0 } else { hi };
-    Axis::linear(lo, hi, Division::Decimal).with_room(room)
+    Axis::linear(lo, hi, TickRule::Decimal).with_room(room)
 }
 
 /// Draws the rows of a column; returns whether data are beyond its axis.

@@ -55,23 +55,23 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             Layer::marks("shares", look, points(0.7)),
         ]
     };
-    let row = |division| PanelRow {
+    let row = |tick_rule| PanelRow {
         levels: vec![-0.1, 0.1],
         reference: Some(Reference95 { value: 0.5, band: [0.4, 0.6] }),
-        ..PanelRow::zeroed(AxisSpec::new("moment [° rudder]", division), 0.2)
+        ..PanelRow::zeroed(AxisSpec::new("moment [° rudder]", tick_rule), 0.2)
     };
-    let stack = |division, is_half| {
-        let mut stack = Stack::over(AxisSpec::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
+    let stack = |tick_rule, is_half| {
+        let mut stack = Stack::over(AxisSpec::new("yaw rate [°/s]", tick_rule), vec![(row(tick_rule), layers())]);
         stack.panels[0].head = Some("explains 93 %".into());
         let marks = vec![AxisLine { value: 0.5, label: "period".into() }];
         Stack { marks, is_half, zero: true, ..stack }
     };
     let layered = Panels {
         stacks: vec![
-            stack(Division::Time, false),
-            stack(Division::Decimal, true),
-            stack(Division::Factors, true),
-            stack(Division::Percent, true),
+            stack(TickRule::Time, false),
+            stack(TickRule::Decimal, true),
+            stack(TickRule::Logarithmic, true),
+            stack(TickRule::Percent, true),
         ],
         key_texts: vec!["R² = 1".into()],
         cut: Some("Cut.".into()),
@@ -98,7 +98,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     };
     let marks = Stack::over(
         ruler("noise [°]"),
-        vec![(PanelRow { height: 0.3, ..row(Division::Factors) }, methods().enumerate().map(named).collect())],
+        vec![(PanelRow { height: 0.3, ..row(TickRule::Logarithmic) }, methods().enumerate().map(named).collect())],
     );
     let ships = LayerKind::Ships(INK, vec![wild, 10.0]);
     let track = vec![
@@ -153,7 +153,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         names_title: "rates [°/s]".into(),
         names: names.clone(),
         columns: vec![
-            column(AxisSpec::new("rms error [%]", Division::Factors), false),
+            column(AxisSpec::new("rms error [%]", TickRule::Logarithmic), false),
             column(AxisSpec::decimal("coverage [%]").within(4.0, Some(0.0)), true),
         ],
         shaded: Some(("as fitted".into(), vec![0])),
@@ -180,7 +180,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     };
     vec![
         ("rows", rows.into()),
-        ("map", map(Shades::Range(Division::Factors, "rms error of K [%]".into()), 8).into()),
+        ("map", map(Shades::Range(TickRule::Logarithmic, "rms error of K [%]".into()), 8).into()),
         ("shares", map(Shades::Shares, 1).into()),
     ]
 }
@@ -296,7 +296,7 @@ fn labels_carry_symbol_and_unit() {
         ("zigzag", "period 85.0 s"),
         ("clouds", "no estimate"),
         ("map", "– is not defined."),
-        ("shares", "mostly cannot be told from it"),
+        ("shares", "mostly indistinguishable from it"),
         ("track", "drawn ships"),
         ("aside", "maximum-likelihood"),
     ] {
@@ -395,7 +395,7 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];
         Layer::marks(name, CurveOrigin::After.look(), points).with_line(Pen::new(INK))
     };
-    let row = PanelRow::new(AxisSpec::new("rms error of T [%]", Division::Factors), 0.3);
+    let row = PanelRow::new(AxisSpec::new("rms error of T [%]", TickRule::Logarithmic), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
     let data = Panels::new(Stack::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();

@@ -131,7 +131,7 @@ pub struct SwayCoupling<R = f64> {
 
 /// Quantities on which an effect acts in addition to its own states; other quantities are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Targets {
+pub struct ActsOn {
     /// `true` if the effect transforms the acting rudder.
     pub rudder: bool,
     /// `true` if the effect scales damping and gain.
@@ -140,7 +140,7 @@ pub struct Targets {
     pub moment: bool,
 }
 
-impl Targets {
+impl ActsOn {
     /// No quantity.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
@@ -211,7 +211,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect>;
 
     /// Quantities on which the effect acts.
-    fn targets(&self) -> Targets;
+    fn acts_on(&self) -> ActsOn;
 
     /// Number of states of the effect.
     fn states(&self) -> usize {

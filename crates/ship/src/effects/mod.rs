@@ -20,12 +20,12 @@ mod second_order;
 mod speed_loss;
 mod steering_lag;
 mod transient_disturbance;
-mod wave_yaw;
+mod wave_heading;
 
 pub use backlash::Backlash;
 pub use effect::{
-    Action, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
-    RecordScales, SwayCoupling, Targets,
+    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
+    RecordScales, SwayCoupling,
 };
 pub use file_number::{FileNumber, FileRole};
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
@@ -34,7 +34,7 @@ pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;
 pub use steering_lag::SteeringLag;
 pub use transient_disturbance::TransientDisturbance;
-pub use wave_yaw::WaveYaw;
+pub use wave_heading::WaveHeading;
 
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use super::file_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
@@ -140,8 +140,8 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn targets(&self) -> Targets {
-        Targets::SCALE
+    fn acts_on(&self) -> ActsOn {
+        ActsOn::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {

@@ -1,7 +1,7 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use estimation::number::Real;
 
@@ -53,10 +53,10 @@ impl Effect for SteeringLag {
         })
     }
 
-    fn targets(&self) -> Targets {
+    fn acts_on(&self) -> ActsOn {
         match self {
-            Self::DeadTime => Targets::NONE,
-            Self::FirstOrder => Targets::RUDDER,
+            Self::DeadTime => ActsOn::NONE,
+            Self::FirstOrder => ActsOn::RUDDER,
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales, Targets,
+    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
@@ -79,21 +79,21 @@ impl Effect for TransientDisturbance {
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let RecordScales { spacing, span: [start, end], .. } = *records;
-        let length = end - start;
+        let duration = end - start;
         let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
-            let instant = Prior::uniform([start + END_MARGIN_SHARE * length, end - END_MARGIN_SHARE * length]);
+            let instant = Prior::uniform([start + END_MARGIN_SHARE * duration, end - END_MARGIN_SHARE * duration]);
             return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
         }
         // A squall begins and ends within the record.
-        let margin = MAX_DURATION_SHARE * 0.25 * length;
-        let duration = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * length];
-        let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(duration)];
+        let margin = MAX_DURATION_SHARE * 0.25 * duration;
+        let range = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * duration];
+        let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(range)];
         Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }
 
-    fn targets(&self) -> Targets {
-        Targets::MOMENT
+    fn acts_on(&self) -> ActsOn {
+        ActsOn::MOMENT
     }
 
     fn min_time_constant(&self, p: &[f64]) -> f64 {

@@ -2,14 +2,14 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{Action, CandidateEffect, Description, Effect, Parameter, RecordScales, Targets};
+use super::effect::{Action, ActsOn, CandidateEffect, Description, Effect, Parameter, RecordScales};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
 
 /// Wave yaw ξ'' + 2ζω₀ ξ' + ω₀² ξ = w, added to the observed heading; the deterministic response ignores it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WaveYaw;
+pub struct WaveHeading;
 
 #[rustfmt::skip]
 const PARAMETERS: [Parameter; 3] = [
@@ -21,7 +21,7 @@ const PARAMETERS: [Parameter; 3] = [
         .in_file("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
 ];
 
-impl Effect for WaveYaw {
+impl Effect for WaveHeading {
     fn description(&self) -> Description {
         Description {
             id: "wave_yaw",
@@ -36,8 +36,8 @@ impl Effect for WaveYaw {
         None
     }
 
-    fn targets(&self) -> Targets {
-        Targets::NONE
+    fn acts_on(&self) -> ActsOn {
+        ActsOn::NONE
     }
 
     fn is_environmental(&self) -> bool {
@@ -49,4 +49,4 @@ impl Effect for WaveYaw {
     }
 }
 
-impl<R: Real> Action<R> for WaveYaw {}
+impl<R: Real> Action<R> for WaveHeading {}

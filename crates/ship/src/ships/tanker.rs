@@ -15,9 +15,9 @@ use crate::vessel::Hull;
 /// Length and approach speed, at which the propeller turns at 80 rpm.
 const PARTICULARS: Particulars = Particulars { length: 304.8, speed: 8.23 };
 
-/// 1 − X_u̇, 1 − Y_v̇ and k_z² − N_ṙ.
+/// Coefficients 1 − X_u̇, 1 − Y_v̇ and k_z² − N_ṙ of the accelerations, dimensionless in the bis system.
 const INERTIA: [f64; 3] = [1.050, 2.020, 0.1232];
-/// 1 + X_vr, Y_ur − 1 and N_ur − x_G.
+/// Coefficients 1 + X_vr, Y_ur − 1 and N_ur − x_G of the yaw rate, dimensionless in the bis system.
 const TURNING: [f64; 3] = [2.020, -0.752, -0.231];
 
 /// uu, un and nn of the thrust T, and thrust deduction; un and nn of c².

@@ -1,4 +1,4 @@
-//! Samples for other programs, `draws.parquet`: ships of a prediction, or estimates of a fit or a trace, one row each.
+//! Draws for other programs, `draws.parquet`: ships of a prediction, or estimates of a fit or a trace, one row each.
 
 use std::collections::BTreeMap;
 
@@ -6,18 +6,18 @@ use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
 use campaign::parquet_table::{self, Values};
 use document::IdentifiedShip;
-use predict::{EstimateSampler, PredictDocument, SampledEstimate, SampledParameters};
+use predict::{DrawnEstimate, DrawnParameters, EstimateSampler, PredictDocument};
 
-/// Name of the file.
+/// Name of the file with the drawn ships or estimates.
 pub const DRAWS: &str = "draws.parquet";
 
 /// Columns of a prediction: number of the ship, its parameters, and its characteristics in every manoeuvre; missing if
 /// a structure or a ship lacks them.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
-    let numbers = |pick: fn(&SampledParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
-    let texts = |pick: &dyn Fn(&SampledParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
-    let file = |draw: &SampledParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
+    let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
+    let texts = |pick: &dyn Fn(&DrawnParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
+    let file = |draw: &DrawnParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
     let parameters = parameter_columns(drawn.iter().map(|ship| &ship.parameters[..]).collect());
     let figures = predicted.manoeuvres.iter().flat_map(|manoeuvre| {
         let name = move |figure: &String| format!("figure.{}.{figure}", manoeuvre.kind);
@@ -50,11 +50,11 @@ fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (Strin
     columns.into_iter().map(|(name, values)| (name, Values::Numbers(values)))
 }
 
-/// One sample of an estimate.
+/// One draw from an estimate.
 struct EstimateRow<'a> {
     number: u32,
     method: &'a str,
-    drawn: SampledEstimate,
+    drawn: DrawnEstimate,
 }
 
 impl EstimateRow<'_> {
@@ -84,7 +84,7 @@ fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
     .collect()
 }
 
-/// Writes the given number of samples of every estimate, under the name of its method, with this seed.
+/// Writes the given number of draws from every estimate, under the name of its method, with this seed.
 ///
 /// Fails if an estimate cannot be sampled, or if the file cannot be written.
 pub fn write_estimates<'a>(
@@ -101,7 +101,7 @@ pub fn write_estimates<'a>(
     keep_columns(folder, estimate_columns(&rows))
 }
 
-/// Writes the sampled ships of a prediction. Fails if the file cannot be written.
+/// Writes the drawn ships of a prediction. Fails if the file cannot be written.
 pub fn write_ships(folder: &ResultFolder, predicted: &PredictDocument) -> Result<(), Failure> {
     keep_columns(folder, columns(predicted))
 }

@@ -98,7 +98,7 @@ fn records_of(document: &Value) -> Vec<(String, String)> {
     fitted.filter_map(|record| Some((text(&record["file"])?, text(&record["sha256"])?))).collect()
 }
 
-/// Text with the first of some files and the number of further ones.
+/// `a.csv and 3 more`: the first file, and the number of the others.
 fn few(files: &[String]) -> String {
     match files {
         [only] => only.clone(),

@@ -5,7 +5,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
 use campaign::statistics::MIN_SUMMARISED;
-use report::figures::{AxisSpec, Division, NamedRows, Reference95, RowItem, RowKind, RowsColumn};
+use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
 
@@ -111,7 +111,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         RowsColumn {
             x: AxisSpec::new(
                 format!("score ratio, {} (n = {})", axis_title(board.task), board.cases),
-                Division::Factors,
+                TickRule::Logarithmic,
             ),
             reference: Some(Reference95::line(1.0)),
             rows: rivals.iter().map(row).collect(),

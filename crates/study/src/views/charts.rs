@@ -2,8 +2,8 @@
 
 use campaign::scenario::TRACE;
 use report::figures::{
-    AxisLine, AxisSpec, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem,
-    RowKind, RowsColumn, Stack,
+    AxisLine, AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind,
+    RowsColumn, Stack, TickRule,
 };
 use report::{CurveOrigin, PlotCurve};
 
@@ -53,7 +53,7 @@ impl ErrorMeasure {
     fn ruler(self, panel: usize, title: String) -> AxisSpec {
         let is_log =
             matches!(self, Self::Rms | Self::OverBound | Self::Validation) || self == Self::Coverage && panel > 1;
-        AxisSpec::new(title, if is_log { Division::Factors } else { Division::Decimal })
+        AxisSpec::new(title, if is_log { TickRule::Logarithmic } else { TickRule::Decimal })
     }
 
     /// Statistic of one panel.
@@ -338,7 +338,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
     let positive = || values.iter().copied().filter(|value| *value > 0.0);
     let (least, most) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let is_wide = values.iter().all(|value| *value >= 0.0) && most > MIN_LOG_AXIS_RATIO * least;
-    let across = AxisSpec::new(design.axes[x].clone(), if is_wide { Division::Factors } else { Division::Decimal });
+    let across = AxisSpec::new(design.axes[x].clone(), if is_wide { TickRule::Logarithmic } else { TickRule::Decimal });
     let height = if groups.len() == 1 && titles.len() < 3 { 0.3 } else { 0.24 };
     let row = |(panel, title): (usize, &String)| PanelRow {
         reference: measure.reference(panel),

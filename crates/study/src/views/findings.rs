@@ -130,7 +130,7 @@ fn of_map(data: &CellMap) -> String {
     range("right answers [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
 }
 
-/// Overshoots of a zig-zag.
+/// Finding of a figure of a zig-zag: its overshoots.
 pub fn zigzag_finding(data: &ZigzagTrial) -> String {
     let angles: Vec<String> = data.overshoots.iter().map(|swing| format!("{}°", fixed(swing.angle_deg, 1))).collect();
     match &angles[..] {

@@ -6,7 +6,7 @@ use document::method::MethodEntry;
 use document::names;
 use document::single_records::{SingleRecord, SingleRecords};
 use report::figures::{
-    AxisSpec, Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Stack,
+    AxisSpec, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Stack, TickRule,
 };
 use report::number::{counted, fixed, significant};
 use report::palette::{BEFORE, Look, Marker, SOLID};
@@ -201,7 +201,7 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     panels.extend(amplitudes.map(|of_axis| panel(|fit| fit.t_s, by_t, of_axis)));
     let rows = vec![row(k, joint.map(|fit| fit.k_per_s), by_k), row(t, joint.map(|fit| fit.t_s), by_t)];
     let stack =
-        Stack { x: x.map(|title| AxisSpec::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
+        Stack { x: x.map(|title| AxisSpec::new(title, TickRule::Angle)).into(), rows, panels, ..Stack::default() };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
     Panels { note, ..Panels::new(stack) }
 }

@@ -5,13 +5,13 @@ use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
 use report::figures::{
-    AxisSpec, Division, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack,
+    AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack, TickRule,
 };
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure};
 
 use super::trace_figures::{ratio, replays_by_origin};
-use super::trace_tables::horizon;
+use super::trace_tables::restarted_heading_error;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// Number of panels side by side.
@@ -42,7 +42,7 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
         let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
         LayeredPanel { head: Some(head), layers: replays_by_origin(record).map(line).into(), ..LayeredPanel::default() }
     };
-    let row = PanelRow::zeroed(AxisSpec::new("residual [°]", Division::Angle), 0.13);
+    let row = PanelRow::zeroed(AxisSpec::new("residual [°]", TickRule::Angle), 0.13);
     let plot =
         Panels::new(Stack::multiples(ACROSS.min(all.len()), AxisSpec::time(), row, all.iter().map(panel).collect()));
     let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
@@ -64,8 +64,9 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
         RowsColumn { x: AxisSpec::decimal(title), rows, zero: true, ..RowsColumn::default() }
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|error| Some(error.heading_rmse_deg))];
-    columns
-        .extend(HORIZONS_S.map(|length| column(format!("every {length:.0} s [°]"), &move |all| horizon(all, length))));
+    columns.extend(HORIZONS_S.map(|window_s| {
+        column(format!("every {window_s:.0} s [°]"), &move |all| restarted_heading_error(all, window_s))
+    }));
     let count = judged.len();
     let records = if count == 1 { "record that was" } else { "records that were" };
     let title =

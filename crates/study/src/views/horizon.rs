@@ -2,7 +2,7 @@
 
 use campaign::statistics::MIN_SUMMARISED;
 use document::trace::{HorizonEntry, TraceDocument};
-use report::figures::{AxisSpec, Division, Layer, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
@@ -21,12 +21,12 @@ const MODELS: [(CurveOrigin, HorizonError); 2] =
 fn common<'a>(records: &[&'a [HorizonEntry]]) -> Vec<Vec<&'a HorizonEntry>> {
     let whole: Vec<&HorizonEntry> = records.iter().filter_map(|record| record.last()).collect();
     let windows = || records.iter().flat_map(|record| record.split_last().map_or(&[][..], |(_, windows)| windows));
-    let mut lengths: Vec<f64> =
-        windows().map(|entry| entry.horizon_s).filter(|length| *length < place(&whole)).collect();
-    lengths.sort_by(f64::total_cmp);
-    lengths.dedup();
-    let of_length = |length: f64| windows().filter(|entry| entry.horizon_s == length).collect::<Vec<_>>();
-    let shared = lengths.into_iter().map(of_length).filter(|entries| 2 * entries.len() >= records.len());
+    let mut durations: Vec<f64> =
+        windows().map(|entry| entry.horizon_s).filter(|duration| *duration < place(&whole)).collect();
+    durations.sort_by(f64::total_cmp);
+    durations.dedup();
+    let of_duration = |duration: f64| windows().filter(|entry| entry.horizon_s == duration).collect::<Vec<_>>();
+    let shared = durations.into_iter().map(of_duration).filter(|entries| 2 * entries.len() >= records.len());
     shared.chain([whole.clone()]).collect()
 }
 
@@ -87,8 +87,8 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let used = judged.iter().find(|record| !record.errors.horizons.is_empty())?.used;
     let horizons = common(&records);
     let layers = (0..MODELS.len()).flat_map(|number| layers(&records, &horizons, number)).collect();
-    let x = AxisSpec::new("horizon [s]", Division::Factors);
-    let row = PanelRow::new(AxisSpec::new("heading error, rms [°]", Division::Factors), 0.36);
+    let x = AxisSpec::new("horizon [s]", TickRule::Logarithmic);
+    let row = PanelRow::new(AxisSpec::new("heading error, rms [°]", TickRule::Logarithmic), 0.36);
     let each = match records.len() {
         1 => "",
         2..MIN_SUMMARISED => " Thin: every record.",
@@ -113,7 +113,7 @@ mod tests {
         errors.iter().map(entry).collect()
     }
 
-    /// A horizon is pooled over the records that have it, if these are half of all; the last is the mean length.
+    /// A horizon is pooled over the records that have it, if these are half of all; the last is the mean duration.
     #[test]
     fn records_are_pooled_over_the_horizons_that_half_of_them_have() {
         let long = record(&[[10.0, 1.0, 0.1], [20.0, 3.0, 0.3], [40.0, 5.0, 1.0], [80.0, 9.0, 1.5], [90.0, 6.0, 2.0]]);

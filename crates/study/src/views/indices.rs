@@ -5,6 +5,7 @@ use document::single_records::{Amplitude, SingleRecord, SingleRecords};
 use document::trace::{Indices, TraceDocument};
 use report::number::{fixed, significant};
 use report::{Table, TableHead};
+use ship::effects;
 
 use super::method_table::estimate;
 
@@ -56,9 +57,19 @@ pub fn trace_table(document: &TraceDocument) -> Table {
     );
     let trace = &document.trace;
     let is_same = trace.model.indices == trace.base;
+    let listed = effects::all();
+    let has_input = |id: &str, form: &str| {
+        listed.iter().any(|effect| (effect.id(), effect.form()) == (id, form) && effect.needs().is_some())
+    };
+    let needs_channel = trace.effects.iter().any(|named| has_input(&named.id, &named.form));
+    // With sway or speed as an input K and T are not those of a ship that responds to her rudder alone.
+    let (of_model, use_of_model) = match needs_channel {
+        true => ("the model, beside measured speed or sway", "the model alone"),
+        false => ("small motions", "the model: its effects come on top"),
+    };
     let rows: [(String, &Indices, &str); 2] = [
         (amplitude, &trace.base, "an autopilot at this rudder, comparing trials"),
-        (String::from("small motions"), &trace.model.indices, "the model: its effects come on top"),
+        (String::from(of_model), &trace.model.indices, use_of_model),
     ];
     for (name, indices, purpose) in rows.into_iter().take(if is_same { 1 } else { 2 }) {
         let numbers = [&indices.K_per_s, &indices.T_s].into_iter().flat_map(estimate);

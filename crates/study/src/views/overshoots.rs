@@ -114,9 +114,13 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let finding = format!(
         "Median error of {count} overshoots{of_records}: {before} with K and T alone{no_before}, {after} traced{no_after}"
     );
-    let caption = "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced \
-        model, with the limits of IMO \
-                   MSC.137(76) where one is for this zig-zag and for a ship of this length. No mark: the replay has \
-                   no such overshoot; it counts as missing.";
+    let limits = match all.iter().any(|overshoot| overshoot.limit.is_some()) {
+        true => ", with the limits of IMO MSC.137(76)",
+        false => "",
+    };
+    let caption = format!(
+        "Overshoots of the records and of the replays of their rudder by K and T alone and by the traced \
+         model{limits}. No mark: the replay has no such overshoot; it counts as missing and not in the median."
+    );
     (!all.is_empty()).then(|| PageFigure::new("overshoots", finding, caption, data))
 }

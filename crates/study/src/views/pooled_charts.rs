@@ -6,8 +6,8 @@ use campaign::statistics::{distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
 use report::figures::{
-    AxisSpec, CellMap, Division, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem,
-    RowKind, RowPlace, RowsColumn, Shades, Stack,
+    AxisSpec, CellMap, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowPlace, RowsColumn, Shades, Stack, TickRule,
 };
 use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
@@ -48,7 +48,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             titles: [design.axes[1].clone(), design.axes[0].clone()],
             columns: columns.clone(),
             rows: rows.clone(),
-            shades: Shades::Range(Division::Factors, title.clone()),
+            shades: Shades::Range(TickRule::Logarithmic, title.clone()),
             panels: methods.into_iter().map(panel).collect(),
             note: None,
         };
@@ -264,12 +264,12 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         names,
         columns: vec![
             column(
-                AxisSpec::new("90 % intervals that hold [%]", Division::Percent),
+                AxisSpec::new("90 % intervals that hold [%]", TickRule::Percent),
                 inside,
                 0,
                 vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],
             ),
-            column(AxisSpec::new("width [% of value]", Division::Factors), width, 25, Vec::new()),
+            column(AxisSpec::new("width [% of value]", TickRule::Logarithmic), width, 25, Vec::new()),
         ],
         note: Some(String::from(
             "Over the predicted overshoots, times and turns. Marks: mean share, median width. Pale: from the worst to the \

@@ -110,7 +110,7 @@ const MIN_PROBABILITY: f64 = 0.95;
 /// Maximum number of characteristics in a finding.
 const MAX_NAMED_FIGURES: usize = 2;
 
-/// First characteristics of a manoeuvre, with their 90 % intervals over the sampled ships.
+/// First characteristics of a manoeuvre, with their 90 % intervals over the drawn ships.
 fn first_figures(prediction: &Prediction) -> String {
     let figure_words = |(name, figure): (&String, &PredictedFigure)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));

@@ -14,7 +14,7 @@ use trial::{Manoeuvre, imo};
 
 use super::{predict_figures, predict_tables};
 
-/// Text above the table: models, number of samples, weather, hull, range of validity, incomplete manoeuvres.
+/// Text above the table: models, number of draws, weather, hull, range of validity, incomplete manoeuvres.
 pub fn summary(document: &PredictDocument) -> String {
     let weather = match document.calm {
         true => "in a calm",

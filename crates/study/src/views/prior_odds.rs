@@ -3,7 +3,7 @@
 use document::names;
 use document::trace::{Outcome, TraceDocument};
 use report::PageFigure;
-use report::figures::{AxisSpec, Division, Layer, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::{fixed, significant};
 use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
 
@@ -123,7 +123,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     };
     let layers = lines.iter().enumerate().map(layer).collect();
     let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32) };
-    let x = AxisSpec::new("prior odds of every effect, times", Division::Factors);
+    let x = AxisSpec::new("prior odds of every effect, times", TickRule::Logarithmic);
     let [least, most] = [least, most].map(|factor| significant(factor, 1));
     let caption = format!(
         "Probability of every effect with the prior odds of all of them together {least} to {most} times the usual; solid: \

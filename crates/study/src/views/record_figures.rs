@@ -3,7 +3,7 @@
 
 use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
-use report::figures::{AxisSpec, Division, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::significant;
 use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
@@ -58,7 +58,7 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
 /// Heading with models, residuals and rudder over one time axis.
 pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOverTime>) -> Panels {
     let [upper, middle] = heading_and_residual(heading, models);
-    let residual = PanelRow::zeroed(AxisSpec::new("residual [°]", Division::Angle), 0.14);
+    let residual = PanelRow::zeroed(AxisSpec::new("residual [°]", TickRule::Angle), 0.14);
     let rows = vec![
         (PanelRow::new(AxisSpec::heading(), 0.28), upper),
         (residual, middle),
@@ -67,7 +67,7 @@ pub fn over_time(heading: PlotCurve, rudder_deg: PlotCurve, models: Vec<ModelOve
     Panels::over_time(rows)
 }
 
-/// Maximum number of sampled ships whose steady curves are plotted.
+/// Maximum number of drawn ships whose steady curves are plotted.
 const MAX_CURVES: usize = 40;
 
 /// Sentence on the straight-course stability of the most probable of some ships.
@@ -104,7 +104,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
         let is_inside = |row: usize| can_be_unstable && falls(row) && row > 0 && falls(row - 1);
         let is_unstable = |row: usize| can_be_unstable && (falls(row) || (row > 0 && falls(row - 1)));
         let pen = Pen::new(HEADING).width(1.3);
-        // A white edge separates the curve from those of the sampled ships.
+        // A white edge separates the curve from those of the drawn ships.
         layers.push(Layer::line("", curve(first, &|_| true), Pen::new(PAPER).width(2.4)));
         layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), pen));
         if can_be_unstable {

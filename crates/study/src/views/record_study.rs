@@ -13,7 +13,7 @@ use campaign::statistics::{MIN_SUMMARISED, Statistic, distinct};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
-use report::figures::{AxisSpec, Division, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn};
+use report::figures::{AxisSpec, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, TickRule};
 use report::markdown::text;
 use report::number::{self, MISSING, significant};
 use report::palette::Look;
@@ -156,7 +156,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let names: Vec<String> = cells.iter().map(|&cell| design.cells[cell].labels.join(", ")).collect();
     let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
-        x: AxisSpec::new("heading error on records that were not fitted [°]", Division::Factors),
+        x: AxisSpec::new("heading error on records that were not fitted [°]", TickRule::Logarithmic),
         rows: cells.iter().map(row).collect(),
         ..RowsColumn::default()
     };

@@ -3,7 +3,7 @@
 
 use document::names;
 use document::trace::{StairEntry, TraceDocument};
-use report::figures::{AxisSpec, Division, Layer, LayeredPanel, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, LayeredPanel, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::significant;
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
@@ -46,7 +46,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("{name} explains"), carried, &CurveOrigin::Record));
         panels.push(panel(format!("error {}°", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
-    let row = PanelRow::zeroed(AxisSpec::new("heading [°]", Division::Angle), 0.085);
+    let row = PanelRow::zeroed(AxisSpec::new("heading [°]", TickRule::Angle), 0.085);
     let stack = Stack { unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
     let plot = Panels::new(stack);
     let caption = format!(

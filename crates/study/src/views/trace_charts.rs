@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use campaign::scenario::{HULL, TRACE};
 use report::figures::{
-    AxisSpec, CellMap, Division, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind,
-    RowsColumn, Shades, Stack,
+    AxisSpec, CellMap, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Shades,
+    Stack, TickRule,
 };
 use report::number::significant;
 use report::palette::{
@@ -55,11 +55,11 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
     // Columns are in the order of the rows, so that correct names are on the diagonal.
     let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
     let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
-    let is_silent = lines.iter().any(|line| line.silent > 0 || line.missing.is_empty());
+    let is_silent = lines.iter().any(|line| line.without_names > 0 || line.missing.is_empty());
     let columns = distinct(is_silent.then_some(NOTHING).into_iter().chain(named));
     let cell = |lines: &[&TraceSummary], id: &str| {
         let count = |line: &&TraceSummary| match id {
-            NOTHING => line.silent,
+            NOTHING => line.without_names,
             id => line.named.get(id).copied().unwrap_or(0),
         };
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
@@ -104,7 +104,8 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
             .map(|all| all.times(100.0))
     };
     let of_rule = |(method, lines): &(usize, Vec<&TraceSummary>)| {
-        let (wrong, exact) = (share_of(lines, |line| line.wrong, false)?, share_of(lines, |line| line.exact, true)?);
+        let (wrong, exact) =
+            (share_of(lines, |line| line.falsely_named, false)?, share_of(lines, |line| line.exactly_named, true)?);
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
@@ -119,7 +120,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     }
     let look = CurveOrigin::Method(TRACE.to_owned()).look();
     let counted = |(method, lines): &(usize, Vec<&TraceSummary>)| {
-        let counts = [|line: &&TraceSummary| line.wrong, |line: &&TraceSummary| line.trials];
+        let counts = [|line: &&TraceSummary| line.falsely_named, |line: &&TraceSummary| line.trials];
         (design.methods[*method].label.as_str(), counts.map(|count| lines.iter().map(count).sum::<u64>()))
     };
     let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
@@ -225,7 +226,7 @@ fn shares(
         Layer::marks(name, Look { colour, marker, dash: SOLID, hollow: false }, points)
     };
     let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();
-    let row = PanelRow::new(AxisSpec::new(y_title, Division::Percent), 0.42);
+    let row = PanelRow::new(AxisSpec::new(y_title, TickRule::Percent), 0.42);
     Panels::new(Stack::over(x, vec![(row, layers)]))
 }
 
@@ -242,7 +243,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
     };
     let shown: Vec<&TraceSummary> = lines.iter().filter(is_shown).collect();
-    if shown.iter().all(|line| line.complete == line.trials) {
+    if shown.iter().all(|line| line.all_named == line.trials) {
         return None;
     }
     let are_few = shown.len() <= MAX_SERIES;
@@ -254,7 +255,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     };
     let point = |lines: &[&TraceSummary]| {
         let share =
-            wilson_share(lines.iter().map(|line| line.complete).sum(), lines.iter().map(|line| line.trials).sum())?;
+            wilson_share(lines.iter().map(|line| line.all_named).sum(), lines.iter().map(|line| line.trials).sum())?;
         let middle = (lines.iter().map(|line| expected(line).ln()).sum::<f64>() / lines.len() as f64).exp();
         let share = share.times(100.0);
         Some((middle, share.value, share.ci95))
@@ -277,14 +278,14 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
-    let x = AxisSpec::new("size of the effect: expected 2 ln Λ", Division::Factors);
+    let x = AxisSpec::new("size of the effect: expected 2 ln Λ", TickRule::Logarithmic);
     Some(shares(x, "trials in which it is named [%]", series, theory.into()))
 }
 
 /// Number of trials with one missing effect in which it was named, and of all such trials.
 pub fn single_effect_counts(lines: &[TraceSummary]) -> [u64; 2] {
     let single = || lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull());
-    [single().map(|line| line.complete).sum(), single().map(|line| line.trials).sum()]
+    [single().map(|line| line.all_named).sum(), single().map(|line| line.trials).sum()]
 }
 
 /// Finding: how many of the effects with the highest probabilities were present.
@@ -316,7 +317,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
         [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
     let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
-    let x = AxisSpec::new("mean probability given [%]", Division::Percent);
+    let x = AxisSpec::new("mean probability given [%]", TickRule::Percent);
     let theory = vec![(String::from("calibrated"), diagonal)];
     ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
@@ -352,9 +353,9 @@ mod tests {
     fn rules_are_held_against_what_was_missing() {
         let name = |label: &str| MethodName { id: "trace".into(), label: label.into() };
         let design = Design { methods: vec![name("bic, 0.5"), name("bic, 0.9")], ..Design::default() };
-        let line = |method, missing: &[&str], exact, wrong| TraceSummary {
+        let line = |method, missing: &[&str], exactly_named, falsely_named| TraceSummary {
             missing: missing.iter().map(|&id| id.to_owned()).collect(),
-            ..TraceSummary { method, trials: 2, exact, wrong, ..TraceSummary::default() }
+            ..TraceSummary { method, trials: 2, exactly_named, falsely_named, ..TraceSummary::default() }
         };
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
@@ -385,9 +386,9 @@ mod tests {
     /// Few kinds of trial by their names, many by ranges; none if every effect is always named, or if none is missing.
     #[test]
     fn power_is_drawn_where_something_is_missed() {
-        let line = |cell: usize, complete| TraceSummary {
+        let line = |cell: usize, all_named| TraceSummary {
             missing: vec![String::from(if cell == 0 { "wave_yaw" } else { "steering_lag" })],
-            ..TraceSummary { cell, trials: 4, complete, expected: Some(20.0), ..TraceSummary::default() }
+            ..TraceSummary { cell, trials: 4, all_named, expected: Some(20.0), ..TraceSummary::default() }
         };
         let marks = |lines: Vec<TraceSummary>| -> Option<Vec<(String, Vec<f64>)>> {
             let layers = detection_power(&lines)?.stacks.remove(0).panels.remove(0).layers.split_off(PARAMETERS.len());

@@ -9,8 +9,8 @@ use document::trace::{
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 use identify::replay::Replay;
 use report::figures::{
-    AxisLine, AxisSpec, Division, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn,
-    Stack,
+    AxisLine, AxisSpec, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Stack,
+    TickRule,
 };
 use report::number::{MISSING, fixed, significant};
 use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
@@ -221,7 +221,7 @@ fn residual(record: &TracedRecord) -> Panels {
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
             Layer::new(origin.label(), curve_of(replay), if joined { line } else { LayerKind::Dots(colour) })
         };
-        let row = PanelRow { zero: y.division != Division::Factors, ..PanelRow::new(y, 0.17) };
+        let row = PanelRow { zero: y.tick_rule != TickRule::Logarithmic, ..PanelRow::new(y, 0.17) };
         Stack { is_half: true, ..Stack::over(x, vec![(row, replays_by_origin(record).map(layer).into())]) }
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
@@ -230,8 +230,8 @@ fn residual(record: &TracedRecord) -> Panels {
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::from_trial(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
-    let frequency = AxisSpec::new("frequency [Hz]", Division::Factors);
-    let density = AxisSpec::new("power [°²/Hz]", Division::Factors);
+    let frequency = AxisSpec::new("frequency [Hz]", TickRule::Logarithmic);
+    let density = AxisSpec::new("power [°²/Hz]", TickRule::Logarithmic);
     let spectrum = stack(frequency, density, true, &|replay| power_spectrum(&series(replay)));
     let mark = period.map(|period| AxisLine { value: period.recip(), label: String::from("period") });
     let stacks = vec![

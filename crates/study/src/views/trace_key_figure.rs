@@ -4,7 +4,7 @@
 use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, TraceDocument};
-use report::figures::{AxisSpec, Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Stack};
+use report::figures::{AxisSpec, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Stack, TickRule};
 use report::number::{counted, significant};
 use report::palette::SOLID;
 use report::{CurveOrigin, PageFigure};
@@ -72,7 +72,7 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
         format!("({}) rms {before}° → {after}°, {share:.0} %", letters[1]),
     ];
     let heights = [0.21, 0.15];
-    let rulers = [AxisSpec::heading(), AxisSpec::new("residual [°]", Division::Angle)];
+    let rulers = [AxisSpec::heading(), AxisSpec::new("residual [°]", TickRule::Angle)];
     let rows = [PanelRow::new, PanelRow::zeroed].into_iter().zip(rulers).zip(heights);
     let rows = rows.map(|((row, ruler), height)| row(ruler, height));
     let panels = [upper, lower].into_iter().zip(heads);
@@ -110,7 +110,7 @@ fn all_held(held: &[BeforeAfter]) -> Stack {
     Stack { x, rows: vec![row], panels: vec![panel], ..Stack::default() }
 }
 
-/// The figure; `None` if no record was held out.
+/// Key figure of a trace; `None` if no record was held out.
 pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let error = &document.trace.error;
     let number = nearest(&error.validation)?;

@@ -73,7 +73,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     let with_moments = judged.any(|error| error.with_own_bias_deg.or(error.with_own_moment_deg).is_some());
     let moments = ["own bias", "own moment"].into_iter().filter(|_| with_moments);
     let head = TableHead::default().texts(["record", "use", "model"]).numbers(["heading"]).unit("deg");
-    let head = head.numbers(moments).unit("deg").numbers(HORIZONS_S.map(|length| format!("every {length:.0} s")));
+    let head = head.numbers(moments).unit("deg").numbers(HORIZONS_S.map(|window_s| format!("every {window_s:.0} s")));
     let head = head.unit("deg").numbers(["yaw rate"]).unit("deg/s").numbers(["overshoots"]).unit("deg");
     let head = head.numbers(["after/before"]).numbers(["band covers"]).unit("%").numbers(["band width"]).unit("deg");
     let mut table = Table::new(head);
@@ -88,7 +88,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
             cells.push(three(Some(error.heading_rmse_deg)));
             let moments = [error.with_own_bias_deg, error.with_own_moment_deg].map(three);
             cells.extend(with_moments.then_some(moments).into_iter().flatten());
-            cells.extend(HORIZONS_S.map(|length| three(horizon(error, length))));
+            cells.extend(HORIZONS_S.map(|window_s| three(restarted_heading_error(error, window_s))));
             cells.extend([error.yaw_rate_rmse_deg_s, error.overshoot_error_deg].map(three));
             cells.push(optional(ratio, 2));
             cells.push(optional(error.band_coverage_95.map(|share| 100.0 * share), 1));
@@ -99,9 +99,9 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     table
 }
 
-/// Heading error of replays restarted after every `length` seconds, deg.
-pub fn horizon(errors: &ErrorsEntry, length: f64) -> Option<f64> {
-    *errors.horizon_rmse_deg.get(&format!("{length:.0}"))?
+/// Heading error of replays restarted after every `window_s` seconds, deg.
+pub fn restarted_heading_error(errors: &ErrorsEntry, window_s: f64) -> Option<f64> {
+    *errors.horizon_rmse_deg.get(&format!("{window_s:.0}"))?
 }
 
 /// Interval as text, whatever its size.

@@ -40,10 +40,15 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
             line.missing.iter().map(name).collect::<Vec<_>>().join(" + ")
         });
         cells.push(line.trials.to_string());
-        for figure in [line.complete_share(), line.exactly_named_share(), line.wrong_share(), line.clear_share()] {
+        for figure in [
+            line.all_named_share(),
+            line.exactly_named_share(),
+            line.falsely_named_share(),
+            line.clearly_separable_share(),
+        ] {
             cells.extend(percent(figure, all_digits));
         }
-        cells.push(line.clear[0].to_string());
+        cells.push(line.clearly_separable[0].to_string());
         cells.extend(line.verdicts.map(|count| count.to_string()));
         let records = [summary.reference, line.method].map(|method| summary.performance(line.cell, method));
         let three = |value: Option<f64>| number::significant(value.unwrap_or(f64::NAN), 3);
@@ -114,10 +119,13 @@ pub fn by_ship_kind(lines: &[TraceSummary], design: &Design) -> Table {
         let mut sum = TraceSummary { missing: part[0].missing.clone(), ..TraceSummary::default() };
         for line in &part {
             sum.trials += line.trials;
-            sum.complete += line.complete;
-            sum.wrong += line.wrong;
-            sum.exact += line.exact;
-            sum.clear = [sum.clear[0] + line.clear[0], sum.clear[1] + line.clear[1]];
+            sum.all_named += line.all_named;
+            sum.falsely_named += line.falsely_named;
+            sum.exactly_named += line.exactly_named;
+            sum.clearly_separable = [
+                sum.clearly_separable[0] + line.clearly_separable[0],
+                sum.clearly_separable[1] + line.clearly_separable[1],
+            ];
         }
         let cell = |figure: Option<Statistic>| match figure.map(|figure| figure.times(100.0)) {
             Some(figure) => format!("{} {}", number::fixed(figure.value, 2), number::interval(figure.ci95)),
@@ -128,10 +136,10 @@ pub fn by_ship_kind(lines: &[TraceSummary], design: &Design) -> Table {
             name.to_owned(),
             part.len().to_string(),
             sum.trials.to_string(),
-            cell(sum.complete_share()),
+            cell(sum.all_named_share()),
             cell(sum.exactly_named_share()),
-            cell(sum.wrong_share()),
-            cell(sum.clear_share()),
+            cell(sum.falsely_named_share()),
+            cell(sum.clearly_separable_share()),
         ]));
     }
     table

@@ -154,7 +154,7 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
 /// Ships of a mixture, to be steered through manoeuvres.
 struct SteeredShips<'a> {
     mixture: &'a ShipMixture,
-    /// Number of sampled ships.
+    /// Number of drawn ships.
     draws: usize,
     /// Name of the model in messages.
     file: &'a str,
@@ -201,7 +201,7 @@ impl SteeredShips<'_> {
 /// Predictions of the manoeuvres and replays of the records.
 ///
 /// Fails if a model cannot be brought to the requested scale or loading, if a record does not determine the initial
-/// state of the ship, or if hardly any sampled ship completes any manoeuvre.
+/// state of the ship, or if hardly any drawn ship completes any manoeuvre.
 pub fn predict(
     request: &PredictRequest,
     input: PredictInput,
@@ -238,10 +238,7 @@ pub fn predict(
         schema: SCHEMA.into(),
         models: files(models).into_iter().map(|file| ModelWeight { file, weight: 1.0 / models.len() as f64 }).collect(),
         draws,
-        drawn: (0..draws as u64)
-            .filter(|_| request.draws_file)
-            .map(|number| mixture.sample_parameters(number))
-            .collect(),
+        drawn: (0..draws as u64).filter(|_| request.draws_file).map(|number| mixture.draw_parameters(number)).collect(),
         calm: request.calm,
         length_m: particulars.map(|ship| ship.length),
         speed_m_s: particulars.map(|ship| ship.speed),

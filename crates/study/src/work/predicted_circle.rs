@@ -1,11 +1,11 @@
-//! Turning circle predicted from the recommended estimate of a fit: characteristics and median track of sampled ships.
+//! Turning circle predicted from the recommended estimate of a fit: characteristics and median track of drawn ships.
 
 use document::fit::{Belief, FitDocument, MedianEntry, PredictedCircleEntry};
 use predict::{Prediction, ShipMixture};
 use ship::angle::from_deg;
 use trial::{Manoeuvre, Side};
 
-/// Number of sampled ships.
+/// Number of drawn ships.
 const DRAWS: usize = 300;
 
 /// Rudder of the turning circle of IMO MSC.137(76), deg.

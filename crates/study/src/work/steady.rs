@@ -7,7 +7,7 @@ use predict::steady::SteadyCurve;
 use ship::angle::from_deg;
 use trial::Manoeuvre;
 
-/// Number of sampled ships.
+/// Number of drawn ships.
 const DRAWS: usize = 40;
 
 /// Maximum rudder as a multiple of the largest in the records, and its range, deg.

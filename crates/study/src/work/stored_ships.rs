@@ -17,7 +17,7 @@ const MODEL: file::FileKind = file::FileKind { name: "a model", max_bytes: 1 << 
 /// Expected documents, for messages.
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
-/// Content of a document.
+/// Identified ships in a stored fit or trace.
 pub struct StoredShips {
     /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE`].
     pub ships: BTreeMap<String, IdentifiedShip>,

@@ -147,7 +147,9 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     let mut paragraphs = report.split("\n\n");
     let (title, headline) = (paragraphs.next().unwrap_or_default(), paragraphs.next().unwrap_or_default());
     assert_eq!(title, "# Trace of run: a 10/10 zig-zag, first to starboard");
-    for part in ["**The first-order response lacks second order", " %; held-out records ", "In replays of 60 s: "] {
+    for part in
+        ["**The first-order response lacks second order", " %; held-out records ", "In replays restarted every 60 s: "]
+    {
         assert!(headline.contains(part), "{part}: {headline}");
     }
     assert!(paragraphs.next().is_some_and(|physics| physics.starts_with("- **second order**: sway")), "{report}");

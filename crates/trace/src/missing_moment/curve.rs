@@ -43,8 +43,8 @@ pub(super) fn maximum_likelihood_level(
     gain: f64,
     value: impl Fn(&MomentFilter) -> Option<f64>,
 ) -> f64 {
-    let length = rows.time[rows.count() - 1] - rows.time[0];
-    let unit = 20.0 / (length.powi(5) * gain * gain);
+    let duration = rows.time[rows.count() - 1] - rows.time[0];
+    let unit = 20.0 / (duration.powi(5) * gain * gain);
     let [low, high] = LEVELS.map(|level| (level * unit).ln());
     golden_section_minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
 }

@@ -66,7 +66,8 @@ impl MomentRows {
         self.time.len()
     }
 
-    /// Responses to the recorded rudder and δ_r in the step before every row, from rest.
+    /// Heading (rad) and yaw rate (rad/s) at every row, from rest at the row before, under the recorded rudder and δ_r;
+    /// zero at the first row.
     pub fn rudder_response(&self, rudder: &Polyline) -> Vec<[f64; 2]> {
         let (a, b) = (self.base.inverse_T, self.base.K_over_T);
         let input = |t: f64| b * (rudder.value_at(t) + self.base.rudder_bias);
@@ -86,7 +87,8 @@ impl MomentRows {
         forced
     }
 
-    /// Responses to a moment (rad of rudder, linear between rows) in the step before every row, from rest.
+    /// Heading (rad) and yaw rate (rad/s) at every row, from rest at the row before, under a moment in rad of rudder
+    /// that is linear between rows; zero at the first row.
     pub fn moment_response(&self, moment: &[f64]) -> Vec<[f64; 2]> {
         let steps: Vec<Transition> =
             self.steps.iter().map(|step| Transition::new(self.base.inverse_T, step.0)).collect();

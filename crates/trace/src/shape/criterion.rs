@@ -212,7 +212,7 @@ impl WhitenedStructure {
     }
 
     /// Gauss–Newton step of all unknowns.
-    pub fn step(&self) -> Vec<f64> {
+    pub fn gauss_newton_step(&self) -> Vec<f64> {
         let count = self.factor.len();
         let mut step = self.solution.clone();
         for k in (0..count).rev() {
@@ -230,7 +230,7 @@ impl WhitenedStructure {
 
     /// Normalised innovations of the records after the step.
     pub fn innovations(&self) -> Vec<Vec<f64>> {
-        let (step, sd) = (self.step(), self.sd());
+        let (step, sd) = (self.gauss_newton_step(), self.sd());
         let normalised = |block: &HeadingSensitivities| {
             let mut residual = block.residual.clone();
             for (unknown, column) in &block.columns {

@@ -231,12 +231,14 @@ impl Shape {
             Self::TimeChange(at) => vec![rows(&|row| after(row, at) * rate[row])],
             Self::DelayChange(at) => vec![rows(&|row| after(row, at) * motion.rudder_rate[row])],
             Self::Bend(at) => vec![rows(&|row| (time[row] - start - at).max(0.0) / duration)],
-            Self::Pulse(at, length) => vec![rows(&|row| after(row, at) - after(row, at + length))],
-            Self::Squall(at, length) => vec![rows(&|row| {
-                let share = (time[row] - start - at) / length - 0.5;
+            Self::Pulse(at, own_duration) => vec![rows(&|row| after(row, at) - after(row, at + own_duration))],
+            Self::Squall(at, own_duration) => vec![rows(&|row| {
+                let share = (time[row] - start - at) / own_duration - 0.5;
                 if share.abs() < 0.5 { (PI * share).cos().powi(2) } else { 0.0 }
             })],
-            Self::Ramp(at, length) => vec![rows(&|row| ((time[row] - start - at) / length).clamp(0.0, 1.0))],
+            Self::Ramp(at, own_duration) => {
+                vec![rows(&|row| ((time[row] - start - at) / own_duration).clamp(0.0, 1.0))]
+            }
             Self::Period(cycles) => wave(&|t| TAU * cycles * t).to_vec(),
             Self::Harmonics(cycles) => {
                 (1..=3).flat_map(|harmonic| wave(&|t| TAU * f64::from(harmonic) * cycles * t)).collect()
@@ -250,9 +252,9 @@ impl Shape {
         match self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => vec![(at, 0.01 * duration)],
             Self::TimeChange(at) | Self::DelayChange(at) => vec![(at, 0.01 * duration)],
-            Self::Pulse(at, length) => vec![(at, 0.01 * duration), (length, 0.01 * duration)],
-            Self::Squall(at, length) => vec![(at, 0.012 * duration), (length, 0.016 * duration)],
-            Self::Ramp(at, length) => vec![(at, 0.02 * duration), (length, 0.03 * duration)],
+            Self::Pulse(at, own_duration) => vec![(at, 0.01 * duration), (own_duration, 0.01 * duration)],
+            Self::Squall(at, own_duration) => vec![(at, 0.012 * duration), (own_duration, 0.016 * duration)],
+            Self::Ramp(at, own_duration) => vec![(at, 0.02 * duration), (own_duration, 0.03 * duration)],
             Self::Period(cycles) => vec![(cycles, 0.15)],
             Self::Harmonics(cycles) => vec![(cycles, 0.07)],
             Self::Chirp(from, to) => vec![(from, 0.5), (to, 0.5)],
@@ -284,7 +286,9 @@ impl Shape {
         match *self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => Some([at, duration]),
             Self::TimeChange(at) | Self::DelayChange(at) | Self::Bend(at) => Some([at, duration]),
-            Self::Pulse(at, length) | Self::Squall(at, length) | Self::Ramp(at, length) => Some([at, at + length]),
+            Self::Pulse(at, own_duration) | Self::Squall(at, own_duration) | Self::Ramp(at, own_duration) => {
+                Some([at, at + own_duration])
+            }
             _ => None,
         }
     }
@@ -297,7 +301,7 @@ impl Shape {
     /// Description for a record of this start and duration, s.
     pub fn description(&self, [start, duration]: [f64; 2]) -> String {
         let at = |time: f64| format!("{:.0} s", start + time);
-        let span = |from: f64, length: f64| format!("from {:.0} to {}", start + from, at(from + length));
+        let span = |from: f64, own_duration: f64| format!("from {:.0} to {}", start + from, at(from + own_duration));
         let period = |cycles: f64| format!("{:.0} s", duration / cycles);
         match *self {
             Self::Powers(_, (signal, power), None) => format!("moment with {}", power.notation(signal.names()[0])),
@@ -320,9 +324,9 @@ impl Shape {
             Self::TimeChange(from) => format!("T that changes at {}", at(from)),
             Self::DelayChange(from) => format!("rudder delay that changes at {}", at(from)),
             Self::Bend(from) => format!("moment that grows from {} on", at(from)),
-            Self::Pulse(from, length) => format!("moment {}", span(from, length)),
-            Self::Squall(from, length) => format!("squall {}", span(from, length)),
-            Self::Ramp(from, length) => format!("moment that rises {}", span(from, length)),
+            Self::Pulse(from, own_duration) => format!("moment {}", span(from, own_duration)),
+            Self::Squall(from, own_duration) => format!("squall {}", span(from, own_duration)),
+            Self::Ramp(from, own_duration) => format!("moment that rises {}", span(from, own_duration)),
             Self::Period(cycles) => format!("moment with a period of {}", period(cycles)),
             Self::Harmonics(cycles) => format!("moment with a period of {} and its harmonics", period(cycles)),
             Self::Chirp(from, to) => format!("moment whose period runs from {} to {}", period(from), period(to)),

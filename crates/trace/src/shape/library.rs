@@ -12,7 +12,7 @@ const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 const INSTANTS: usize = 48;
 
 /// Durations of transient moments, as shares of the record, and the factor of a squall over a pulse.
-const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
+const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 const SQUALL: f64 = 1.6;
 
 /// Durations of ramps, as shares of the record.
@@ -34,12 +34,12 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
         all.extend(changes.map(|shape| (shape, INSTANTS)));
         all.extend(k.is_multiple_of(3).then_some((Shape::Bend(at), INSTANTS)));
     }
-    for length in LENGTHS.map(|share| share * duration) {
-        let count = (2.0 * (duration - length) / length) as usize;
+    for own_duration in DURATION_SHARES.map(|share| share * duration) {
+        let count = (2.0 * (duration - own_duration) / own_duration) as usize;
         for k in 1..=count {
-            let at = (0.5 * k as f64 - 0.25) * length;
-            let both = [Shape::Pulse(at, length), Shape::Squall(at, SQUALL * length)];
-            all.extend(both.map(|shape| (shape, 2 * LENGTHS.len() * count)));
+            let at = (0.5 * k as f64 - 0.25) * own_duration;
+            let both = [Shape::Pulse(at, own_duration), Shape::Squall(at, SQUALL * own_duration)];
+            all.extend(both.map(|shape| (shape, 2 * DURATION_SHARES.len() * count)));
         }
     }
     for share in RAMPS {

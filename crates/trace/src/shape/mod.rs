@@ -84,7 +84,7 @@ pub struct ShapeAnalysis {
     pub coefficients: Vec<Vec<f64>>,
     /// Losses without each of the shapes of the best, nats.
     pub losses: Vec<f64>,
-    /// Gain of the best, nats.
+    /// Gain of the best explanation over the best random law without shapes, nats.
     pub gain: f64,
     /// Criterion of the best random law without shapes.
     pub random_criterion: f64,
@@ -161,7 +161,7 @@ pub fn analyse_shapes(problem: &FittedRecords, fit: &StructureFit, law: &NoiseLa
     let mut current = ShapeProblem::new(StructurePoint::new(problem, fit, law), problem, law, &law.colour)?;
     for _ in 0..MAX_ROUNDS {
         let (before, colour) = (current.point.theta[0], current.laws[current.law].colour);
-        let point = current.point.after_step(&current.structure[current.law].as_ref()?.step());
+        let point = current.point.after_step(&current.structure[current.law].as_ref()?.gauss_newton_step());
         let change = (point.theta[0] / before - 1.0).abs();
         let Some(next) = ShapeProblem::new(point, problem, law, &colour) else { break };
         let is_settled = change < TIME_TOLERANCE && next.laws[next.law].colour == colour;
@@ -235,7 +235,7 @@ impl<'a> ShapeProblem<'a> {
                 && power * (other.criterion - best.criterion) < 2.0 * MAX_EQUIVALENT_GAIN_NATS
         });
         let whole = search.whole(&best)?;
-        let step = whole.step();
+        let step = whole.gauss_newton_step();
         Some(ShapeAnalysis {
             losses: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),
             coefficients: search::coefficients(&best.shapes, &step),

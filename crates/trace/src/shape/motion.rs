@@ -26,7 +26,7 @@ pub struct PredictedMotion<'a> {
     pub record: &'a PreparedRecord,
     /// Index of the record.
     pub number: usize,
-    /// 1/T, 1/s, and K/T, 1/s².
+    /// First-order base: 1/T, 1/s, and K/T, 1/s².
     pub base: [f64; 2],
     /// Predicted heading minus the first heading at every row, rad.
     pub heading: Vec<f64>,

@@ -21,7 +21,7 @@ pub struct StructurePoint<'a> {
     fit: &'a StructureFit,
     /// Standard deviations of the white noise of the records, rad.
     pub sd: Vec<f64>,
-    /// Parameters.
+    /// Parameters θ of the structure, in the order of its entries.
     pub theta: Vec<f64>,
     initial: Vec<[f64; 2]>,
     noise: Vec<RecordNoise>,

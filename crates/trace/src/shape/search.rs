@@ -52,7 +52,7 @@ pub struct Explanation {
     pub law: usize,
 }
 
-/// Inputs of a search.
+/// Search for the shapes and the random law that explain a residual best.
 pub struct ShapeSearch<'a> {
     /// Predicted motions of the records.
     pub motions: &'a [PredictedMotion<'a>],

@@ -39,7 +39,7 @@ const SETTLING: usize = 2;
 const MAX_SWEPT_SHARE: f64 = 0.6;
 
 /// Omits headings of sweeps through the compass.
-pub(super) fn drop_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
+pub(super) fn blank_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();

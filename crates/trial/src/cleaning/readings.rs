@@ -72,7 +72,7 @@ fn deviation_sd(time: &[f64], values: &[f64]) -> Option<f64> {
 /// Sets lost polls to missing: single readings of the same value, with both neighbours far from it and near each
 /// other. A logger writes zero for an unanswered poll, and a calibration turns it into another number. A channel
 /// that passes through the value has neighbours on either side of it.
-pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
+pub(super) fn blank_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut warnings = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate] {
@@ -113,7 +113,7 @@ pub(super) fn drop_lost_polls(columns: &mut Columns, rejected: &mut Vec<Rejected
 }
 
 /// Sets spikes of heading and rudder to missing and reports jumps of the heading.
-pub(super) fn drop_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
+pub(super) fn blank_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut warnings = Vec::new();
     for channel in [Channel::Heading, Channel::Rudder] {
@@ -174,7 +174,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
 }
 
 /// Sets a yaw rate to missing if it stays at the end of its scale while the heading turns faster.
-pub(super) fn drop_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
+pub(super) fn blank_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));

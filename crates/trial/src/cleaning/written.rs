@@ -40,7 +40,7 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
 }
 
 /// Sets the repetitions of a heading written on change to missing.
-pub(super) fn drop_held(columns: &mut Columns) -> Option<Warning> {
+pub(super) fn blank_held(columns: &mut Columns) -> Option<Warning> {
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
     let is_new = |pair: &&[usize]| heading[pair[0]] != heading[pair[1]];

@@ -107,7 +107,7 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
     let bent: Vec<usize> = (1..pieces.len().saturating_sub(1)).filter(|&row| pieces[row] == Piece::Bent).collect();
     let corners: Vec<Corner> = (bent.iter())
         .filter_map(|&row| {
-            let (length, step) = (time[row + 1] - time[row], angle[row + 1] - angle[row]);
+            let (duration, step) = (time[row + 1] - time[row], angle[row + 1] - angle[row]);
             let moving = rate.copysign(step);
             let (before, after) = match (pieces[row - 1], pieces[row + 1]) {
                 (Piece::Straight(before), Piece::Straight(after)) => (before, after),
@@ -119,8 +119,8 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
             if (before - after).abs() <= tolerance {
                 return None;
             }
-            let elapsed = (step - after * length) / (before - after);
-            let inside = ROW_TOLERANCE * length..=(1.0 - ROW_TOLERANCE) * length;
+            let elapsed = (step - after * duration) / (before - after);
+            let inside = ROW_TOLERANCE * duration..=(1.0 - ROW_TOLERANCE) * duration;
             inside.contains(&elapsed).then(|| Corner { row, time: time[row] + elapsed, before, after })
         })
         .collect();

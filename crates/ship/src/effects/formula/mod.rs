@@ -16,7 +16,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Action, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales, Targets};
+use super::effect::{Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
@@ -59,9 +59,9 @@ impl MirrorSymmetry {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`Targets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`Targets::MOMENT`] for a yaw acceleration,
+    /// [`ActsOn::RUDDER`] for the acting rudder, from `delta` alone, rad; [`ActsOn::MOMENT`] for a yaw acceleration,
     /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
-    pub(super) acts: Targets,
+    pub(super) acts_on: ActsOn,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
     /// Prior of every constant.
@@ -78,7 +78,7 @@ pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
-    acts: Targets,
+    acts_on: ActsOn,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: RecordConstants,
@@ -141,7 +141,7 @@ impl Formula {
     /// If the row cannot be parsed: an error in the list.
     pub(super) fn listed(row: &ListedFormula) -> Self {
         let program = parse::parse(row.formula, false).unwrap_or_else(|error| panic!("{error}"));
-        Self { acts: row.acts, listed: Some(*row), ..Self::from_program(program, row.description) }
+        Self { acts_on: row.acts_on, listed: Some(*row), ..Self::from_program(program, row.description) }
     }
 
     fn from_program(program: FormulaProgram, description: Description) -> Self {
@@ -149,7 +149,7 @@ impl Formula {
             channels: program.channels(),
             program,
             description,
-            acts: Targets::MOMENT,
+            acts_on: ActsOn::MOMENT,
             of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
@@ -253,8 +253,8 @@ impl Effect for Formula {
         Some(CandidateEffect::new(effect, priors))
     }
 
-    fn targets(&self) -> Targets {
-        self.acts
+    fn acts_on(&self) -> ActsOn {
+        self.acts_on
     }
 
     fn needs(&self) -> Option<Regressor> {
@@ -308,7 +308,7 @@ impl<R: Real> Action<R> for Formula {
 
     #[inline]
     fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
-        if !self.acts.rudder {
+        if !self.acts_on.rudder {
             return rudder;
         }
         self.program.value(p, |_| rudder)
@@ -316,7 +316,7 @@ impl<R: Real> Action<R> for Formula {
 
     #[inline]
     fn yaw_acceleration(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> R {
-        if !self.acts.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
+        if !self.acts_on.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }
         self.program.value(p, |signal| signal.at(now, z, &self.of_record))
