@@ -300,10 +300,11 @@ fn coverage_of_predictions_is_drawn() {
 #[test]
 fn intervals_are_scaled_by_other_ships() {
     let desk = Desk::new();
-    let sweep = "[[sweep]]\nname = \"ship\"\nkey = \"ship.yukun.T-s\"\nvalues = [10.0, 16.3, 25.0]\n";
+    let sweep = "[[sweep]]\nname = \"ship\"\nkey = \"ship.first-order.T-s\"\nvalues = [10.0, 16.3, 25.0]\n";
     let predict = "[predict]\nmanoeuvres = [\"zig-zag:20/20\"]\ndraws = 50\n";
     let (head, _) = STUDY.split_once("[[sweep]]").expect("a sweep");
     let head = head.replace("integral-least-squares", "output-error").replace("replicates = 4", "replicates = 2");
+    let head = head.replace("ship.yukun = {}", "ship.first-order = { K-per-s = 0.1, T-s = 16.3 }");
     desk.file("study.toml", format!("{head}[sensor]\nheading-noise-deg = 0.1\n{sweep}{predict}"));
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let table = desk.text("out/interval-factors.csv");
