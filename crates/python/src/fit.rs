@@ -77,7 +77,7 @@ pub fn fit(
         Ok(PyFit {
             text: documents::text(&done.document).map_err(Failure::work)?,
             warnings,
-            trials: [done.together.trials, done.together.held_out].concat(),
+            trials: [done.records.trials, done.records.held_out].concat(),
             answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),
         })
     })

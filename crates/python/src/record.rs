@@ -169,7 +169,7 @@ pub fn of_table(
     let sidecar = sidecar.map_err(Failure::input)?;
     let mut log = Log::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
     let mut warnings = Warnings::default();
-    warnings.extend(source(&path).of(std::mem::take(&mut log.warnings)));
+    warnings.extend(source(&path).attach_to(std::mem::take(&mut log.warnings)));
     let trial = trial_from_log(log, &path, options, &mut warnings)?;
     Ok(PyRecord { trial, warnings: warnings.ranked() })
 }
