@@ -20,7 +20,7 @@ use trial::{Channel, Trial, ZigZag};
 /// Reason for a prediction without track.
 const NO_MOTION: &str = "these records do not determine speed loss and drift, so no track can be predicted";
 
-/// Facts of a ship from her records independent of the fitted model, computed once for all methods.
+/// What the records alone say of a ship, whatever model is fitted; computed once for all methods.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
     trials: &'a [Trial],

@@ -4,7 +4,7 @@
 
 use super::statistic::Statistic;
 
-/// Trials of one size, with the number of detections.
+/// Number of trials, and of detections among them, at one size of the effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DetectionCount {
     /// Size, above zero.

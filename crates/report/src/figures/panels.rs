@@ -350,7 +350,7 @@ impl Stack {
     }
 }
 
-/// Data of [`super::Plot::Panels`].
+/// Stacks of panels in one figure, with their key and remarks.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panels {
     /// The stacks, in reading order.
