@@ -85,13 +85,6 @@ pub struct PredictedCharacteristic {
     pub ci90: [f64; 2],
 }
 
-impl PredictedCharacteristic {
-    /// `true` if the interval contains the truth.
-    pub fn covers_truth(&self) -> bool {
-        (self.ci90[0]..=self.ci90[1]).contains(&self.truth)
-    }
-}
-
 /// Result of a trace on one trial.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceRow {

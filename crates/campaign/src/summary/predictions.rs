@@ -1,5 +1,8 @@
 //! Coverage of the intervals of predictions, by characteristic of the manoeuvre.
 
+use std::array;
+use std::sync::LazyLock;
+
 use estimation::statistics::median;
 use predict::imo::limit_of;
 use serde::{Deserialize, Serialize};
@@ -18,12 +21,10 @@ pub struct PredictionSummary {
     pub name: Box<str>,
     /// Number of trials with the characteristic.
     pub trials: u64,
-    /// Number of trials whose 90 % interval contains the true value.
-    pub inside: u64,
     /// IMO criterion of the characteristic, with the decisions on it.
     pub criterion: Option<ImoDecisionTally>,
-    /// Trials whose interval, scaled about the median by each of [`interval_scales`], contains the true value, and sums
-    /// of their interval scores.
+    /// Number of trials whose 90 % interval, scaled about the median by each of [`INTERVAL_SCALES`], contains the true
+    /// value, and sum of their interval scores.
     scaled: Vec<(u64, f64)>,
     /// Sums over trials: error of the median, its square, width of the interval, true value.
     sums: [f64; 4],
@@ -33,11 +34,10 @@ pub struct PredictionSummary {
 const NOMINAL: f64 = 0.9;
 
 /// Factors by which intervals are scaled about the median to find the one that they lack: 1/8 to 32 in steps of 9 %.
-fn interval_scales() -> impl Iterator<Item = f64> {
-    (-24..=40).map(|eighths| f64::from(eighths) / 8.0).map(f64::exp2)
-}
+static INTERVAL_SCALES: LazyLock<[f64; 65]> =
+    LazyLock::new(|| array::from_fn(|place| ((place as f64 - UNSCALED as f64) / 8.0).exp2()));
 
-/// Place of the factor 1 in [`interval_scales`].
+/// Place of the factor 1 in [`INTERVAL_SCALES`].
 const UNSCALED: usize = 24;
 
 /// Interval score of a 90 % interval: its width, and 20 times the distance of the true value from it; small is good.
@@ -65,12 +65,13 @@ impl ConformalScaling {
     /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
     pub fn from_others(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
-            lines.iter().map(|line| line.scaled_coverage(place)).sum::<f64>() / lines.len() as f64
+            lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
         };
-        let (place, factor) = interval_scales().enumerate().find(|(place, _)| coverage(others, *place) >= NOMINAL)?;
-        let score = |place| median(&mut judged.iter().map(|line| line.relative_score(place)).collect::<Vec<_>>());
+        let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(others, *place) >= NOMINAL)?;
+        let relative = |line: &&PredictionSummary, place: usize| line.relative(line.mean_score(place));
+        let score = |place| median(&mut judged.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
         Some(Self {
-            factor,
+            factor: INTERVAL_SCALES[place],
             coverage: [UNSCALED, place].map(|place| coverage(judged, place)),
             score: [score(UNSCALED)?, score(place)?],
         })
@@ -106,7 +107,12 @@ impl ImoDecisionTally {
 impl PredictionSummary {
     /// Coverage of the 90 % intervals.
     pub fn coverage(&self) -> Option<Statistic> {
-        wilson_share(self.inside, self.trials)
+        wilson_share(self.scaled[UNSCALED].0, self.trials)
+    }
+
+    /// Share of the trials whose 90 % interval contains the true value.
+    pub fn inside_share(&self) -> f64 {
+        self.share_inside(UNSCALED)
     }
 
     fn mean(&self, place: usize) -> f64 {
@@ -133,17 +139,22 @@ impl PredictionSummary {
         self.mean(3)
     }
 
-    /// Mean interval score.
+    /// Mean interval score, in the unit of the characteristic.
     pub fn score(&self) -> f64 {
-        self.scaled[UNSCALED].1 / self.trials as f64
+        self.mean_score(UNSCALED)
     }
 
-    fn scaled_coverage(&self, place: usize) -> f64 {
+    /// Value of the unit of the characteristic, relative to the mean true value.
+    pub fn relative(&self, value: f64) -> f64 {
+        value / self.truth().abs()
+    }
+
+    fn share_inside(&self, place: usize) -> f64 {
         self.scaled[place].0 as f64 / self.trials as f64
     }
 
-    fn relative_score(&self, place: usize) -> f64 {
-        self.scaled[place].1 / self.trials as f64 / self.truth().abs()
+    fn mean_score(&self, place: usize) -> f64 {
+        self.scaled[place].1 / self.trials as f64
     }
 }
 
@@ -158,19 +169,19 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
                 limit,
                 ..ImoDecisionTally::default()
             });
-            lines.push(PredictionSummary { cell, method, name, criterion, ..PredictionSummary::default() });
+            let scaled = vec![(0, 0.0); INTERVAL_SCALES.len()];
+            lines.push(PredictionSummary { cell, method, name, criterion, scaled, ..PredictionSummary::default() });
             lines.len() - 1
         });
         let line = &mut lines[at];
         line.trials += 1;
-        line.inside += u64::from(figure.covers_truth());
         line.criterion.iter_mut().for_each(|tally| tally.add(figure));
         let error = figure.median - figure.truth;
         let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
         line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
-        line.scaled.resize(interval_scales().count(), (0, 0.0));
-        for (scale, (inside, score)) in interval_scales().zip(&mut line.scaled) {
-            let [low, high] = figure.ci90.map(|end| figure.median + scale * (end - figure.median));
+        for (scale, (inside, score)) in INTERVAL_SCALES.iter().zip(&mut line.scaled) {
+            // The unscaled interval keeps its ends to the last digit.
+            let [low, high] = figure.ci90.map(|end| end + (scale - 1.0) * (end - figure.median));
             *inside += u64::from((low..=high).contains(&figure.truth));
             *score += interval_score([low, high], figure.truth);
         }
@@ -196,7 +207,7 @@ mod tests {
         [99.0, 103.0, 97.0, 101.0].into_iter().for_each(|truth| add_predictions(&mut lines, &row(truth), None));
         add_predictions(&mut lines, &StudyRow::default(), None);
         let [first] = lines.try_into().expect("one figure");
-        assert_eq!((first.trials, first.inside), (4, 3));
+        assert_eq!((first.trials, first.scaled[UNSCALED].0), (4, 3));
         assert_eq!((first.bias(), first.width(), first.truth()), (0.0, 5.0, 100.0));
         assert!((first.rms() - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(first.coverage().expect("trials").value, 0.75);

@@ -39,14 +39,14 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let mut cells = row_labels(design, first.cell, first.method);
         cells.push(group.len().to_string());
         cells.push(group.iter().map(|line| line.trials).max().unwrap_or(0).to_string());
-        let inside_percent = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
+        let inside_percent = |line: &PredictionSummary| 100.0 * line.inside_share();
         let mut sorted: Vec<&PredictionSummary> = group.iter().collect();
         sorted.sort_by(|a, b| inside_percent(a).total_cmp(&inside_percent(b)));
         let ends = [sorted[0], sorted[sorted.len() - 1]];
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
         for value in [PredictionSummary::width, PredictionSummary::score] {
-            let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * value(line) / line.truth().abs()).collect();
+            let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * line.relative(value(line))).collect();
             cells.push(optional(median(&mut relative), 1));
         }
         cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));

@@ -5,7 +5,6 @@ use document::single_records::{Amplitude, SingleRecord, SingleRecords};
 use document::trace::{Indices, TraceDocument};
 use report::number::{fixed, significant};
 use report::{Table, TableHead};
-use ship::effects;
 
 use super::method_table::estimate;
 
@@ -57,11 +56,9 @@ pub fn trace_table(document: &TraceDocument) -> Table {
     );
     let trace = &document.trace;
     let is_same = trace.model.indices == trace.base;
-    let listed = effects::all();
-    let has_input = |id: &str, form: &str| {
-        listed.iter().any(|effect| (effect.id(), effect.form()) == (id, form) && effect.needs().is_some())
-    };
-    let needs_channel = trace.effects.iter().any(|named| has_input(&named.id, &named.form));
+    let most_probable = document.ship.members.first().and_then(|member| member.model().ok());
+    let needs_channel =
+        most_probable.is_some_and(|model| model.effects().iter().any(|effect| effect.needs().is_some()));
     // With sway or speed as an input K and T are not those of a ship that responds to her rudder alone.
     let (of_model, use_of_model) = match needs_channel {
         true => ("the model, beside measured speed or sway", "the model alone"),

@@ -88,7 +88,8 @@ fn pale(layer: Layer) -> Layer {
 
 /// Highlights layers; returns a remark on methods that are missing in a panel.
 fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
-    let (about, Highlight { rows, over_bound, .. }) = (&highlight.methods(), highlight);
+    let about = &highlight.methods();
+    let Highlight { rows, over_bound, .. } = highlight;
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
@@ -184,8 +185,8 @@ fn keep_t(stack: &mut Stack) {
 /// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
 /// colon become one row, their mean.
 fn of_cells(data: &mut CellMap, highlight: &Highlight) {
-    let (about, rows) = (highlight.methods(), &highlight.rows);
-    data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), &about));
+    let (about, rows) = (&highlight.methods(), &highlight.rows);
+    data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
     let is_empty = |column: &usize| {
         let mut cells = data.panels.iter().flat_map(|(_, panel)| panel).map(|row| &row[*column]);
         cells.all(|cell| cell.value == Some(0.0) && cell.outline.is_none())

@@ -42,7 +42,8 @@ pub fn tint(colour: RGBColor) -> RGBColor {
 
 /// Highlights rows; returns a remark on their colours.
 pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
-    let (about, Highlight { rows, over_bound, .. }) = (&highlight.methods(), highlight);
+    let about = &highlight.methods();
+    let Highlight { rows, over_bound, .. } = highlight;
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
         for (item, name) in

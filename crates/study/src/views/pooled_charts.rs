@@ -258,8 +258,8 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
     };
     let names = rows.iter().map(|(name, _)| name.clone());
     let names = several.then(|| String::from(ALL)).into_iter().chain(names).collect();
-    let inside = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
-    let width = |line: &PredictionSummary| 100.0 * line.width() / line.truth().abs();
+    let inside = |line: &PredictionSummary| 100.0 * line.inside_share();
+    let width = |line: &PredictionSummary| 100.0 * line.relative(line.width());
     (!summary.predictions.is_empty()).then(|| NamedRows {
         names,
         columns: vec![
