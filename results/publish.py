@@ -31,11 +31,11 @@ HEAD = "# Results\n"
 STUDIES = """
 ## Studies
 
-One study a section: its question, what came out, and the figure that shows it; its name leads to the whole report. The
-folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest. Rows are not stored:
-`study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that stands in its
-section. A study of measured records needs their folder in `KEMPF_DATA`; one that asks other programs is run from its
-scenario.
+Each section is a study: its question, its result, and the figure that shows the result. The name leads to the whole
+report. The folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest. Rows are
+not stored: `study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that the
+section gives. A study of measured records needs their folder in `KEMPF_DATA`. A study that asks other programs is run
+from its scenario.
 """
 
 
