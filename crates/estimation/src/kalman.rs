@@ -9,10 +9,11 @@
 
 mod matrix;
 pub mod smoother;
+pub mod whitener;
 
+use matrix::congruence_upper;
 pub use matrix::{congruence, identity, product, sum};
-
-use crate::lanes::{Kernel, run};
+pub use whitener::Whitener;
 
 /// Maximum number of states of a [`Whitener`].
 pub const MAX_STATES: usize = 5;
@@ -44,6 +45,16 @@ impl<const N: usize> Step<N> {
     /// Covariance after the step, F P Fᵀ + Q.
     pub fn propagate(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
         sum(&self.process_noise, &congruence(&self.transition, covariance))
+    }
+
+    /// Covariance after a step with an upper triangular transition matrix.
+    fn propagate_upper(&self, covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
+        sum(&self.process_noise, &congruence_upper(&self.transition, covariance))
+    }
+
+    /// `true` if the transition matrix is upper triangular.
+    fn is_upper(&self) -> bool {
+        (0..N).all(|i| self.transition[i][..i].iter().all(|&value| value == 0.0))
     }
 }
 
@@ -157,6 +168,8 @@ pub struct Filter<const N: usize> {
     gains: Vec<Gain<N>>,
     /// 1/√S of every gain.
     weights: Vec<f64>,
+    /// log S of every gain.
+    log_variances: Vec<f64>,
     /// Index of the gain of every reading.
     gain_of: Vec<u32>,
 }
@@ -180,14 +193,25 @@ impl<const N: usize> Filter<N> {
         // Covariances after the last readings, by their position in the period.
         let mut after = [system.initial; MAX_PERIOD];
         let mut stationary = 0;
-        for (number, reading) in readings.iter().enumerate() {
+        let is_upper = system.steps.iter().all(Step::is_upper);
+        let mut number = 0;
+        while number < readings.len() {
+            let reading = &readings[number];
             let repeats = number >= MAX_PERIOD && readings[number - MAX_PERIOD] == *reading;
             if repeats && stationary >= MAX_PERIOD {
-                gain_of.push(gain_of[number - MAX_PERIOD]);
+                let period = [gain_of[number - 2], gain_of[number - 1]];
+                let again = readings[number..].iter().zip(&readings[number - MAX_PERIOD..]);
+                let again = again.take_while(|(reading, before)| reading == before).count();
+                gain_of.extend((0..again).map(|k| period[k % MAX_PERIOD]));
+                number += again;
                 continue;
             }
             let before = &after[(number + MAX_PERIOD - 1) % MAX_PERIOD];
-            let mut covariance = reading.step().map_or(*before, |step| system.steps[step].propagate(before));
+            let mut covariance = match reading.step().map(|step| &system.steps[step]) {
+                Some(step) if is_upper => step.propagate_upper(before),
+                Some(step) => step.propagate(before),
+                None => *before,
+            };
             visit(&covariance);
             let gain = correct(&mut covariance, &system.sensors[reading.sensor()]);
             after[number % MAX_PERIOD] = covariance;
@@ -198,33 +222,19 @@ impl<const N: usize> Filter<N> {
             stationary = if is_stationary { stationary + 1 } else { 0 };
             gain_of.push(gains.len() as u32);
             gains.push(gain);
+            number += 1;
         }
         let (gains, gain_of) = filter;
         let weights = gains.iter().map(|gain| gain.variance.sqrt().recip()).collect();
-        Self { system, gains, weights, gain_of }
+        let log_variances = gains.iter().map(|gain| gain.variance.ln()).collect();
+        Self { system, gains, weights, log_variances, gain_of }
     }
 
     /// Sum Σ log S over the readings.
     pub fn log_determinant(&self) -> f64 {
-        let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.ln()).collect();
-        self.gain_of.iter().map(|&gain| logs[gain as usize]).sum()
-    }
-
-    /// Whitener of the filter, independent of the number of states at compile time.
-    pub fn whitener(&self) -> Whitener {
-        let wide =
-            |row: &[f64; N]| -> [f64; MAX_STATES] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
-        let matrix = |f: &[[f64; N]; N]| -> [[f64; MAX_STATES]; MAX_STATES] {
-            std::array::from_fn(|k| f.get(k).map_or([0.0; MAX_STATES], wide))
-        };
-        Whitener {
-            states: N,
-            transitions: self.system.steps.iter().map(|step| matrix(&step.transition)).collect(),
-            sensors: self.system.sensors.clone(),
-            gains: self.gains.iter().zip(&self.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
-            readings: self.system.readings.iter().copied().zip(self.gain_of.iter().copied()).collect(),
-            log_variance: self.log_determinant(),
-        }
+        let mut counts = vec![0_u32; self.gains.len()];
+        self.gain_of.iter().for_each(|&gain| counts[gain as usize] += 1);
+        counts.iter().zip(&self.log_variances).map(|(&count, log)| f64::from(count) * log).sum()
     }
 }
 
@@ -266,135 +276,4 @@ macro_rules! with_states {
         const $N: usize = $number;
         $body
     }};
-}
-
-/// Whitening filter: turns columns of readings into innovations in units of their standard deviation.
-#[derive(Debug, Clone)]
-pub struct Whitener {
-    states: usize,
-    transitions: Vec<[[f64; MAX_STATES]; MAX_STATES]>,
-    sensors: Vec<Sensor>,
-    /// Gains, each with 1/√S.
-    gains: Vec<([f64; MAX_STATES], f64)>,
-    /// Every reading with the index of its gain.
-    readings: Vec<(Reading, u32)>,
-    /// Sum Σ log S over the readings.
-    pub log_variance: f64,
-}
-
-impl Whitener {
-    /// Log variance log S of every innovation.
-    pub fn log_variances(&self) -> Vec<f64> {
-        let logs: Vec<f64> = self.gains.iter().map(|(_, weight)| -2.0 * weight.ln()).collect();
-        self.readings.iter().map(|&(_, gain)| logs[gain as usize]).collect()
-    }
-
-    /// Whitens columns in place, several at once: the recursion within a column is serial, the columns are independent.
-    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
-        with_states!(self.states, N => {
-            for columns in columns.chunks_mut(COLUMNS) {
-                match columns.len() {
-                    1 => run(Whitening::<N, 1> { whitener: self, columns }),
-                    _ => run(Whitening::<N, COLUMNS> { whitener: self, columns }),
-                }
-            }
-        });
-    }
-
-    /// Predicted states before every reading of a column, given the earlier readings.
-    pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
-        let mut x = [[0.0]; MAX_STATES];
-        let predict = |(&value, &(reading, gain)): (&f64, &(Reading, u32))| {
-            if let Some(step) = reading.step() {
-                x = advanced(&self.transitions[step], &x);
-            }
-            let before = x.map(|[state]| state);
-            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[reading.sensor()].observe(&x) };
-            let (gain, _) = &self.gains[gain as usize];
-            x.iter_mut().zip(gain).for_each(|(state, gain)| state[0] += gain * (value - seen));
-            before
-        };
-        column.iter().zip(&self.readings).map(predict).collect()
-    }
-
-    /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse covariance of the
-    /// noise.
-    pub fn apply_transposed(&self, column: &mut [f64]) {
-        let mut later = [0.0; MAX_STATES];
-        for (value, &(reading, gain)) in column.iter_mut().zip(&self.readings).rev() {
-            let (gain, weight) = &self.gains[gain as usize];
-            *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
-            let Sensor { state, second_state, .. } = self.sensors[reading.sensor()];
-            [Some(state), second_state].into_iter().flatten().for_each(|state| later[state] -= *value);
-            if let Some(step) = reading.step() {
-                let f = &self.transitions[step];
-                later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());
-            }
-        }
-    }
-}
-
-/// Number of columns whitened at once, and number of rows copied at a time for them.
-const COLUMNS: usize = 8;
-const ROWS: usize = 64;
-
-/// Whitening of up to `COLUMNS` columns.
-struct Whitening<'a, 'b, const N: usize, const COLUMNS: usize> {
-    whitener: &'a Whitener,
-    columns: &'a mut [&'b mut Vec<f64>],
-}
-
-impl<const N: usize, const COLUMNS: usize> Kernel for Whitening<'_, '_, N, COLUMNS> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Whitener { transitions, sensors, gains, readings, .. } = self.whitener;
-        let mut x = [[0.0; COLUMNS]; N];
-        // A missing column contains zeros.
-        let mut block = [[0.0; COLUMNS]; ROWS];
-        for (number, readings) in readings.chunks(ROWS).enumerate() {
-            let rows = number * ROWS..number * ROWS + readings.len();
-            for (k, column) in self.columns.iter().enumerate() {
-                block.iter_mut().zip(&column[rows.clone()]).for_each(|(values, value)| values[k] = *value);
-            }
-            for (values, &(reading, gain)) in block.iter_mut().zip(readings) {
-                if let Some(step) = reading.step() {
-                    x = advanced(&transitions[step], &x);
-                }
-                let (gain, weight) = &gains[gain as usize];
-                let seen = sensors[reading.sensor()].observe(&x);
-                let mut innovation = [0.0; COLUMNS];
-                for k in 0..COLUMNS {
-                    innovation[k] = values[k] - seen[k];
-                    values[k] = innovation[k] * weight;
-                }
-                for (x, gain) in x.iter_mut().zip(gain) {
-                    for k in 0..COLUMNS {
-                        x[k] += gain * innovation[k];
-                    }
-                }
-            }
-            for (k, column) in self.columns.iter_mut().enumerate() {
-                column[rows.clone()].iter_mut().zip(&block).for_each(|(value, values)| *value = values[k]);
-            }
-        }
-    }
-}
-
-/// Product F x for several state vectors at once.
-#[inline(always)]
-fn advanced<const N: usize, const COLUMNS: usize>(
-    f: &[[f64; MAX_STATES]; MAX_STATES],
-    x: &[[f64; COLUMNS]; N],
-) -> [[f64; COLUMNS]; N] {
-    let mut next = [[0.0; COLUMNS]; N];
-    for (next, f) in next.iter_mut().zip(f) {
-        for (x, f) in x.iter().zip(f) {
-            for k in 0..COLUMNS {
-                next[k] += f * x[k];
-            }
-        }
-    }
-    next
 }

@@ -26,6 +26,7 @@ pub mod minimum;
 pub mod mixture;
 pub mod number;
 pub mod residuals;
+pub mod rows;
 pub mod statistics;
 pub mod stochastic;
 pub mod subsets;

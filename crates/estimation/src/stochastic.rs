@@ -74,7 +74,7 @@ impl System<MAX_STATES> {
                 readings: self.readings.clone(),
                 initial: first(&self.initial),
             };
-            Filter::with_tolerance(system, tolerance).whitener()
+            Filter::with_tolerance(system, tolerance).into_whitener()
         })
     }
 }

@@ -20,6 +20,7 @@ mod search;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod weight;
 
 use choice::PreparedRecords;
 use trial::Trial;

@@ -70,6 +70,12 @@ pub(crate) struct WrittenRows {
 }
 
 impl PerfectReadings {
+    /// `true` if the records of all keys have the same times and the same rudder.
+    pub fn has_one_rudder(&self, sensors: &Sensors) -> bool {
+        let is_disturbed = self.rudder_is_read && sensors.rudder_noise > 0.0;
+        !is_disturbed && !(sensors.drop_out.whole_row && sensors.drop_out.can_lose_rows())
+    }
+
     /// Readings of all instruments in every row; `stamps` in s.
     pub fn new(stamps: Vec<f64>, view: &TrueRunView) -> Self {
         let column = |value: fn(&Sample) -> f64| view.samples.iter().map(value).collect::<Vec<f64>>();
@@ -109,14 +115,30 @@ pub(crate) fn with_sensor_errors(
     waves: SeaWaves,
     key: &StreamKey,
 ) -> WrittenRows {
-    let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut rudder = scene.rudder.clone();
     if scene.rudder_is_read {
         disturb(&mut rudder, sensors.rudder_noise, key.rng(Purpose::Rudder));
         quantise_all(&mut rudder, sensors.rudder_quantum);
     }
+    let (channels, kept) = channels_with_errors(sensors, scene, waves, key);
+    let mut columns = Columns { time: scene.stamps.clone(), channels, unknown: Vec::new() };
+    columns.channels.insert(Channel::Rudder, rudder);
+    if let Some(kept) = &kept {
+        retain_flagged(&mut columns.time, kept);
+        columns.channels.values_mut().for_each(|values| retain_flagged(values, kept));
+    }
+    WrittenRows { columns, kept }
+}
+
+/// Channels of a scene, all but the rudder, with the random errors of `key`, and the flags of [`WrittenRows`].
+pub(crate) fn channels_with_errors(
+    sensors: &Sensors,
+    scene: &PerfectReadings,
+    waves: SeaWaves,
+    key: &StreamKey,
+) -> (BTreeMap<Channel, Vec<f64>>, Option<Vec<bool>>) {
+    let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut channels: BTreeMap<Channel, Vec<f64>> = scene.exact.iter().cloned().collect();
-    channels.insert(Channel::Rudder, rudder);
     if let Some(yaw_rate) = yaw_rate {
         channels.insert(Channel::YawRate, yaw_rate);
     }
@@ -133,12 +155,7 @@ pub(crate) fn with_sensor_errors(
         }
     }
     channels.insert(Channel::Heading, heading);
-    let mut columns = Columns { time: scene.stamps.clone(), channels, unknown: Vec::new() };
-    if let Some(kept) = &kept {
-        retain_flagged(&mut columns.time, kept);
-        columns.channels.values_mut().for_each(|values| retain_flagged(values, kept));
-    }
-    WrittenRows { columns, kept }
+    (channels, kept)
 }
 
 /// Removes the values of the rows whose flag is `false`.
@@ -252,7 +269,7 @@ fn wind_channels(view: &TrueRunView) -> Vec<(Channel, Vec<f64>)> {
 
 /// For every row, `true` if it is lost; `None` if no row can be lost.
 fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<bool>> {
-    if drop_out.probability <= 0.0 && drop_out.burst_probability.is_none() {
+    if !drop_out.can_lose_rows() {
         return None;
     }
     let mut rng: ChaCha8Rng = key.rng(Purpose::DropOut);

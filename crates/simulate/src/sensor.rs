@@ -156,6 +156,11 @@ impl Sensors {
 }
 
 impl DropOut {
+    /// `true` if a row can be lost.
+    pub fn can_lose_rows(&self) -> bool {
+        self.probability > 0.0 || self.burst_probability.is_some()
+    }
+
     fn check(&self) -> Check {
         error::check_between("sensor.drop-out.probability", self.probability, 0.0, 1.0)?;
         match (self.burst_probability, self.burst_mean_rows) {

@@ -137,38 +137,9 @@ pub struct SimulatedTrial {
 
 /// True run without the random errors of the record.
 #[derive(Debug, Clone)]
-struct TrueRun {
-    scene: PerfectReadings,
-    truth: Arc<Truth>,
-}
-
-/// Simulation prepared for many keys. If no random input acts on ship and helmsman, the run is computed once, and every
-/// key determines only the instrument errors. The records are identical to the records of [`Simulation::run`].
-#[derive(Debug, Clone)]
-pub struct PreparedSimulation {
-    simulation: Simulation,
-    true_run: Option<TrueRun>,
-}
-
-impl PreparedSimulation {
-    /// Simulation prepared for many keys: checked, with the part computed that all keys share.
-    ///
-    /// Fails if [`Simulation::run`] fails.
-    pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
-        simulation.check()?;
-        let true_run = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
-        Ok(Self { simulation, true_run })
-    }
-
-    /// Trial of `key`.
-    ///
-    /// Fails if [`Simulation::run`] fails.
-    pub fn run(&self, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
-        match &self.true_run {
-            Some(true_run) => self.simulation.record(true_run, key),
-            None => self.simulation.record(&self.simulation.sail(key)?, key),
-        }
-    }
+pub(crate) struct TrueRun {
+    pub scene: PerfectReadings,
+    pub truth: Arc<Truth>,
 }
 
 /// Default of [`Simulation::longest_wait`], s; no ship of the registry takes ten minutes for one leg of a zig-zag.
@@ -268,7 +239,7 @@ impl Simulation {
     }
 
     /// `true` if no random input acts on ship, helmsman or the instants of the rows.
-    fn is_repeatable(&self) -> bool {
+    pub(crate) fn is_repeatable(&self) -> bool {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
         let seas = waves.is_some() || !self.ship.random_headings().is_empty();
@@ -279,7 +250,7 @@ impl Simulation {
 
     /// True run from the beginning to the end of the record. Fails for the reasons of [`run`](Self::run), except an
     /// invalid specification.
-    fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
+    pub(crate) fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
         match self.closed_form() {
@@ -389,23 +360,32 @@ impl Simulation {
     }
 
     /// Record of a run with the random errors of `key`.
-    fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
+    pub(crate) fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         let waves = SeaWaves::new(&self.disturbances, &self.ship, key);
         let written = measure::with_sensor_errors(&self.sensors, &true_run.scene, waves, key);
         let truth = match &written.kept {
             None => Arc::clone(&true_run.truth),
             Some(kept) => Arc::new(true_run.truth.keep(kept)),
         };
-        let StreamKey { cell, replicate, .. } = *key;
+        let (name, origin) = self.name_and_origin(key);
+        Ok(SimulatedTrial { trial: self.with_declarations(Trial::new(name, origin, written.columns)?), truth })
+    }
+
+    /// Name and origin of the record of `key`.
+    pub(crate) fn name_and_origin(&self, StreamKey { cell, replicate, .. }: &StreamKey) -> (String, Origin) {
+        let (cell, replicate) = (*cell, *replicate);
         let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
-        let name = format!("{}-{cell}-{replicate}", self.scenario);
+        (format!("{}-{cell}-{replicate}", self.scenario), origin)
+    }
+
+    /// The same record with the declared noise, weather and particulars.
+    pub(crate) fn with_declarations(&self, trial: Trial) -> Trial {
         let conditions = Conditions { weather: self.recording.weather, ..Conditions::default() };
-        let trial = Trial::new(name, origin, written.columns)?.with_noise(self.sensors.declared_noise());
-        let mut trial = trial.with_conditions(conditions);
-        if let Some(particulars) = self.ship.particulars() {
-            trial = trial.with_particulars(particulars);
+        let trial = trial.with_noise(self.sensors.declared_noise()).with_conditions(conditions);
+        match self.ship.particulars() {
+            Some(particulars) => trial.with_particulars(particulars),
+            None => trial,
         }
-        Ok(SimulatedTrial { trial, truth })
     }
 }
 

@@ -5,6 +5,7 @@ mod corners;
 pub(crate) mod wind;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use ship::signal::SignalError;
 use ship::vessel::prior::HullParticulars;
@@ -127,7 +128,8 @@ pub enum TrialError {
 pub struct Trial {
     name: String,
     origin: Origin,
-    rudder: RecordedRudder,
+    /// Shared by the records of many trials with one rudder.
+    rudder: Arc<RecordedRudder>,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
     heading_from_yaw_rate: bool,
@@ -167,7 +169,17 @@ impl Trial {
             }
         }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
-        let rudder = RecordedRudder::new(signal(time, rudder)?);
+        let rudder = Arc::new(RecordedRudder::new(signal(time, rudder)?));
+        Self::from_rudder(rudder, name.into(), origin, channels, unknown)
+    }
+
+    fn from_rudder(
+        rudder: Arc<RecordedRudder>,
+        name: String,
+        origin: Origin,
+        mut channels: BTreeMap<Channel, Vec<f64>>,
+        unknown: Vec<(String, Vec<f64>)>,
+    ) -> Result<Self, TrialError> {
         let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
         if heading_from_yaw_rate {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
@@ -178,7 +190,7 @@ impl Trial {
             return Err(TrialError::TooShort { needed: Self::MIN_ROWS, found: headings });
         }
         Ok(Self {
-            name: name.into(),
+            name,
             origin,
             rudder,
             channels,

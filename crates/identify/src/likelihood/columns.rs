@@ -15,35 +15,43 @@ pub struct MotionColumns {
 
 impl MotionColumns {
     /// The three columns of the heading.
-    fn headings(&mut self) -> [&mut Vec<f64>; 3] {
+    pub fn headings(&self) -> [&[f64]; 3] {
+        [&self.homogeneous, &self.rudder, &self.constant]
+    }
+
+    fn headings_mut(&mut self) -> [&mut Vec<f64>; 3] {
         [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
     }
 
     /// Columns of zeros; `rate` is the row and the value of the homogeneous yaw rate at the anchor, if there are rates.
     pub(super) fn reset(&mut self, rows: usize, rate: Option<(usize, f64)>) {
-        self.headings().into_iter().for_each(|column| *column = vec![0.0; rows]);
+        self.headings_mut().into_iter().for_each(|column| *column = vec![0.0; rows]);
         if let Some((anchor, rate)) = rate {
-            self.rates.all().into_iter().for_each(|column| *column = vec![0.0; rows]);
+            self.rates.all_mut().into_iter().for_each(|column| *column = vec![0.0; rows]);
             self.rates.homogeneous[anchor] = rate;
         }
     }
 
     /// Keeps the rows with a heading and those with a yaw rate.
     pub(super) fn keep(&mut self, headings: &[usize], rates: &[usize]) {
-        self.headings().into_iter().for_each(|column| keep(headings, column));
-        self.rates.all().into_iter().for_each(|column| keep(rates, column));
+        self.headings_mut().into_iter().for_each(|column| keep(headings, column));
+        self.rates.all_mut().into_iter().for_each(|column| keep(rates, column));
     }
 
     /// Columns of the heading and of the yaw rate.
     pub(super) fn slices(&mut self) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
         let Self { homogeneous, rudder, constant, rates } = self;
-        ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all().map(Vec::as_mut_slice))
+        ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all_mut().map(Vec::as_mut_slice))
     }
 }
 
 impl RateColumns {
     /// The three columns.
-    pub(super) fn all(&mut self) -> [&mut Vec<f64>; 3] {
+    pub fn all(&self) -> [&[f64]; 3] {
+        [&self.homogeneous, &self.rudder, &self.constant]
+    }
+
+    fn all_mut(&mut self) -> [&mut Vec<f64>; 3] {
         [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
     }
 }

@@ -11,7 +11,7 @@ use super::transition::transition_step;
 /// Whitening filter for columns of one record, in units of the compass error, with variances of the initial heading and
 /// yaw rate in units of the compass variance.
 pub fn whitener(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> Whitener {
-    with_states!(parameters.states(), N => Filter::<N>::new(system(schedule, parameters, initial)).whitener())
+    with_states!(parameters.states(), N => Filter::<N>::new(system(schedule, parameters, initial)).into_whitener())
 }
 
 fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> System<N> {

@@ -17,6 +17,7 @@ mod columns;
 pub mod filter;
 pub mod parameters;
 pub mod schedule;
+pub mod tangents;
 #[cfg(test)]
 mod tests;
 pub mod track;

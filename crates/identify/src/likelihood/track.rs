@@ -219,7 +219,7 @@ impl Track {
         })
     }
 
-    fn anchor_row(&self, backward: bool) -> usize {
+    pub(super) fn anchor_row(&self, backward: bool) -> usize {
         if backward { self.time.len() - 1 } else { 0 }
     }
 
@@ -283,66 +283,6 @@ impl Track {
                 yaw_rate[1] += more_rate;
             }
             visit(to, heading, yaw_rate);
-        }
-    }
-
-    /// Fills the columns for a = `inverse_time`, 1/s, and their derivatives with respect to a.
-    pub fn fill_with_tangents(&self, inverse_time: f64, columns: &mut MotionColumns, tangents: &mut MotionColumns) {
-        let (rows, backward) = (self.time.len(), is_backward(inverse_time));
-        let anchor = self.anchor_row(backward);
-        let has_rates = !self.observed_rates.is_empty();
-        for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
-            columns.reset(rows, has_rates.then_some((anchor, rate)));
-        }
-        let ([f, g, h], [fr, gr, hr]) = columns.slices();
-        let ([df, dg, dh], [dfr, dgr, dhr]) = tangents.slices();
-        self.motions_with_tangents(inverse_time, backward, |row, [heading, by_heading], [rate, by_rate]| {
-            [f[row], g[row], h[row], _] = heading;
-            [df[row], dg[row], dh[row], _] = by_heading;
-            if has_rates {
-                [fr[row], gr[row], hr[row], _] = rate;
-                [dfr[row], dgr[row], dhr[row], _] = by_rate;
-            }
-        });
-        for columns in [columns, tangents] {
-            columns.keep(&self.observed, &self.observed_rates);
-        }
-    }
-
-    /// Visits heading and yaw rate of the motions φ₁, G, H (and a fourth at rest, for alignment) and their derivatives
-    /// with respect to a, at every row but the anchor.
-    #[inline(always)]
-    fn motions_with_tangents(
-        &self,
-        inverse_time: f64,
-        backward: bool,
-        mut visit: impl FnMut(usize, [[f64; 4]; 2], [[f64; 4]; 2]),
-    ) {
-        let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
-        let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
-        let mut step = TangentTransition::new(inverse_time, 0.0);
-        for TrackStep { from, to, duration, rudder_rate: slope, bend } in self.steps(backward) {
-            if durations_differ(step.value.h, duration) {
-                step = TangentTransition::new(inverse_time, duration);
-            }
-            let (f, d, delta) = (&step.value, &step.by_inverse_T, self.rudder[from]);
-            let forced = |[one, two]: [f64; 2]| [0.0, one * delta + two * slope, one, 0.0];
-            let (of_heading, of_rate) = (forced([f.phi2, f.phi3]), forced([f.phi1, f.phi2]));
-            let (of_by_heading, of_by_rate) = (forced([d.phi2, d.phi3]), forced([d.phi1, d.phi2]));
-            for motion in 0..4 {
-                by_heading[motion] += f.phi1 * by_rate[motion] + (d.phi1 * rate[motion] + of_by_heading[motion]);
-                by_rate[motion] = f.decay * by_rate[motion] + (d.decay * rate[motion] + of_by_rate[motion]);
-                heading[motion] += f.phi1 * rate[motion] + of_heading[motion];
-                rate[motion] = f.decay * rate[motion] + of_rate[motion];
-            }
-            if let Some(RudderCorner { remaining, change }) = bend {
-                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, remaining);
-                heading[1] += value.phi3 * change;
-                rate[1] += value.phi2 * change;
-                by_heading[1] += by_inverse_T.phi3 * change;
-                by_rate[1] += by_inverse_T.phi2 * change;
-            }
-            visit(to, [heading, by_heading], [rate, by_rate]);
         }
     }
 

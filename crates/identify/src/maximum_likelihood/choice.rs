@@ -5,8 +5,8 @@ use ship::FirstOrder;
 use trial::Trial;
 
 use super::outliers::{self, MAX_OUTLIER_SHARE, Suspects};
-use super::point::{Point, Record, evaluate, reading_count};
-use super::search::{Maximum, Ranges, Search, Start, gyro_start};
+use super::point::{Point, Record, Start, evaluate, reading_count};
+use super::search::{Maximum, Ranges, Search, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
@@ -190,7 +190,8 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     let track = &record.track;
-    let plain = evaluate(std::slice::from_ref(record), start.inverse_T, &[NoiseVector::default()]);
+    let plain =
+        evaluate(std::slice::from_ref(record), &[(start.inverse_T, vec![NoiseVector::default()])]).pop().flatten();
     let spacing = track.duration() / (track.len() - 1) as f64;
     let residual = plain.map_or(1.0, |point| {
         let part = &point.parts[0];
@@ -238,7 +239,7 @@ fn fit_laws(
     }
     for (a, vectors) in coloured_starts {
         let starts = search.entry_starts(a, &vectors, COMPASS);
-        let start = search.best_start(starts, |point| point.restricted);
+        let start = search.best_start(&starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
     // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already
@@ -284,13 +285,13 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         }
         let restricted = |point: &Point| point.restricted;
         let start = match kind {
-            MomentKind::None if none[0].rudder => search.best_start(search.entry_starts(a, &none, RUDDER), restricted),
-            MomentKind::None => search.evaluate(a, &none),
+            MomentKind::None if none[0].rudder => search.best_start(&search.entry_starts(a, &none, RUDDER), restricted),
+            MomentKind::None => search.evaluate((a, none.clone())),
             MomentKind::White | MomentKind::Walk => {
-                search.best_level(search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))
+                search.best_level(&search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))
             }
             MomentKind::OrnsteinUhlenbeck => {
-                search.best_start(search.gust_starts(white.as_ref(), walk.as_ref()), restricted)
+                search.best_start(&search.gust_starts(white.as_ref(), walk.as_ref()), restricted)
             }
         };
         // A moment without gain at any size is absent; the BIC still counts its entries.
@@ -353,14 +354,16 @@ fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVec
     let points = (decades * VALUES_PER_DECADE as f64).ceil() as usize;
     let sizes = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
     let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_time).abs() > 0.2 * a.abs()).collect();
-    search.best_start(starts.into_iter().map(|a| (a, vectors.to_vec())).collect(), |point| point.deviance)
+    let starts: Vec<Start> = starts.into_iter().map(|a| (a, vectors.to_vec())).collect();
+    search.best_start(&starts, |point| point.deviance)
 }
 
 /// Keeps the suspected jumps that raise the likelihood enough under the noise of a point.
 fn keep_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
     for number in 0..records.len() {
         for jump in outliers[number].jumps.clone() {
-            let height = |records: &[Record]| evaluate(records, point.inverse_time, &point.vectors).map(|p| p.deviance);
+            let start = [(point.inverse_time, point.vectors.clone())];
+            let height = |records: &[Record]| Some(evaluate(records, &start).pop()??.deviance);
             let before = height(records);
             records[number].jumps.push(jump);
             let gain = before.zip(height(records)).map_or(0.0, |(before, after)| before - after);

@@ -89,7 +89,7 @@ pub(super) fn find_suspects(whole: &Track, residual: &[f64], excluded: &[usize])
 struct Neighbours {
     /// Reading minus the median of the neighbours, rad.
     distance: f64,
-    /// Median distance of the neighbours from their median, rad.
+    /// Median distance of the neighbours from their median, rad; 0 for a reading with neighbours on both sides.
     spread: f64,
 }
 
@@ -107,21 +107,38 @@ fn isolation(sides: [Option<Neighbours>; 2]) -> f64 {
 
 /// Comparison of every reading with its neighbours before and after.
 fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> {
-    let against = |k: usize, side: std::ops::Range<usize>| {
+    let values: Vec<f64> = kept.iter().map(|&place| residual[place]).collect();
+    let rows = values.len();
+    let level = |side: &[f64]| -> Option<f64> {
         let mut neighbours = [0.0; NEIGHBOURS];
         let around = &mut neighbours[..side.len()];
-        around.iter_mut().zip(&kept[side]).for_each(|(value, &other)| *value = residual[other]);
-        (around.len() >= MIN_NEIGHBOURS).then(|| {
-            let level = middle(around);
-            around.iter_mut().for_each(|value| *value = (*value - level).abs());
-            Neighbours { distance: residual[kept[k]] - level, spread: middle(around) }
-        })
+        around.copy_from_slice(side);
+        (side.len() >= MIN_NEIGHBOURS).then(|| middle(around))
     };
-    (0..kept.len())
-        .map(|k| {
-            [k.saturating_sub(NEIGHBOURS)..k, k + 1..(k + 1 + NEIGHBOURS).min(kept.len())].map(|side| against(k, side))
-        })
-        .collect()
+    // The neighbours after a reading are those before a later reading; the last rows have fewer after them.
+    let before: Vec<Option<f64>> = (0..=rows).map(|k| level(&values[k.saturating_sub(NEIGHBOURS)..k])).collect();
+    let after = |k: usize| match k + 1 + NEIGHBOURS {
+        end if end <= rows => before[end],
+        _ => level(&values[k + 1..]),
+    };
+    let spread = |side: &[f64], level: f64| {
+        let mut distances: Vec<f64> = side.iter().map(|value| (value - level).abs()).collect();
+        middle(&mut distances)
+    };
+    let sides = |k: usize| {
+        let (left, right) = (before[k], after(k));
+        // Only the single side of a reading at an end is asked for its spread.
+        let alone = left.is_none() || right.is_none();
+        let ranges = [k.saturating_sub(NEIGHBOURS)..k, k + 1..(k + 1 + NEIGHBOURS).min(rows)];
+        let [left, right] = [(left, &ranges[0]), (right, &ranges[1])].map(|(level, range)| {
+            level.map(|level| Neighbours {
+                distance: values[k] - level,
+                spread: if alone { spread(&values[range.clone()], level) } else { 0.0 },
+            })
+        });
+        [left, right]
+    };
+    (0..rows).map(sides).collect()
 }
 
 /// First readings after changes of level.

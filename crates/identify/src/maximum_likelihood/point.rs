@@ -5,27 +5,25 @@
 //! other unknowns: the likelihood of the part that these unknowns cannot fit, which does not underestimate the noise
 //! (Patterson and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
 
+use std::array;
 use std::cell::RefCell;
 use std::rc::Rc;
 
 use estimation::column::{dot, gram};
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
+use estimation::kalman::whitener::Row;
+use estimation::kalman::{Reading, Whitener};
+use estimation::rows;
+use nalgebra::{DMatrix, DVector, Matrix3};
 use ship::first_order::State;
 
-use crate::likelihood::parameters::RUDDER;
+use super::weight::{Weight, weigh};
+use crate::likelihood::schedule::HEADING;
+use crate::likelihood::tangents::fill_with_tangents;
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
-use crate::profile::solve2;
-use estimation::kalman::Whitener;
 
 /// Number of unknowns that all records share: 1/T, K/T and (K/T) δ_r.
 pub(super) const SHARED_PARAMETERS: usize = 3;
-
-/// Maximum number of iterations of the weights of the records of one ship.
-const MAX_WEIGHT_ITERATIONS: usize = 20;
-
-/// Relative change of the variances at convergence of the weights.
-const WEIGHT_TOLERANCE: f64 = 1e-12;
 
 /// Record with its readings.
 #[derive(Debug, Clone)]
@@ -39,18 +37,22 @@ pub(super) struct Record {
     pub declared: Option<f64>,
     /// Columns of the last 1/T: the filters of many noise laws share them.
     last_columns: RefCell<Option<Rc<RecordColumns>>>,
+    /// Memory for the whitened rows of two filters.
+    white: RefCell<[Vec<Row>; 2]>,
 }
+
+/// Number of columns of the initial state, which come first.
+const INITIAL_STATE: usize = 2;
 
 /// Columns of the readings of one record for one 1/T.
 #[derive(Debug, Clone)]
 struct RecordColumns {
     inverse_time: f64,
-    /// Columns of the initial state and of the jumps.
-    nuisance: Vec<Vec<f64>>,
-    /// Responses to rudder and constant, and the readings.
-    projected: [Vec<f64>; 3],
-    /// Derivatives with respect to 1/T of the responses to the initial yaw rate, rudder and constant.
-    tangents: [Vec<f64>; 3],
+    /// At every reading the constant, the response to the initial yaw rate, the responses to rudder and constant, the
+    /// reading, and the derivatives of the three responses with respect to 1/T.
+    rows: Vec<Row>,
+    /// Columns of the jumps.
+    jumps: Vec<Vec<f64>>,
 }
 
 /// Whitened columns of one record, projected off the nuisance columns of its initial state and jumps: the responses to
@@ -88,6 +90,9 @@ pub(super) struct RecordAtPoint {
     pub by_time: Vec<f64>,
 }
 
+/// Start of a search: 1/T, and the noise vector of every record.
+pub(super) type Start = (f64, Vec<NoiseVector>);
+
 /// Best fit for one 1/T and one noise law of every record.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
@@ -105,7 +110,14 @@ pub(super) struct Point {
 impl Record {
     pub fn new(track: Track, by_row: bool, declared: Option<f64>) -> Self {
         let schedule = Schedule::new(&track, by_row);
-        Self { track, schedule, jumps: Vec::new(), declared, last_columns: RefCell::default() }
+        Self {
+            track,
+            schedule,
+            jumps: Vec::new(),
+            declared,
+            last_columns: RefCell::default(),
+            white: RefCell::default(),
+        }
     }
 
     /// Number of readings.
@@ -124,8 +136,8 @@ impl Record {
     }
 
     /// Number of unknowns of the record alone: initial state and jumps.
-    fn nuisance_count(&self) -> usize {
-        2 + self.jumps.len()
+    pub fn nuisance_count(&self) -> usize {
+        INITIAL_STATE + self.jumps.len()
     }
 
     /// Regressor of a compass jump: 1 for headings from row `jump` on, 0 before and for yaw rates.
@@ -145,10 +157,27 @@ impl Record {
         columns
     }
 
-    /// Columns of a ship with this 1/T, whitened under a noise whose filter may use another 1/T. `None` if a column is
-    /// not finite.
-    fn white(&self, inverse_time: f64, noise: &NoiseParameters) -> Option<WhitenedColumns> {
-        WhitenedColumns::new(&self.columns(inverse_time), whitener(&self.schedule, noise, [0.0; 2]))
+    /// Columns of ships, whitened under noise whose filter may use another 1/T, for every pair of 1/T and noise. `None` if
+    /// a column is not finite. Two filters advance side by side.
+    fn whitened(&self, cases: &[(f64, NoiseParameters)]) -> Vec<Option<WhitenedColumns>> {
+        let whitened_pair = |pair: &[(f64, NoiseParameters)]| {
+            let case = |(inverse_time, noise): &(f64, NoiseParameters)| {
+                (self.columns(*inverse_time), whitener(&self.schedule, noise, [0.0; 2]))
+            };
+            let cases: Vec<_> = pair.iter().map(case).collect();
+            let [white, beside] = &mut *self.white.borrow_mut();
+            match &cases[..] {
+                [(columns, filter), (other, second)] => {
+                    Whitener::apply_pair([filter, second], [&columns.rows, &other.rows], [white, beside]);
+                }
+                alone => alone.iter().for_each(|(columns, filter)| filter.apply_to_rows(&columns.rows, white)),
+            }
+            let project = |((columns, filter), white): ((Rc<RecordColumns>, Whitener), &mut Vec<Row>)| {
+                WhitenedColumns::new(&columns.jumps, filter, white)
+            };
+            cases.into_iter().zip([white, beside]).map(project).collect::<Vec<_>>()
+        };
+        cases.chunks(2).flat_map(whitened_pair).collect()
     }
 
     /// Products of the whitened sensitivities to (1/T, b, b δ_r) at given coefficients, with the initial state
@@ -159,7 +188,7 @@ impl Record {
         vector: &NoiseVector,
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
-        let white = self.white(inverse_time, &vector.parameters(inverse_time))?;
+        let white = self.whitened(&[(inverse_time, vector.parameters(inverse_time))]).pop()??;
         let by_time = white.by_time(coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
@@ -167,65 +196,76 @@ impl Record {
 }
 
 /// Projects a column off a unit column and returns the component.
-pub(super) fn project_off(unit: &[f64], column: &mut [f64]) -> f64 {
+fn project_off(unit: &[f64], column: &mut [f64]) -> f64 {
     let share = dot(unit, column);
     column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
     share
+}
+
+/// Rows of one instrument.
+fn instrument_rows(
+    one: f64,
+    [homogeneous, rudder, constant]: [&[f64]; 3],
+    readings: &[f64],
+    [by_yaw_rate, by_rudder, by_constant]: [&[f64]; 3],
+) -> impl Iterator<Item = Row> {
+    let motions = homogeneous.iter().zip(rudder).zip(constant).zip(readings);
+    let rows = motions.zip(by_yaw_rate).zip(by_rudder).zip(by_constant);
+    rows.map(move |((((((f, g), h), y), df), dg), dh)| [one, *f, *g, *h, *y, *df, *dg, *dh])
 }
 
 impl RecordColumns {
     fn new(record: &Record, inverse_time: f64) -> Self {
         let Record { track, schedule, jumps, .. } = record;
         let (mut motion, mut by_time) = (MotionColumns::default(), MotionColumns::default());
-        track.fill_with_tangents(inverse_time, &mut motion, &mut by_time);
-        let ones = schedule.stacked(&vec![1.0; track.len()], &vec![0.0; track.rates.len()]);
-        let stacked = |MotionColumns { homogeneous, rudder, constant, rates }: &MotionColumns| {
-            [(homogeneous, &rates.homogeneous), (rudder, &rates.rudder), (constant, &rates.constant)]
-                .map(|(heading, rate)| schedule.stacked(heading, rate))
-        };
-        let [homogeneous, rudder, constant] = stacked(&motion);
-        let mut nuisance = vec![ones, homogeneous];
-        nuisance.extend(jumps.iter().map(|&jump| record.step_at(jump)));
-        let projected = [rudder, constant, schedule.stacked(&track.heading, &track.rates)];
-        Self { inverse_time, nuisance, projected, tangents: stacked(&by_time) }
+        fill_with_tangents(track, inverse_time, &mut motion, &mut by_time);
+        let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_time.headings());
+        let mut rates = instrument_rows(0.0, motion.rates.all(), &track.rates, by_time.rates.all());
+        let row = |reading: &Reading| if reading.sensor() == HEADING { headings.next() } else { rates.next() };
+        let mut rows = Vec::with_capacity(record.len());
+        rows.extend(schedule.readings.iter().filter_map(row));
+        Self { inverse_time, rows, jumps: jumps.iter().map(|&jump| record.step_at(jump)).collect() }
     }
 
     /// `true` if these are the columns of a record for this 1/T.
     fn is_of(&self, record: &Record, inverse_time: f64) -> bool {
-        self.inverse_time == inverse_time && self.nuisance.len() == record.nuisance_count()
+        self.inverse_time == inverse_time && self.jumps.len() == record.jumps.len()
     }
 }
 
 impl WhitenedColumns {
-    fn new(columns: &RecordColumns, filter: Whitener) -> Option<Self> {
-        let RecordColumns { mut nuisance, mut projected, mut tangents, .. } = columns.clone();
-        let (first, jumps) = nuisance.split_at_mut(2);
-        let [heading, yaw_rate] = first else { return None };
-        let [rudder, constant, readings] = &mut projected;
-        let [by_yaw_rate, by_rudder, by_constant] = &mut tangents;
-        filter.apply(&mut [heading, yaw_rate, rudder, constant, readings, by_yaw_rate, by_rudder, by_constant]);
-        jumps.iter_mut().for_each(|jump| filter.apply(&mut [jump]));
-        let count = nuisance.len();
+    /// Projects whitened columns off those of the initial state and of the jumps, which are not whitened yet.
+    fn new(jumps: &[Vec<f64>], filter: Whitener, rows: &mut [Row]) -> Option<Self> {
+        let count = INITIAL_STATE + jumps.len();
+        let (mut columns, components) = rows::orthonormalise::<_, INITIAL_STATE, 6>(rows);
         let mut triangle = DMatrix::zeros(count, count);
-        for k in 0..count {
-            let (before, column) = nuisance.split_at_mut(k);
-            for (j, unit) in before.iter().enumerate() {
-                triangle[(j, k)] = project_off(unit, &mut column[0]);
-            }
-            let length = dot(&column[0], &column[0]).sqrt();
+        for j in 0..INITIAL_STATE {
+            (j..INITIAL_STATE).for_each(|k| triangle[(j, k)] = components[j][k]);
+        }
+        let mut shares: [Vec<f64>; 3] =
+            array::from_fn(|place| components.iter().map(|along| along[INITIAL_STATE + place]).collect());
+        let lanes = if jumps.is_empty() { 0..0 } else { 0..INITIAL_STATE };
+        let mut units: Vec<Vec<f64>> = lanes.map(|lane| rows.iter().map(|row| row[lane]).collect()).collect();
+        for (k, jump) in (INITIAL_STATE..).zip(jumps) {
+            let mut jump = jump.clone();
+            filter.apply(&mut [&mut jump]);
+            units.iter().enumerate().for_each(|(j, unit)| triangle[(j, k)] = project_off(unit, &mut jump));
+            let length = dot(&jump, &jump).sqrt();
             triangle[(k, k)] = length;
-            if length.is_nan() {
-                return None;
-            }
-            // An initial state that decays before the first row is not observable.
             let per = if length > 0.0 { length.recip() } else { 0.0 };
-            column[0].iter_mut().for_each(|x| *x *= per);
+            jump.iter_mut().for_each(|x| *x *= per);
+            for (place, column) in columns.iter_mut().enumerate() {
+                let share = project_off(&jump, column);
+                shares.get_mut(place).into_iter().for_each(|shares| shares.push(share));
+            }
+            units.push(jump);
         }
-        let shares = projected.each_mut().map(|column| nuisance.iter().map(|unit| project_off(unit, column)).collect());
-        for column in &mut tangents {
-            nuisance.iter().for_each(|unit| _ = project_off(unit, column));
+        // An initial state that decays before the first row is not observable: its column has no length.
+        if triangle.diagonal().iter().any(|length| length.is_nan()) {
+            return None;
         }
-        Some(Self { filter, triangle, projected, tangents, shares })
+        let [rudder, constant, readings, tangents @ ..] = columns;
+        Some(Self { filter, triangle, projected: [rudder, constant, readings], tangents, shares })
     }
 
     /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
@@ -264,81 +304,25 @@ impl WhitenedColumns {
     }
 }
 
-/// Quantities that determine the weight of a record.
-struct Weight {
-    /// Products of the responses to rudder and constant and the readings.
-    products: [[f64; 3]; 3],
-    readings: f64,
-    /// Number of readings minus number of fitted unknowns.
-    freedom: f64,
-    /// Compass error of a ship with b = 1, rad, if the rudder error is declared.
-    tied: Option<f64>,
-}
-
-impl Weight {
-    /// Weight of a record; `all` is the number of readings of all records.
-    fn new(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Self {
-        let readings = record.len() as f64;
-        let fitted = record.nuisance_count() as f64 + SHARED_PARAMETERS as f64 * readings / all as f64;
-        let [rudder, constant, measured] = &white.projected;
-        Self {
-            products: gram([rudder, constant, measured]),
-            readings,
-            freedom: readings - fitted,
-            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER].exp()),
-        }
-    }
-
-    fn square(&self, b: f64, q: f64) -> f64 {
-        let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
-        // The square is bounded below by its rounding error, which remains for a record without noise.
-        let rounding = (f64::EPSILON * yy).max(f64::MIN_POSITIVE);
-        (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(rounding)
-    }
-
-    fn variance(&self, b: f64, q: f64) -> f64 {
-        self.tied.map_or(self.square(b, q) / self.freedom, |unit| (b * unit).powi(2))
-    }
-}
-
-/// Best b and b δ_r over all records, and the variance of the compass error in every record.
-fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
-    let mut variances = vec![1.0; weights.len()];
-    let mut best = Vector2::zeros();
-    for _ in 0..MAX_WEIGHT_ITERATIONS {
-        let (mut matrix, mut moment) = (Matrix2::zeros(), Vector2::zeros());
-        for (Weight { products: [[gg, gh, gy], [_, hh, hy], _], .. }, variance) in weights.iter().zip(&variances) {
-            matrix += Matrix2::new(*gg, *gh, *gh, *hh) / *variance;
-            moment += Vector2::new(*gy, *hy) / *variance;
-        }
-        best = solve2(&matrix, &moment)?;
-        let mut moved = 0.0_f64;
-        for (weight, variance) in weights.iter().zip(&mut variances) {
-            let next = weight.variance(best[0], best[1]);
-            moved = moved.max((next / *variance - 1.0).abs());
-            *variance = next;
-        }
-        if weights.len() == 1 || moved < WEIGHT_TOLERANCE {
-            break;
-        }
-    }
-    Some((best, variances))
-}
-
 impl RecordAtPoint {
-    /// Contribution of a record at given steering, under a noise vector whose filter may use another 1/T, `filtered`.
-    pub fn new(
+    /// Contributions of a record at given steering, one for every noise vector, whose filter may use another 1/T than the
+    /// ship. `None` if one is not finite.
+    pub fn under(
         record: &Record,
         inverse_time: f64,
         steering: [f64; 2],
-        noise: &NoiseVector,
-        filtered: f64,
+        noises: &[(NoiseVector, f64)],
         readings: usize,
-    ) -> Option<Self> {
-        let white = record.white(inverse_time, &noise.parameters(filtered))?;
-        let weight = Weight::new(record, noise, &white, readings);
-        let variance = weight.variance(steering[0], steering[1]);
-        Self::from_columns(record, steering, white, &weight, variance)
+    ) -> Option<Vec<Self>> {
+        let cases = noises.iter().map(|(noise, filtered)| (inverse_time, noise.parameters(*filtered)));
+        let whites = record.whitened(&cases.collect::<Vec<_>>());
+        let part = |(white, (noise, _)): (Option<WhitenedColumns>, &(NoiseVector, f64))| {
+            let white = white?;
+            let weight = Weight::new(record, noise, &white, readings);
+            let variance = weight.variance(steering[0], steering[1]);
+            Self::from_columns(record, steering, white, &weight, variance)
+        };
+        whites.into_iter().zip(noises).map(part).collect()
     }
 
     fn from_columns(
@@ -366,11 +350,23 @@ pub(super) fn reading_count(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
 
-/// Best fit for a given 1/T and a noise vector of every record. `None` if it is not a ship or not finite.
-pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
-    let columns =
-        |(record, vector): (&Record, &NoiseVector)| record.white(inverse_time, &vector.parameters(inverse_time));
-    let columns = records.iter().zip(vectors).map(columns).collect::<Option<Vec<WhitenedColumns>>>()?;
+/// Best fits, each for a 1/T and a noise vector of every record. `None` for one that is not a ship or not finite.
+pub(super) fn evaluate(records: &[Record], starts: &[Start]) -> Vec<Option<Point>> {
+    let whitened = |(number, record): (usize, &Record)| {
+        let cases = starts.iter().map(|(a, vectors)| (*a, vectors[number].parameters(*a)));
+        record.whitened(&cases.collect::<Vec<_>>()).into_iter()
+    };
+    let mut whitened: Vec<_> = records.iter().enumerate().map(whitened).collect();
+    let point = |start: &Start| {
+        // Every record has a case for every start.
+        let columns: Vec<Option<WhitenedColumns>> = whitened.iter_mut().map(|cases| cases.next()?).collect();
+        point(records, start, columns.into_iter().collect::<Option<_>>()?)
+    };
+    starts.iter().map(point).collect()
+}
+
+/// Best fit from the whitened columns of every record.
+fn point(records: &[Record], (inverse_time, vectors): &Start, columns: Vec<WhitenedColumns>) -> Option<Point> {
     let all = reading_count(records);
     let weight = |((record, vector), white): ((&Record, &NoiseVector), &WhitenedColumns)| {
         Weight::new(record, vector, white, all)
@@ -388,5 +384,13 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, vectors: &[NoiseVe
     let [gain, offset] = steering;
     let restricted = deviance + determinant;
     let ship = gain > 0.0 && restricted.is_finite();
-    ship.then(|| Point { inverse_time, vectors: vectors.to_vec(), deviance, restricted, gain, offset, parts })
+    ship.then(|| Point {
+        inverse_time: *inverse_time,
+        vectors: vectors.clone(),
+        deviance,
+        restricted,
+        gain,
+        offset,
+        parts,
+    })
 }

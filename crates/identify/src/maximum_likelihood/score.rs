@@ -61,7 +61,7 @@ struct Slope {
 impl Slope {
     /// Difference quotient for a record under a noise that differs by `by`; `motion` is the information of all records.
     fn new(here: &RecordAtPoint, there: &RecordAtPoint, by: f64, motion: &Matrix3<f64>) -> Self {
-        let logs = there.white.filter.log_variances().into_iter().zip(here.white.filter.log_variances());
+        let logs = there.white.filter.log_variances().zip(here.white.filter.log_variances());
         let log_variance: Vec<f64> = logs.map(|(there, here)| (there - here) / by).collect();
         let pairs = there.innovations.iter().zip(&here.innovations).zip(&log_variance);
         let innovation = pairs.map(|((there, here), log)| (there - here) / by + 0.5 * here * log).collect();
@@ -82,19 +82,22 @@ impl ScoreAndInformation {
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
         let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
-        let by_ship = if vector.moment != MomentKind::None || vector.rudder {
-            let by = DIFFERENCE * (a.abs() + record.track.duration().recip());
-            let there = RecordAtPoint::new(record, a, steering, vector, a + by, all)?;
-            Slope::new(part, &there, by, &motion)
-        } else {
-            let none = vec![0.0; part.readings];
-            Slope { innovation: none.clone(), log_variance: none, score: [0.0; 2], tied: 0.0 }
-        };
-        let mut slopes = vec![by_ship];
-        for entry in vector.active_entries(record.has_gyro()) {
+        let by_ship = (vector.moment != MomentKind::None || vector.rudder)
+            .then(|| DIFFERENCE * (a.abs() + record.track.duration().recip()));
+        let active: Vec<usize> = vector.active_entries(record.has_gyro()).collect();
+        let moved = active.iter().map(|&entry| {
             let mut moved = *vector;
             moved.log[entry] += DIFFERENCE;
-            let there = RecordAtPoint::new(record, a, steering, &moved, a, all)?;
+            (moved, a)
+        });
+        let noises: Vec<(NoiseVector, f64)> = by_ship.map(|by| (*vector, a + by)).into_iter().chain(moved).collect();
+        let mut there = RecordAtPoint::under(record, a, steering, &noises, all)?.into_iter();
+        let none = || vec![0.0; part.readings];
+        let mut slopes = vec![match by_ship {
+            Some(by) => Slope::new(part, &there.next()?, by, &motion),
+            None => Slope { innovation: none(), log_variance: none(), score: [0.0; 2], tied: 0.0 },
+        }];
+        for (entry, there) in active.into_iter().zip(there) {
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
             if is_tied && entry == RUDDER {
                 // A smaller compass error makes a given rudder error larger in its units.

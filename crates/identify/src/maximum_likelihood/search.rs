@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::point::{Point, Record, SHARED_PARAMETERS, evaluate};
+use super::point::{Point, Record, SHARED_PARAMETERS, Start, evaluate};
 use super::score::{ScoreAndInformation, score_and_information};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
@@ -71,9 +71,6 @@ impl Ranges {
     }
 }
 
-/// Start of a search: 1/T, and the noise vector of every record.
-pub(super) type Start = (f64, Vec<NoiseVector>);
-
 /// Search over all records.
 pub(super) struct Search<'a> {
     pub records: &'a [Record],
@@ -92,10 +89,17 @@ pub(super) struct Maximum {
 }
 
 impl Search<'_> {
-    /// Point at a 1/T and noise vectors; `None` if it is not a ship or not finite.
-    pub fn evaluate(&mut self, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
+    /// Point at a start; `None` if it is not a ship or not finite.
+    pub fn evaluate(&mut self, start: Start) -> Option<Point> {
         self.evaluations += 1;
-        evaluate(self.records, inverse_time, vectors)
+        evaluate(self.records, &[start]).pop()?
+    }
+
+    /// Points at starts, two at a time.
+    fn points(&mut self, starts: &[Start]) -> impl Iterator<Item = Option<Point>> {
+        let records = self.records;
+        let evaluations = &mut self.evaluations;
+        starts.chunks(2).flat_map(move |pair| evaluate(records, pair)).inspect(|_| *evaluations += 1)
     }
 
     fn score_and_information(&mut self, point: &Point) -> Option<ScoreAndInformation> {
@@ -106,18 +110,16 @@ impl Search<'_> {
     }
 
     /// Start with the lowest −2 log L, or restricted −2 log L if only the noise differs.
-    pub fn best_start(&mut self, starts: Vec<Start>, height: fn(&Point) -> f64) -> Option<Point> {
-        let points = starts.iter().filter_map(|(a, vectors)| self.evaluate(*a, vectors));
-        points.min_by(|a, b| height(a).total_cmp(&height(b)))
+    pub fn best_start(&mut self, starts: &[Start], height: fn(&Point) -> f64) -> Option<Point> {
+        self.points(starts).flatten().min_by(|a, b| height(a).total_cmp(&height(b)))
     }
 
     /// Start with the lowest restricted −2 log L among starts of increasing size; a size after which it rises by more
     /// than [`STEEP_RISE`] above `without` a moment ends the search.
-    pub fn best_level(&mut self, starts: Vec<Start>, without: Option<f64>) -> Option<Point> {
+    pub fn best_level(&mut self, starts: &[Start], without: Option<f64>) -> Option<Point> {
         let mut best: Option<Point> = None;
         let mut last = f64::INFINITY;
-        for (a, vectors) in starts {
-            let Some(point) = self.evaluate(a, &vectors) else { continue };
+        for point in self.points(starts).flatten() {
             let is_steep = without.is_some_and(|without| point.restricted > last.max(without) + STEEP_RISE);
             last = point.restricted;
             if best.as_ref().is_none_or(|best| point.restricted < best.restricted) {
@@ -203,9 +205,8 @@ impl Search<'_> {
             let largest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
             let lower = (0..HALVINGS).find_map(|_| {
-                let (inverse_time, vectors) = self.moved(&point, &free, &(&step * share));
-                let next =
-                    self.evaluate(inverse_time, &vectors).filter(|next| next.restricted < point.restricted + SLACK);
+                let moved = self.moved(&point, &free, &(&step * share));
+                let next = self.evaluate(moved).filter(|next| next.restricted < point.restricted + SLACK);
                 if next.is_none() {
                     share *= 0.4;
                 }

@@ -1,8 +1,11 @@
 //! Derived records: without some channels, readings or a current, with another rudder, at another scale.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use ship::Particulars;
 
-use super::{RecordedRudder, RejectedReading, Trial, signal};
+use super::{Origin, RecordedRudder, RejectedReading, Trial, TrialError, signal};
 use crate::channel::Channel;
 
 impl Trial {
@@ -32,9 +35,23 @@ impl Trial {
         self
     }
 
+    /// Record of another trial with the same rudder at the same times, and no declarations; `channels` are all but time
+    /// and rudder. Fails as [`new`](Self::new) does.
+    pub fn with_same_rudder(
+        &self,
+        name: String,
+        origin: Origin,
+        channels: BTreeMap<Channel, Vec<f64>>,
+    ) -> Result<Self, TrialError> {
+        if let Some((&channel, values)) = channels.iter().find(|(_, values)| values.len() != self.len()) {
+            return Err(TrialError::Length { channel, found: values.len(), expected: self.len() });
+        }
+        Self::from_rudder(Arc::clone(&self.rudder), name, origin, channels, Vec::new())
+    }
+
     /// The same record with other rudder angles, rad; `None` unless there is one finite angle for every row.
     pub fn with_rudder(mut self, angles: Vec<f64>) -> Option<Self> {
-        self.rudder = RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?);
+        self.rudder = Arc::new(RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?));
         Some(self)
     }
 
@@ -54,7 +71,7 @@ impl Trial {
         let factor = |channel: Channel| ship.factor_to(particulars, channel.dimension());
         let times = self.time().iter().map(|time| time * second).collect();
         let mut scaled = self.clone();
-        scaled.rudder = RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?);
+        scaled.rudder = Arc::new(RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?));
         for (channel, values) in &mut scaled.channels {
             values.iter_mut().for_each(|value| *value *= factor(*channel));
         }

@@ -1,0 +1,301 @@
+//! Whitening filter: the gains of a Kalman filter applied to columns of readings.
+//!
+//! The recursion within a column is serial: a row waits for the row before it. Columns are independent, and so are
+//! filters, so several columns and two filters advance side by side.
+
+use super::{Filter, Gain, MAX_STATES, Reading, Sensor, Step, System};
+use crate::lanes::{Kernel, run};
+use crate::with_states;
+
+/// Whitening filter: turns columns of readings into innovations in units of their standard deviation.
+#[derive(Debug, Clone)]
+pub struct Whitener {
+    states: usize,
+    /// `true` if every transition matrix is upper triangular: no state acts on a later state.
+    is_upper: bool,
+    transitions: Vec<[[f64; MAX_STATES]; MAX_STATES]>,
+    sensors: Vec<Sensor>,
+    gains: Vec<WhiteningGain>,
+    readings: Vec<Reading>,
+    /// Index of the gain of every reading.
+    gain_of: Vec<u32>,
+    /// Sum Σ log S over the readings.
+    pub log_variance: f64,
+}
+
+/// Kalman gain, with 1/√S and log S of the innovation.
+#[derive(Debug, Clone, Copy)]
+struct WhiteningGain {
+    gain: [f64; MAX_STATES],
+    weight: f64,
+    log_variance: f64,
+}
+
+impl<const N: usize> Filter<N> {
+    /// Whitener of the filter, independent of the number of states at compile time.
+    pub fn into_whitener(self) -> Whitener {
+        let wide =
+            |row: &[f64; N]| -> [f64; MAX_STATES] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
+        let matrix = |f: &[[f64; N]; N]| -> [[f64; MAX_STATES]; MAX_STATES] {
+            std::array::from_fn(|k| f.get(k).map_or([0.0; MAX_STATES], wide))
+        };
+        let log_variance = self.log_determinant();
+        let System { steps, sensors, readings, .. } = self.system;
+        let gains = self.gains.iter().zip(self.weights).zip(self.log_variances);
+        let gain = |((gain, weight), log_variance): ((&Gain<N>, _), _)| WhiteningGain {
+            gain: wide(&gain.gain),
+            weight,
+            log_variance,
+        };
+        Whitener {
+            states: N,
+            is_upper: steps.iter().all(Step::is_upper),
+            transitions: steps.iter().map(|step| matrix(&step.transition)).collect(),
+            sensors,
+            gains: gains.map(gain).collect(),
+            readings,
+            gain_of: self.gain_of,
+            log_variance,
+        }
+    }
+}
+
+impl Whitener {
+    /// Log variance log S of every innovation.
+    pub fn log_variances(&self) -> impl Iterator<Item = f64> {
+        self.gain_of.iter().map(|&gain| self.gains[gain as usize].log_variance)
+    }
+
+    /// Whitens columns in place.
+    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
+        for columns in columns.chunks_mut(COLUMNS) {
+            if let [column] = columns {
+                let readings = column.clone();
+                let (readings, out) = (readings.as_chunks::<1>().0, column.as_chunks_mut::<1>().0);
+                with_states!(self.states, N => run(Whitening::<N, 1, 1, false> {
+                    whiteners: [self],
+                    readings: [readings],
+                    out: [out],
+                }));
+                continue;
+            }
+            // A missing column contains zeros.
+            let mut rows = vec![[0.0; COLUMNS]; self.readings.len()];
+            for (k, column) in columns.iter().enumerate() {
+                rows.iter_mut().zip(column.iter()).for_each(|(row, value)| row[k] = *value);
+            }
+            let mut white = Vec::new();
+            self.apply_to_rows(&rows, &mut white);
+            for (k, column) in columns.iter_mut().enumerate() {
+                column.iter_mut().zip(&white).for_each(|(value, row)| *value = row[k]);
+            }
+        }
+    }
+
+    /// Whitens interleaved columns: a row holds one reading of every column.
+    pub fn apply_to_rows(&self, rows: &[Row], white: &mut Vec<Row>) {
+        white.resize(rows.len(), [0.0; COLUMNS]);
+        let (whiteners, readings, out) = ([self], [rows], [&mut white[..]]);
+        with_states!(self.states, N => match self.is_upper {
+            true => run(Whitening::<N, COLUMNS, 1, true> { whiteners, readings, out }),
+            false => run(Whitening::<N, COLUMNS, 1, false> { whiteners, readings, out }),
+        });
+    }
+
+    /// Whitens the interleaved columns of two filters: `rows[k]` by `whiteners[k]`.
+    pub fn apply_pair(whiteners: [&Self; 2], rows: [&[Row]; 2], [white, beside]: [&mut Vec<Row>; 2]) {
+        let [first, second] = whiteners;
+        let are_alike = first.states == second.states && first.readings.len() == second.readings.len();
+        if are_alike && first.is_upper && second.is_upper {
+            white.resize(rows[0].len(), [0.0; COLUMNS]);
+            beside.resize(rows[1].len(), [0.0; COLUMNS]);
+            let out = [&mut white[..], &mut beside[..]];
+            with_states!(first.states, N => run(Whitening::<N, COLUMNS, 2, true> { whiteners, readings: rows, out }));
+        } else {
+            first.apply_to_rows(rows[0], white);
+            second.apply_to_rows(rows[1], beside);
+        }
+    }
+
+    /// Predicted states before every reading of a column, given the earlier readings.
+    pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
+        let mut x = [[0.0]; MAX_STATES];
+        let predict = |((&value, &reading), &gain): ((&f64, &Reading), &u32)| {
+            if let Some(step) = reading.step() {
+                x = advanced::<_, _, false>(&self.transitions[step], &x);
+            }
+            let before = x.map(|[state]| state);
+            let [seen] = if self.states == 0 { [0.0] } else { self.sensors[reading.sensor()].observe(&x) };
+            let gain = &self.gains[gain as usize].gain;
+            x.iter_mut().zip(gain).for_each(|(state, gain)| state[0] += gain * (value - seen));
+            before
+        };
+        column.iter().zip(&self.readings).zip(&self.gain_of).map(predict).collect()
+    }
+
+    /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse covariance of the
+    /// noise.
+    pub fn apply_transposed(&self, column: &mut [f64]) {
+        let mut later = [0.0; MAX_STATES];
+        for ((value, &reading), &gain) in column.iter_mut().zip(&self.readings).zip(&self.gain_of).rev() {
+            let WhiteningGain { gain, weight, .. } = &self.gains[gain as usize];
+            *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
+            let Sensor { state, second_state, .. } = self.sensors[reading.sensor()];
+            [Some(state), second_state].into_iter().flatten().for_each(|state| later[state] -= *value);
+            if let Some(step) = reading.step() {
+                let f = &self.transitions[step];
+                later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());
+            }
+        }
+    }
+
+    /// Whitened values of the reading in a row; corrects the states `x` of every column by their innovations.
+    #[inline(always)]
+    fn whiten<const N: usize, const C: usize, const UPPER: bool>(
+        &self,
+        row: usize,
+        x: &mut [[f64; C]; N],
+        values: &[f64; C],
+    ) -> [f64; C] {
+        let reading = self.readings[row];
+        if let Some(step) = reading.step() {
+            *x = advanced::<N, C, UPPER>(&self.transitions[step], x);
+        }
+        let WhiteningGain { gain, weight, .. } = &self.gains[self.gain_of[row] as usize];
+        let seen = self.sensors[reading.sensor()].observe(x);
+        let (mut innovation, mut white) = ([0.0; C], [0.0; C]);
+        for k in 0..C {
+            innovation[k] = values[k] - seen[k];
+            white[k] = innovation[k] * weight;
+        }
+        for (x, gain) in x.iter_mut().zip(gain) {
+            for k in 0..C {
+                x[k] += gain * innovation[k];
+            }
+        }
+        white
+    }
+}
+
+/// Number of columns that are whitened side by side.
+pub const COLUMNS: usize = 8;
+
+/// One reading of every one of [`COLUMNS`] columns.
+pub type Row = [f64; COLUMNS];
+
+/// Whitening of `C` interleaved columns by each of `FILTERS` filters with the same number of states and of readings.
+struct Whitening<'a, 'b, const N: usize, const C: usize, const FILTERS: usize, const UPPER: bool> {
+    whiteners: [&'a Whitener; FILTERS],
+    readings: [&'a [[f64; C]]; FILTERS],
+    out: [&'b mut [[f64; C]]; FILTERS],
+}
+
+impl<const N: usize, const C: usize, const FILTERS: usize, const UPPER: bool> Kernel
+    for Whitening<'_, '_, N, C, FILTERS, UPPER>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { whiteners, readings, out } = self;
+        let mut x = [[[0.0; C]; N]; FILTERS];
+        for row in 0..whiteners[0].readings.len() {
+            for filter in 0..FILTERS {
+                let values = &readings[filter][row];
+                out[filter][row] = whiteners[filter].whiten::<N, C, UPPER>(row, &mut x[filter], values);
+            }
+        }
+    }
+}
+
+/// Product F x for several state vectors at once; of an upper triangular F only the triangle is used.
+#[inline(always)]
+fn advanced<const N: usize, const C: usize, const UPPER: bool>(
+    f: &[[f64; MAX_STATES]; MAX_STATES],
+    x: &[[f64; C]; N],
+) -> [[f64; C]; N] {
+    let mut next = [[0.0; C]; N];
+    for i in 0..N {
+        for j in if UPPER { i } else { 0 }..N {
+            for k in 0..C {
+                next[i][k] += f[i][j] * x[j][k];
+            }
+        }
+    }
+    next
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::on_every_instruction_set;
+    use approx::assert_relative_eq;
+
+    const ROWS: usize = 203;
+
+    /// Whitener of a ship with yaw rate and a random moment; `back` acts from the heading on the yaw rate.
+    fn whitener(damping: f64, back: f64) -> Whitener {
+        let transition = [[1.0, 0.9, 0.4], [back, damping, 0.9], [0.0, 0.0, 0.97]];
+        let process_noise = [[1e-4, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 0.02]];
+        let sensors = vec![
+            Sensor { state: 0, second_state: None, variance: 0.5 },
+            Sensor { state: 1, second_state: None, variance: 0.2 },
+        ];
+        let readings = (0..ROWS).map(|row| Reading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
+        let initial = [[0.3, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.4]];
+        Filter::new(System { steps: vec![Step { transition, process_noise }], sensors, readings, initial })
+            .into_whitener()
+    }
+
+    fn rows() -> Vec<Row> {
+        (0..ROWS).map(|row| std::array::from_fn(|k| ((1.3 + k as f64) * row as f64).sin())).collect()
+    }
+
+    fn column(rows: &[Row], k: usize) -> Vec<f64> {
+        rows.iter().map(|row| row[k]).collect()
+    }
+
+    #[test]
+    fn columns_are_whitened_alike_alone_together_and_beside_another_filter() {
+        for (first, second) in [(whitener(0.9, 0.0), whitener(0.8, 0.0)), (whitener(0.9, 0.01), whitener(0.8, 0.0))] {
+            let mut pair = [Vec::new(), Vec::new()];
+            let [left, right] = &mut pair;
+            Whitener::apply_pair([&first, &second], [&rows(), &rows()], [left, right]);
+            for (whitener, whitened) in [first, second].iter().zip(&pair) {
+                let mut together = Vec::new();
+                whitener.apply_to_rows(&rows(), &mut together);
+                for k in 0..COLUMNS {
+                    let mut alone = column(&rows(), k);
+                    let predicted = whitener.predicted_states(&alone);
+                    let read = |row: usize| predicted[row][row % 2];
+                    let innovations: Vec<f64> = alone.iter().enumerate().map(|(row, x)| x - read(row)).collect();
+                    whitener.apply(&mut [&mut alone]);
+                    for row in 0..ROWS {
+                        assert_relative_eq!(alone[row], whitened[row][k], epsilon = 1e-12);
+                        assert_relative_eq!(alone[row], together[row][k], epsilon = 1e-12);
+                        let log_variance = whitener.log_variances().nth(row).expect("a row");
+                        let unit = innovations[row] * (-0.5 * log_variance).exp();
+                        assert_relative_eq!(alone[row], unit, epsilon = 1e-12);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        struct Whitened([Whitener; 2], [Vec<[f64; COLUMNS]>; 2]);
+        impl Kernel for Whitened {
+            type Output = [Vec<[f64; COLUMNS]>; 2];
+
+            #[inline(always)]
+            fn call(mut self) -> Self::Output {
+                let rows = self.1.each_mut().map(Vec::as_mut_slice);
+                Whitening::<3, COLUMNS, 2, true> { whiteners: self.0.each_ref(), rows }.call();
+                self.1
+            }
+        }
+        let outputs = on_every_instruction_set(|| Whitened([whitener(0.9, 0.0), whitener(0.8, 0.0)], [rows(), rows()]));
+        assert!(outputs.iter().all(|(_, output)| output == &outputs[0].1));
+    }
+}

@@ -1,0 +1,78 @@
+//! Weights of the records of one ship, by the variance of the compass error of each.
+
+use estimation::column::gram;
+use nalgebra::{Matrix2, Vector2};
+
+use super::point::{Record, SHARED_PARAMETERS, WhitenedColumns};
+use crate::likelihood::NoiseVector;
+use crate::likelihood::parameters::RUDDER;
+use crate::profile::solve2;
+
+/// Maximum number of iterations of the weights of the records of one ship.
+const MAX_WEIGHT_ITERATIONS: usize = 20;
+
+/// Relative change of the variances at convergence of the weights.
+const WEIGHT_TOLERANCE: f64 = 1e-12;
+
+/// Quantities that determine the weight of a record.
+pub(super) struct Weight {
+    /// Products of the responses to rudder and constant and the readings.
+    products: [[f64; 3]; 3],
+    pub readings: f64,
+    /// Number of readings minus number of fitted unknowns.
+    freedom: f64,
+    /// Compass error of a ship with b = 1, rad, if the rudder error is declared.
+    tied: Option<f64>,
+}
+
+impl Weight {
+    /// Weight of a record; `all` is the number of readings of all records.
+    pub fn new(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Self {
+        let readings = record.len() as f64;
+        let fitted = record.nuisance_count() as f64 + SHARED_PARAMETERS as f64 * readings / all as f64;
+        let [rudder, constant, measured] = &white.projected;
+        Self {
+            products: gram([rudder, constant, measured]),
+            readings,
+            freedom: readings - fitted,
+            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER].exp()),
+        }
+    }
+
+    /// Sum of squares of the whitened residual at b and b δ_r.
+    pub fn square(&self, b: f64, q: f64) -> f64 {
+        let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
+        // The square is bounded below by its rounding error, which remains for a record without noise.
+        let rounding = (f64::EPSILON * yy).max(f64::MIN_POSITIVE);
+        (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(rounding)
+    }
+
+    /// Variance of the compass error at b and b δ_r, rad².
+    pub fn variance(&self, b: f64, q: f64) -> f64 {
+        self.tied.map_or(self.square(b, q) / self.freedom, |unit| (b * unit).powi(2))
+    }
+}
+
+/// Best b and b δ_r over all records, and the variance of the compass error in every record.
+pub(super) fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
+    let mut variances = vec![1.0; weights.len()];
+    let mut best = Vector2::zeros();
+    for _ in 0..MAX_WEIGHT_ITERATIONS {
+        let (mut matrix, mut moment) = (Matrix2::zeros(), Vector2::zeros());
+        for (Weight { products: [[gg, gh, gy], [_, hh, hy], _], .. }, variance) in weights.iter().zip(&variances) {
+            matrix += Matrix2::new(*gg, *gh, *gh, *hh) / *variance;
+            moment += Vector2::new(*gy, *hy) / *variance;
+        }
+        best = solve2(&matrix, &moment)?;
+        let mut moved = 0.0_f64;
+        for (weight, variance) in weights.iter().zip(&mut variances) {
+            let next = weight.variance(best[0], best[1]);
+            moved = moved.max((next / *variance - 1.0).abs());
+            *variance = next;
+        }
+        if weights.len() == 1 || moved < WEIGHT_TOLERANCE {
+            break;
+        }
+    }
+    Some((best, variances))
+}
