@@ -75,7 +75,7 @@ impl<'a> BlockStore<'a> {
     /// Fails as [`BlockStore::read`] does, and if the file was damaged since.
     pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
         self.read(block)?.map_err(|problem| {
-            Failure::work(format!("{problem}; the file changed during this run; run the study again"))
+            Failure::execution(format!("{problem}; the file changed during this run; run the study again"))
         })
     }
 
@@ -119,7 +119,7 @@ impl<'a> BlockStore<'a> {
     pub fn write(&self, block: Block, rows: &[StudyRow], timings: &Timings) -> Result<(), Failure> {
         let results = ResultFolder::make(&self.folder)?;
         let bytes = encode(rows, &self.label(block), &self.layout);
-        let bytes = bytes.map_err(|error| Failure::work(format!("{}: {error}", self.path(block).display())))?;
+        let bytes = bytes.map_err(|error| Failure::execution(format!("{}: {error}", self.path(block).display())))?;
         results.subfolder(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_csv(self.design)?)?;
         results.subfolder(ROWS)?.write(&rows_name(block), bytes)
     }

@@ -73,8 +73,8 @@ impl Failure {
         Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
     }
 
-    /// Failure of work that could not be done.
-    pub fn work(message: impl fmt::Display) -> Self {
+    /// Failure of the execution on valid input, such as a full disk; error code `work`.
+    pub fn execution(message: impl fmt::Display) -> Self {
         Self { blame: Blame::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
     }
 
@@ -147,7 +147,7 @@ impl<T, E: Error> OnPath<T> for Result<T, E> {
     fn on(self, action: &str, path: &Path) -> Result<T, Failure> {
         self.map_err(|error| {
             let file = path.display().to_string();
-            let mut failure = Failure::work(format!("failed to {action} {file}: {}", with_causes(&error)));
+            let mut failure = Failure::execution(format!("failed to {action} {file}: {}", with_causes(&error)));
             failure.parts.file = Some(file);
             failure
         })
@@ -180,7 +180,7 @@ mod tests {
     fn the_word_error_is_told_once_and_only_in_front() {
         let failures = [
             Failure::input("no such thing"),
-            Failure::work("no such thing"),
+            Failure::execution("no such thing"),
             Failure::in_text(Path::new("a.toml"), "seed = -1\n", 7..9, "no such thing", "expected more", "change it"),
         ];
         for failure in failures {

@@ -164,7 +164,7 @@ pub(crate) fn finish(
     // Written last, since it makes the folder a finished study.
     manifest.write(folder)?;
     // Timings as written, rounded to the nanosecond.
-    let timings = Timings::from_csv(&times, &design).map_err(Failure::work)?;
+    let timings = Timings::from_csv(&times, &design).map_err(Failure::execution)?;
     let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })
 }

@@ -116,8 +116,8 @@ impl PyRecord {
     /// CSV text of the record.
     fn csv(&self) -> PyResult<String> {
         let mut table = Vec::new();
-        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::work(error)))?;
-        String::from_utf8(table).map_err(|error| raised(Failure::work(error)))
+        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::execution(error)))?;
+        String::from_utf8(table).map_err(|error| raised(Failure::execution(error)))
     }
 }
 
@@ -195,8 +195,8 @@ fn table(columns: &[(String, PyColumn)]) -> Result<Vec<u8>, Failure> {
         }
         Ok::<(), csv::Error>(())
     })();
-    written.map_err(Failure::work)?;
-    table.into_inner().map_err(Failure::work)
+    written.map_err(Failure::execution)?;
+    table.into_inner().map_err(Failure::execution)
 }
 
 impl PyColumn<'_> {

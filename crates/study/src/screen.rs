@@ -23,7 +23,7 @@ fn put(text: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
     match writeln!(output, "{text}").and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::work(format!("failed to write to standard output: {error}")))
+            Err(Failure::execution(format!("failed to write to standard output: {error}")))
         }
         _ => Ok(()),
     }

@@ -70,7 +70,7 @@ impl FittedRecords {
     /// Noise transitions of the records for a ship of this 1/T, 1/s.
     pub fn noise_of(&self, inverse_time: f64) -> Vec<RecordNoise> {
         let full = self.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
-        let noise = |record| RecordNoise::new(record, inverse_time, self.longest(), full);
+        let noise = |record| RecordNoise::new(record, inverse_time, self.longest_duration(), full);
         self.records.iter().map(noise).collect()
     }
 
@@ -80,7 +80,7 @@ impl FittedRecords {
     }
 
     /// Duration of the longest record, s.
-    pub fn longest(&self) -> f64 {
+    pub fn longest_duration(&self) -> f64 {
         self.records.iter().map(PreparedRecord::duration).fold(0.0, f64::max)
     }
 

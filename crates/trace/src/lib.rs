@@ -33,7 +33,7 @@ pub mod selection;
 mod sentences;
 pub mod settings;
 pub mod shape;
-mod signature;
+mod residual_peak;
 pub mod staircase;
 pub mod structures;
 pub mod transient;

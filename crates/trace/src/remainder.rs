@@ -10,7 +10,7 @@ use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
 use crate::rudder::RudderNoise;
-use crate::signature::{Signature, signature};
+use crate::residual_peak::{ResidualPeak, residual_peak};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
@@ -50,8 +50,8 @@ pub struct Remainder {
     pub is_credible: bool,
     /// `true` if the residual is neither random nor of a searched shape.
     pub is_unexplained: bool,
-    /// Location of a residual that is more than noise.
-    pub signature: Option<Signature>,
+    /// Peak of a residual that is more than noise; `None` for noise.
+    pub residual_peak: Option<ResidualPeak>,
 }
 
 /// Minimum unexplained residual, relative to the error of the base.
@@ -72,7 +72,7 @@ impl Remainder {
         rudder_noises: &[Option<RudderNoise>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
-            return Self { is_noise: true, is_credible: true, is_unexplained: false, signature: None };
+            return Self { is_noise: true, is_credible: true, is_unexplained: false, residual_peak: None };
         };
         let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
@@ -94,20 +94,20 @@ impl Remainder {
         let is_calm = location.moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
-        let signature = is_left.then(|| worst_signature(identification, trials)).flatten();
-        Self { is_noise, is_credible, is_unexplained, signature }
+        let residual_peak = is_left.then(|| largest_residual_peak(identification, trials)).flatten();
+        Self { is_noise, is_credible, is_unexplained, residual_peak }
     }
 }
 
-/// Signature of the residual in the record with the largest error.
-fn worst_signature(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signature> {
+/// Peak of the residual in the record with the largest error.
+fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) -> Option<ResidualPeak> {
     let error = |number: usize| identification[number].after.errors.heading;
     let number = (0..identification.len()).max_by(|&a, &b| error(a).total_cmp(&error(b)))?;
     let (ReplayResult { replay, .. }, trial) = (&identification[number].after, &trials[number]);
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = first..first + replay.time.len();
     let (heading, rudder) = (&trial.heading()[rows.clone()], &trial.rudder()[rows]);
-    Some(signature(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
+    Some(residual_peak(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
 /// Innovations at the same times with other values.

@@ -80,7 +80,7 @@ impl TraceParts<'_> {
         let mut named = self.location.named.clone();
         named.retain(|naming| self.remainder.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
-        let signature = self.remainder.signature.as_ref();
+        let residual_peak = self.remainder.residual_peak.as_ref();
         let error = self.errors();
         let disturbance = self.disturbance();
         let verdict = self.verdict(effects.is_empty(), disturbance.is_some());
@@ -111,8 +111,8 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: self.remainder.is_unexplained,
-                signature: signature
-                    .map(|s| sentences::signature_sentence(s, &self.trials[s.record].title()) + &self.bands()),
+                signature: residual_peak
+                    .map(|s| sentences::residual_peak_sentence(s, &self.trials[s.record].title()) + &self.bands()),
             },
             disturbance,
             located,
@@ -407,7 +407,7 @@ impl TraceParts<'_> {
         let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
         let noise = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
             heading_sd_rad: (variance * record.full_readings as f64).sqrt(),
-            moment: law.colour.moment(*variance, self.problem.longest(), gain.abs()),
+            moment: law.colour.moment(*variance, self.problem.longest_duration(), gain.abs()),
         };
         law.variance.iter().zip(&self.problem.records).map(noise).collect()
     }
@@ -425,7 +425,7 @@ impl TraceParts<'_> {
                 file: sentences::record_label(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
-                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest())),
+                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest_duration())),
                 heading_wander: heading
                     .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,

@@ -1,4 +1,4 @@
-//! Sentences of a trace: headline, evidence, signature of the residual.
+//! Sentences of a trace: headline, evidence, peak of the residual.
 
 use document::names;
 use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
@@ -7,7 +7,7 @@ use trial::{Origin, Trial};
 
 use crate::comparison::BandCoverage;
 use crate::naming::EffectNaming;
-use crate::signature::Signature;
+use crate::residual_peak::ResidualPeak;
 
 /// Reason to keep the replay of the base.
 pub const KEEPS_BASE: &str = "adding effects does not improve the replay; the misfit looks like a random yaw moment, \
@@ -216,22 +216,22 @@ pub fn wave_evidence(sd: f64, frequency: f64) -> String {
 }
 
 /// Location of the residual in the record `name`.
-pub fn signature_sentence(signature: &Signature, name: &str) -> String {
-    let ([from, to], share) = signature.span;
-    let ([low, high], largest) = signature.heading;
-    let line = signature.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
+pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
+    let ([from, to], share) = peak.span;
+    let ([low, high], largest) = peak.heading;
+    let line = peak.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
         format!("; {:.0} % of its square has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
         "{name}: residual {}° rms; {:.0} % of its square between {from:.0} and {to:.0} s; largest ({}°) at headings \
          from {:.0}° to {:.0}°; {}° with the rudder to port, {}° with it to starboard{line}",
-        short(to_deg(signature.all)),
+        short(to_deg(peak.rms)),
         100.0 * share,
         short(to_deg(largest)),
         to_deg(low),
         to_deg(high),
-        short(to_deg(signature.side[0])),
-        short(to_deg(signature.side[1])),
+        short(to_deg(peak.side_rms[0])),
+        short(to_deg(peak.side_rms[1])),
     )
 }
 

@@ -17,7 +17,7 @@ pub const MAX_SEA_STATE: u8 = 4;
 /// Tolerance of the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
 pub const DRAUGHT_TOLERANCE: f64 = 0.05;
 /// Maximum interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
-pub const MAX_INTERVAL_S: f64 = 20.0;
+pub const MAX_READING_INTERVAL_S: f64 = 20.0;
 
 /// Loading condition at the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -121,7 +121,7 @@ pub enum Shortcoming {
     #[error("the sea state is {state}; required: at most {MAX_SEA_STATE}")]
     Sea { state: u8 },
     /// Median time between rows above the maximum interval.
-    #[error("readings are {seconds:.0} s apart; required: at most {MAX_INTERVAL_S} s")]
+    #[error("readings are {seconds:.0} s apart; required: at most {MAX_READING_INTERVAL_S} s")]
     Interval { seconds: f64 },
     /// Loading other than full; her draught as a share of the draught at full load, if both are declared.
     #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]

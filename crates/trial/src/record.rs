@@ -12,7 +12,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{Conditions, DeclaredWeather, MAX_INTERVAL_S, Shortcoming};
+use crate::conditions::{Conditions, DeclaredWeather, MAX_READING_INTERVAL_S, Shortcoming};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
@@ -336,7 +336,7 @@ impl Trial {
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
         let mut shortcomings = self.conditions.shortcomings();
         let seconds = self.sampling_period();
-        shortcomings.extend((seconds > MAX_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
+        shortcomings.extend((seconds > MAX_READING_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
         shortcomings
     }
 

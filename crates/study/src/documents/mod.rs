@@ -173,7 +173,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 ///
 /// Fails if it cannot be written as JSON.
 pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
-    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
+    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::execution)
 }
 
 /// Writes a document to standard output.

@@ -277,7 +277,7 @@ pub fn write_files(
     let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
     let all = || {
         let judged = judges.then(|| (FigurePlace::Traces, judged(&rows, &made.records, design)));
-        let held = study_figures::predictions(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
+        let held = study_figures::prediction_coverage(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
         judged.into_iter().chain(held).collect()
     };
     let figures = study_figures::chosen_figures(all, design, choice);

@@ -213,11 +213,11 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
 }
 
 /// Figure of the coverage of prediction intervals.
-pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
+pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<PageFigure> {
     let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the \
         width of the interval. \
                    Left of the line a method is overconfident; a wide interval covers more but says less.";
-    pooled_charts::predictions(design, summary).map(|data| under_its_finding("predictions", caption, data))
+    pooled_charts::prediction_coverage(design, summary).map(|data| under_its_finding("predictions", caption, data))
 }
 
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {

@@ -252,7 +252,7 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
 /// Fails if no method has such a name.
 pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
     let all = registry::default_settings().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
-    let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let mut all = all.map_err(|error| Failure::execution(format!("default settings: {error}")))?;
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let ids: Vec<&str> = all.iter().map(|method| method.id()).collect();

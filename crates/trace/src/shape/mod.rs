@@ -190,7 +190,7 @@ impl<'a> ShapeProblem<'a> {
     /// Problem at a point, with motions predicted under a colour; `None` if its columns are dependent.
     fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
-        let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);
+        let laws = laws::all(point.theta[1].abs(), problem.longest_duration(), spacing, law.colour.waves);
         let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
         let whitened = |law: &RandomLaw| {
@@ -211,7 +211,7 @@ impl<'a> ShapeProblem<'a> {
 
     /// Searches the shapes and summarises the best explanation.
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
-        let longest = problem.longest();
+        let longest = problem.longest_duration();
         let smooth = law.colour.waves.is_none().then(|| laws::smooth_moments(self.point.theta[1].abs(), longest));
         let smooth = smooth.unwrap_or_default();
         let smooth = smooth.par_iter().map(|law| self.criterion_under(law)).reduce(|| f64::INFINITY, f64::min);
