@@ -18,7 +18,7 @@ use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
-use crate::plan::{TrialPlan, blocks_of, max_trials};
+use crate::plan::{TrialPlan, shard_blocks, max_trials};
 use crate::rows::StudyRow;
 use crate::scenario::records::DATA_FOLDER_VARIABLE;
 use crate::scenario::{DesignCell, Scenario};
@@ -47,9 +47,9 @@ pub fn collect(
 ) -> Result<StoredStudy, Failure> {
     let run = run(scenario, Shard::WHOLE, folder, restart, observer)?;
     if run.computed == 0 && run.manifest.is_finished() {
-        let current = Manifest::new(scenario).of_program_and_machine(&run.manifest);
+        let current = Manifest::new(scenario).with_program_and_machine(&run.manifest);
         if let Ok(stored) = StoredStudy::of(folder.path(), run.manifest.clone()) {
-            let design = stored.design.with_descriptions_of(scenario);
+            let design = stored.design.with_renewed_descriptions(scenario);
             return stored.with_descriptions(current, design, folder);
         }
     }
@@ -116,7 +116,7 @@ fn run(
     let manifest = begin(scenario, folder, restart)?;
     let design = Design::from_scenario(scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
-    let part = blocks_of(scenario, shard);
+    let part = shard_blocks(scenario, shard);
     let most = max_trials(scenario, &part);
     if scenario.max_trials() == 0 {
         return Err(no_records(scenario));
@@ -399,7 +399,7 @@ fn add_bounds(scenario: &Scenario, design: &mut Design) {
 fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<StoredStudy, Failure> {
     let design = designed(scenario, &run.trials);
     let shown = if scenario.prose.output.showcase { scenario.cells.len() } else { 0 };
-    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
+    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::from_cell(scenario, cell)).collect();
     let mut timings = Timings::default();
     let store = BlockStore::new(folder.path(), &run.manifest, &design);
     for (block, _) in store.design_blocks() {

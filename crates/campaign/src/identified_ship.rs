@@ -1,6 +1,6 @@
 //! Identified ship of an estimate or a trace, for predictions: structures, noise, steering gear, valid range, hulls.
 
-use document::identified_hull::{by_keys, rows_of};
+use document::identified_hull::{by_keys, matrix_rows};
 use document::{
     HeadingNoise, IdentifiedCoefficient, IdentifiedEffect, IdentifiedGear, IdentifiedHull, IdentifiedShip,
     RandomYawMoment, ValidityRange, WeightedStructure,
@@ -126,7 +126,7 @@ impl<'a> RecordFacts<'a> {
             propeller_per_s: propeller,
             particulars: by_keys(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
-            covariance: rows_of(&hull.covariance),
+            covariance: matrix_rows(&hull.covariance),
             moment: RandomYawMoment {
                 deviation_rudder_rad: hull.moment.deviation,
                 correlation_s: hull.moment.correlation_time,
@@ -245,7 +245,7 @@ fn member(plausible: &PlausibleStructure) -> WeightedStructure {
         effects: response.model().effects().iter().map(stored).collect(),
         parameters: response.parameters().to_vec(),
         fitted: if sound.is_some() { fitted.clone() } else { Vec::new() },
-        covariance: sound.map(rows_of).unwrap_or_default(),
+        covariance: sound.map(matrix_rows).unwrap_or_default(),
         degrees_of_freedom: None,
     }
 }

@@ -104,7 +104,7 @@ impl Manifest {
     }
 
     /// Manifest with program and machine of `other`.
-    pub(crate) fn of_program_and_machine(self, other: &Self) -> Self {
+    pub(crate) fn with_program_and_machine(self, other: &Self) -> Self {
         let Self { version, git_revision, git_dirty, crates, machine, .. } = other.clone();
         Self { version, git_revision, git_dirty, crates, machine, ..self }
     }
@@ -118,7 +118,7 @@ impl Manifest {
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.design_sha256 != other.design_sha256 {
-            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::design_of);
+            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::study_design);
             let designs = design(self).zip(design(other));
             let changes = designs.map_or_else(Vec::new, |(there, here)| identity::differences(&there, &here));
             match changes.is_empty() {

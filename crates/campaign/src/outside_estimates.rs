@@ -149,7 +149,7 @@ pub fn read(
 
 /// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_trials_of_cell(cell)).sum();
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_cell_trials(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
         let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
@@ -344,12 +344,12 @@ mod tests {
                          0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
         let (read, warnings) = read_from(by_record, &scenario);
         let answers = read.expect("a table of answers");
-        let good = answers.estimate_of((0, 2)).expect("an answer");
+        let good = answers.estimate((0, 2)).expect("an answer");
         assert!(
             (good.response.rudder_bias - from_deg(1.5)).abs() < 1e-15
                 && (good.K().sd.expect("given") - 0.01).abs() < 1e-12
         );
-        let failure = |place| answers.estimate_of(place).expect_err("none").to_string();
+        let failure = |place| answers.estimate(place).expect_err("none").to_string();
         assert_eq!(failure((1, 0)), "outside: K_per_s is missing or not a finite number");
         assert_eq!((failure((1, 1)), failure((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
         assert!(
@@ -357,7 +357,7 @@ mod tests {
             "{warnings}"
         );
         let (read, warnings) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
-        assert_eq!(read.expect("a table").estimate_of((1, 2)).expect("an answer").K().value, 0.1);
+        assert_eq!(read.expect("a table").estimate((1, 2)).expect("an answer").K().value, 0.1);
         assert!(warnings.contains("5 of 6 trials"));
         let named = scenario.with_outside_estimates("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
         let last = MethodName { label: "mine".into(), id: "external".into() };

@@ -164,13 +164,13 @@ impl SharedTrials<'_> {
                 let replayed = |judge| {
                     of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
-                (input.row_of_estimate(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+                (input.estimate_row(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
-            FitAnswer::StraightOn => (input.row_of_straight_course(blank), None),
+            FitAnswer::StraightOn => (input.straight_course_row(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
-                (input.row_of_trace(blank, analysis, validation), validation.map(|on| on.errors.clone()))
+                (input.trace_row(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
         let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS_S[1]));

@@ -52,7 +52,7 @@ pub struct ShowcaseAnswer {
 const POINTS_PER_ROW: usize = 4;
 
 /// Showcase of a cell; `None` if its first trial cannot be simulated.
-pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
+pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = TrialId { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;

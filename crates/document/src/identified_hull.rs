@@ -90,7 +90,7 @@ pub fn by_keys(particulars: &HullParticulars) -> BTreeMap<String, f64> {
 }
 
 /// Rows of a matrix.
-pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+pub fn matrix_rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
@@ -172,11 +172,11 @@ impl IdentifiedHull {
             propeller_per_s: None,
             particulars: by_keys(ship),
             coefficients: expected.iter().enumerate().map(coefficient).collect(),
-            covariance: rows_of(&(common + &covariance)),
+            covariance: matrix_rows(&(common + &covariance)),
             trial_hull: Some(TrialHull {
                 hull: Box::new(self.clone()),
                 gain,
-                conditional_covariance: rows_of(&covariance),
+                conditional_covariance: matrix_rows(&covariance),
             }),
             ..self.scaled_to(self.length_m, ship.speed)
         }

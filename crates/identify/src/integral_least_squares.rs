@@ -22,7 +22,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
-use crate::robust::{newey_west_of_three, reported_covariance};
+use crate::robust::{newey_west_three, reported_covariance};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED_PARAMETERS, Solution};
@@ -102,7 +102,7 @@ impl Identifier for IntegralLeastSquares {
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
         let covariance =
             |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
-        let robust = noise.variance.map(|_| covariance(newey_west_of_three(&noise.scores) * noise.finite_sample));
+        let robust = noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.finite_sample));
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust) {
             (Some(variance), Some(robust)) => {

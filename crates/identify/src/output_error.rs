@@ -306,7 +306,7 @@ impl RangeScan {
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());
         // The factor corrects for the degrees of freedom of the fit, as in the variance above.
-        let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
+        let long_run = robust::newey_west_three(&profile.into_scores()) * (observations as f64 / freedom);
         let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);

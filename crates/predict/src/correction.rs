@@ -25,7 +25,7 @@ use crate::helm_replay::{SampleResult, SteeredZigZag};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{check_completed, in_parallel};
-use crate::replay::{file_of, simplified};
+use crate::replay::{record_file, simplified};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
@@ -188,7 +188,7 @@ pub fn correct(
         Some((name.to_owned(), ratio(name, measured, [&paired.full, &paired.trial], &readings)?))
     };
     let figures = paired.shown.iter().filter_map(corrected).collect();
-    let (file, name) = (file_of(record).to_owned(), record.name().to_owned());
+    let (file, name) = (record_file(record).to_owned(), record.name().to_owned());
     Ok(Correction { file, name, figures, warnings, ..Correction::default() })
 }
 

@@ -29,7 +29,7 @@ impl ShipMixture {
     /// Structure and parameters of ship `number`, drawn from all sources of uncertainty as for the prediction of
     /// manoeuvres.
     pub fn draw_parameters(&self, number: u64) -> DrawnParameters {
-        let part = self.structure_of_draw(number);
+        let part = self.drawn_structure(number);
         let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
             Some(hull) => {

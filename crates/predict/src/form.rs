@@ -21,7 +21,7 @@ use trial::{Conditions, Loading};
 use crate::imo::{LIMITS, Limit};
 use crate::interval::PredictionInterval;
 use crate::prediction::Prediction;
-use crate::replay::file_of;
+use crate::replay::record_file;
 use crate::standard;
 use record::TestedManoeuvre;
 
@@ -125,7 +125,7 @@ pub fn fill<'a>(
     let length = |particulars: Option<Particulars>| particulars.map(|ship| ship.length);
     let of_record = |FormRecord { trial, .. }: &FormRecord<'a>| {
         let form = trial.conditions();
-        Declared { file: file_of(trial), form, length: length(form.particulars.or(trial.particulars())) }
+        Declared { file: record_file(trial), form, length: length(form.particulars.or(trial.particulars())) }
     };
     let of_file = |(file, form): (&'a str, &'a Conditions)| Declared { file, form, length: length(form.particulars) };
     let declarations: Vec<Declared> = records.iter().map(of_record).chain(declared.map(of_file)).collect();
@@ -175,7 +175,7 @@ pub fn fill<'a>(
 fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
-        let file = file_of(record.trial);
+        let file = record_file(record.trial);
         let corrected = record.correction.and_then(|all| Some((all, all.figures.get(limit.figure)?)));
         if let Some((correction, figure)) = corrected {
             let is_doubtful = !(figure.warnings.is_empty() && correction.warnings.is_empty());

@@ -116,7 +116,7 @@ pub(crate) fn measured_characteristic(
             let way = measured.initial_turning_distance.or_else(|| Some(speed? * time.value))?;
             Some(Quantity::new(way / length, time.sd.map(|sd| sd * way / (time.value * length))))
         }
-        (.., "period_s") => measured.period_of(EXECUTES),
+        (.., "period_s") => measured.period_over(EXECUTES),
         _ => None,
     }
 }

@@ -131,7 +131,7 @@ impl Limit {
 
 /// Criterion that limits a characteristic of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit
 /// for a ship with this L/V, s; `None` if there is none.
-pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
+pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
         |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
@@ -186,8 +186,8 @@ mod tests {
         }
         // L/V = 12.5 s.
         assert!((predicted[1].limit - 11.25).abs() < 1e-12);
-        let (name, limit) = limit_of("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
+        let (name, limit) = imo_limit("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
         assert_eq!((name, limit), ("10/10 first overshoot", predicted[1].limit));
-        assert_eq!(limit_of("zig-zag 20/20 second_overshoot_deg", 12.5), None);
+        assert_eq!(imo_limit("zig-zag 20/20 second_overshoot_deg", 12.5), None);
     }
 }

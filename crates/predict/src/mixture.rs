@@ -171,7 +171,7 @@ impl ShipMixture {
     pub fn draw_ship(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
-        let part = if has(UncertaintySource::Structure) { self.structure_of_draw(number) } else { self.likeliest() };
+        let part = if has(UncertaintySource::Structure) { self.drawn_structure(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
@@ -240,7 +240,7 @@ impl ShipMixture {
 
     /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
     /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
-    pub(crate) fn structure_of_draw(&self, number: u64) -> &StructureSampler {
+    pub(crate) fn drawn_structure(&self, number: u64) -> &StructureSampler {
         let step =
             if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())

@@ -72,7 +72,7 @@ pub struct RecordReplay {
 }
 
 /// File of a record, as the user named it.
-pub fn file_of(trial: &Trial) -> &str {
+pub fn record_file(trial: &Trial) -> &str {
     match trial.origin() {
         Origin::Measured { file, .. } => file,
         Origin::Simulated { .. } => trial.name(),
@@ -157,7 +157,7 @@ impl ShipMixture {
             _ => turns(trial, &most_probable, &made, self.timescale(), current),
         };
         Ok(Some(RecordReplay {
-            file: file_of(trial).to_owned(),
+            file: record_file(trial).to_owned(),
             name: trial.name().to_owned(),
             rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
             band_coverage_90: held as f64 / rows.len() as f64,

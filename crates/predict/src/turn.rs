@@ -28,7 +28,7 @@ const DEFAULT_TIMESCALES: f64 = 40.0;
 const DRAWN_TRACKS: usize = 40;
 
 /// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
-pub fn current_of(trial: &Trial) -> Option<Current> {
+pub fn estimated_current(trial: &Trial) -> Option<Current> {
     let turn = HeldTurn::from_trial(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
     let has_position = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
@@ -42,7 +42,7 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
 /// Record with the current removed from the positions, and that current: the given one, or else the current that the
 /// record determines.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
-    match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
+    match given.or_else(|| estimated_current(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
         Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
         None => (trial, None),
     }

@@ -198,7 +198,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         None => Ok(None),
         Some(TimePoint::Seconds(seconds)) => Ok(Some(*seconds)),
         Some(TimePoint::Clock(stamp, text)) => {
-            let time = log.clock.and_then(|clock| clock.time_of(stamp));
+            let time = log.clock.and_then(|clock| clock.record_time(stamp));
             time.map(Some).ok_or_else(|| {
                 Failure::in_file(
                     path,
@@ -248,7 +248,7 @@ pub fn rudder_logged_late(late: f64) -> String {
 /// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
 /// record gives no validation.
 pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
-    let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
+    let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
     let twice =
         trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
     let in_both = held_out.iter().filter(|trial| is_in(trials, trial));
@@ -281,11 +281,11 @@ pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
 
 /// A record as the source of warnings.
 pub fn source_of(trial: &Trial) -> WarningSource {
-    WarningSource::Record(file_of(trial).0.to_owned())
+    WarningSource::Record(file_and_hash(trial).0.to_owned())
 }
 
 /// Path and hash of a measured record.
-pub fn file_of(trial: &Trial) -> (&str, &str) {
+pub fn file_and_hash(trial: &Trial) -> (&str, &str) {
     match trial.origin() {
         Origin::Measured { file, sha256 } => (file, sha256),
         Origin::Simulated { scenario, .. } => (scenario, ""),

@@ -16,7 +16,7 @@ const MAX_ERROR_RATIO: f64 = 3.0;
 
 /// Model average: ships with their posterior weights.
 #[derive(Debug)]
-pub struct Average {
+pub struct ModelAverage {
     /// Weights, which sum to one, and ships.
     pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
@@ -66,17 +66,17 @@ impl AveragedModel<'_> {
     }
 
     /// Ships with their weights: structures first.
-    pub fn average(&self) -> Average {
+    pub fn average(&self) -> ModelAverage {
         let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
             Box::new(fit.structure.response(self.fitted_record, &fit.theta))
         };
         let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.scaled_hull::<f64>()) };
         let ships = self.members.iter().map(structure).chain(self.hulls.iter().map(hull));
-        Average { members: self.weights().zip(ships).collect() }
+        ModelAverage { members: self.weights().zip(ships).collect() }
     }
 }
 
-impl Average {
+impl ModelAverage {
     /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of the
     /// depth; `None` if no replay is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {

@@ -17,10 +17,10 @@ const MIN_PROPELLER_CHANGE: f64 = 0.05;
 pub const PRIOR_PROBABILITY: f64 = 0.1;
 
 /// Prior probability of an effect of the measured speed or sway, which occurs for every hull.
-pub const PRIOR_PROBABILITY_OF_MOTION: f64 = 0.5;
+pub const PRIOR_PROBABILITY_MOTION_EFFECT: f64 = 0.5;
 
 /// Prior probability of a moment that depends on time, in one record: such a moment resembles noise.
-pub const PRIOR_PROBABILITY_OF_TIME: f64 = 0.001;
+pub const PRIOR_PROBABILITY_TIME_MOMENT: f64 = 0.001;
 
 /// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2).
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
@@ -86,8 +86,8 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
     };
     let weighted = |term: &Term| {
         let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
-            (true, _) => PRIOR_PROBABILITY_OF_TIME,
-            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_OF_MOTION,
+            (true, _) => PRIOR_PROBABILITY_TIME_MOMENT,
+            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_MOTION_EFFECT,
             (false, _) => PRIOR_PROBABILITY,
         };
         let probability = prior / forms(term.effect.id(), term.only);
@@ -98,7 +98,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
 
 /// `true` if a form is tried only in place of another form of its effect, and not in the full model: a short
 /// first-order lag and a short dead time are nearly collinear.
-pub fn is_variant(effect: &dyn Effect) -> bool {
+pub fn is_alternative_form(effect: &dyn Effect) -> bool {
     (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
 }
 

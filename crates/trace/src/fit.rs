@@ -23,14 +23,14 @@ pub struct StoppingRule {
     /// Maximum number of steps.
     pub steps: usize,
     /// Predicted decrease of J below which the fit ends.
-    pub negligible: f64,
+    pub min_decrease: f64,
 }
 
 impl StoppingRule {
     /// Tolerance that suffices for a quadratic approximation of the posterior.
-    pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
+    pub const COARSE: Self = Self { steps: 6, min_decrease: 0.5 };
     /// Tolerance of a converged fit.
-    pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
+    pub const FINE: Self = Self { steps: 15, min_decrease: 0.03 };
 
     fn rules(self) -> SearchSettings {
         SearchSettings {
@@ -41,8 +41,8 @@ impl StoppingRule {
             grow: 8.0,
             min_damping: [0.0, 1e-6],
             max_rejections: 8,
-            min_decrease: self.negligible,
-            tolerance: [self.negligible, 0.0],
+            min_decrease: self.min_decrease,
+            tolerance: [self.min_decrease, 0.0],
             max_small_steps: 1,
         }
     }
@@ -63,12 +63,12 @@ impl FittedRecords {
     /// Prepares records of a ship with this 1/T (1/s) of the base and L/U = `time` (s).
     pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
         let mut all = Self { records, noise: Vec::new(), time };
-        all.noise = all.noise_of(inverse_time);
+        all.noise = all.noise_transitions(inverse_time);
         all
     }
 
     /// Noise transitions of the records for a ship of this 1/T, 1/s.
-    pub fn noise_of(&self, inverse_time: f64) -> Vec<RecordNoise> {
+    pub fn noise_transitions(&self, inverse_time: f64) -> Vec<RecordNoise> {
         let full = self.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
         let noise = |record| RecordNoise::new(record, inverse_time, self.longest_duration(), full);
         self.records.iter().map(noise).collect()
@@ -358,7 +358,7 @@ impl StructureFit {
     }
 
     /// Covariance of the fitted entries of [`Structure::for_record`] for a record.
-    pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
+    pub fn record_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();
         let kept =

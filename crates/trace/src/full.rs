@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 
 use crate::base::Base;
-use crate::candidates::is_variant;
+use crate::candidates::is_alternative_form;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
@@ -39,7 +39,7 @@ pub fn fit(
     kinds: &[CorrelatedNoise],
 ) -> Vec<FullModel> {
     let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
-        candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).partition(|term| term.effect.has_instant());
+        candidates.iter().filter(|term| !is_alternative_form(term.effect.as_ref())).partition(|term| term.effect.has_instant());
     let base_structure = Structure::base(problem.records.len(), problem.time);
     let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST_NOISE_RATIO * FIRST_NOISE_RATIO) * base.mean_square());
@@ -66,7 +66,7 @@ pub fn fit(
     let stationary_law = stationary.law.clone();
     let whole = refit(&stationary_law);
     let mut laws = vec![estimate_law(&whole, &stationary_law, kinds)];
-    let of_heading: Vec<CorrelatedNoise> = kinds.iter().copied().filter(|kind| kind.is_of_heading()).collect();
+    let of_heading: Vec<CorrelatedNoise> = kinds.iter().copied().filter(|kind| kind.is_heading_error()).collect();
     if !laws[0].law.is_alike(&stationary_law) {
         laws.push(stationary);
     }

@@ -25,7 +25,7 @@ pub mod noise;
 pub mod prospects;
 pub mod record;
 pub mod record_moment;
-mod remainder;
+mod residual_analysis;
 pub mod replay_errors;
 mod report;
 mod rudder;
@@ -43,7 +43,7 @@ pub mod weights;
 
 pub use analysis::{Analysis, trace, trace_with_watcher, without_spikes};
 pub use document::trace::{Document, Verdict};
-pub use remainder::{Innovations, SIGNIFICANCE_LEVEL};
+pub use residual_analysis::{Innovations, SIGNIFICANCE_LEVEL};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};
 pub use watcher::Watcher;

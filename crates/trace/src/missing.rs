@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::effects::Prior;
 
 use crate::analysis::Analysis;
-use crate::candidates::is_variant;
+use crate::candidates::is_alternative_form;
 use crate::fit::StoppingRule;
 use crate::full::start_point;
 use crate::law::MIN_HEADING_SD_RAD;
@@ -25,7 +25,7 @@ impl Analysis {
         let theta = |values: &mut dyn Iterator<Item = f64>| start_point(&structure, &self.base.response, values);
         let base = self.problem.residual(&structure, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
-        let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).collect();
+        let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_alternative_form(term.effect.as_ref())).collect();
         alone.sort_by(|a, b| probable(&b.name()).total_cmp(&probable(&a.name())));
         let fits: Vec<(TermName, Vec<Vec<f64>>)> = alone
             .par_iter()

@@ -43,7 +43,7 @@ pub fn named_effects(structures: &Structures, threshold: f64, selection: &Select
     for name in structures.probabilities.keys() {
         let key = (name.0, name.2);
         if keys.iter().all(|(other, _)| *other != key) {
-            keys.push((key, structures.probability_of(key.0, key.1)));
+            keys.push((key, structures.effect_probability(key.0, key.1)));
         }
     }
     keys.sort_by(|(a, p), (b, q)| q.total_cmp(p).then(a.cmp(b)));
@@ -73,7 +73,7 @@ fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64
 
 /// Smallest group of effects whose joint probability suffices, the most probable effect first; `None` if there is none.
 fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
-    let union = |group: &[EffectKey]| structures.probability_of_any(|name| group.contains(&(name.0, name.2)));
+    let union = |group: &[EffectKey]| structures.inclusion_probability(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];
     while group.len() < MAX_GROUP_SIZE {
         let before = union(&group);

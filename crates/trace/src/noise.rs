@@ -73,7 +73,7 @@ impl CorrelatedNoise {
     }
 
     /// `true` for an error of the heading, `false` for a moment.
-    pub fn is_of_heading(self) -> bool {
+    pub fn is_heading_error(self) -> bool {
         matches!(self, Self::Compass(_) | Self::Smooth(_))
     }
 

@@ -14,7 +14,7 @@ use ship::{Particulars, Regressor};
 use trial::Trial;
 
 use crate::base::Base;
-use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_OF_TIME, is_excluded_by_calm};
+use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_excluded_by_calm};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::FullModel;
@@ -22,7 +22,7 @@ use crate::location::Location;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::record::PreparedRecord;
-use crate::remainder::Remainder;
+use crate::residual_analysis::ResidualAnalysis;
 use crate::rudder::RudderNoise;
 use crate::sentences;
 use crate::settings::Settings;
@@ -50,9 +50,9 @@ pub struct TraceParts<'a> {
     /// Held-out records with their comparisons.
     pub validation: (&'a [Trial], &'a [RecordComparison]),
     /// Leave-one-out comparisons.
-    pub left_out: &'a [Option<RecordComparison>],
+    pub leave_one_out: &'a [Option<RecordComparison>],
     /// Residual analysis.
-    pub remainder: &'a Remainder,
+    pub residual_analysis: &'a ResidualAnalysis,
     /// Named effects and shapes.
     pub location: &'a Location,
     /// Times of the removed compass outliers of the fitted records, s.
@@ -78,9 +78,9 @@ impl TraceParts<'_> {
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = self.location.named.clone();
-        named.retain(|naming| self.remainder.is_credible || selection.requires(naming.term.0));
+        named.retain(|naming| self.residual_analysis.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
-        let residual_peak = self.remainder.residual_peak.as_ref();
+        let residual_peak = self.residual_analysis.residual_peak.as_ref();
         let error = self.errors();
         let disturbance = self.disturbance();
         let verdict = self.verdict(effects.is_empty(), disturbance.is_some());
@@ -104,13 +104,13 @@ impl TraceParts<'_> {
             prior: PriorEntry {
                 candidates: self.candidates.len(),
                 probability: PRIOR_PROBABILITY,
-                probability_of_time: PRIOR_PROBABILITY_OF_TIME,
+                probability_of_time: PRIOR_PROBABILITY_TIME_MOMENT,
                 named_from: self.settings.probability,
                 odds_factors: prior_odds::PRIOR_ODDS_FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
             unexplained: UnexplainedEntry {
-                present: self.remainder.is_unexplained,
+                present: self.residual_analysis.is_unexplained,
                 signature: residual_peak
                     .map(|s| sentences::residual_peak_sentence(s, &self.trials[s.record].title()) + &self.bands()),
             },
@@ -137,7 +137,7 @@ impl TraceParts<'_> {
     /// Verdict of the trace, the first that holds.
     fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> Verdict {
         match (self.location.is_located(), is_unnamed, is_disturbed) {
-            _ if self.remainder.is_unexplained => Verdict::Unexplained,
+            _ if self.residual_analysis.is_unexplained => Verdict::Unexplained,
             (true, ..) => Verdict::Located,
             (_, false, _) => Verdict::Traced,
             (.., true) => Verdict::Disturbed,
@@ -238,7 +238,7 @@ impl TraceParts<'_> {
     fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
         let entry = |naming: &EffectNaming| {
             let (id, form, only) = naming.term;
-            let support = self.structures.support_of(id, only);
+            let support = self.structures.effect_evidence(id, only);
             let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
@@ -314,7 +314,7 @@ impl TraceParts<'_> {
         let best = forms.iter().min_by(|a, b| a.outcome.cmp(&b.outcome).then(b.probability.total_cmp(&a.probability)));
         let probability = match is_sea {
             true => f64::from(u8::from(sea)),
-            false => self.structures.probability_of_any(|name| name.0 == id),
+            false => self.structures.inclusion_probability(|name| name.0 == id),
         };
         let outcome = match (is_sea && !excluded && !becalmed, sea) {
             (true, true) => Outcome::Added,
@@ -381,15 +381,15 @@ impl TraceParts<'_> {
             horizons: Vec::new(),
         };
         let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
-        let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
+        let leave_one_out = self.trials.iter().zip(self.leave_one_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
         ErrorEntry {
-            kept_base: match (self.remainder.is_credible, self.keeps_base) {
-                (false, _) => Some(sentences::NOT_CREDIBLE.into()),
-                (true, keeps_base) => keeps_base.then(|| sentences::KEEPS_BASE.into()),
+            kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
+                (false, _) => Some(sentences::NO_NAMED_EFFECT_REASON.into()),
+                (true, keeps_base) => keeps_base.then(|| sentences::KEPT_BASE_REASON.into()),
             },
             identification: self.trials.iter().zip(self.identification).map(entry).collect(),
             validation: self.validation.0.iter().zip(self.validation.1).map(unfitted).collect(),
-            leave_one_out: left_out.map(unfitted).collect(),
+            leave_one_out: leave_one_out.map(unfitted).collect(),
         }
     }
 
@@ -416,7 +416,7 @@ impl TraceParts<'_> {
         let law = &self.full.law;
         let entry = |(number, noise): (usize, HeadingNoise)| {
             let variance = law.variance[number];
-            let heading = law.colour.correlated.filter(|(kind, _)| kind.is_of_heading());
+            let heading = law.colour.correlated.filter(|(kind, _)| kind.is_heading_error());
             let (kind, correlation) = match noise.moment {
                 RandomMoment::OrnsteinUhlenbeck { correlation_s, .. } => (noise.moment.kind(), Some(correlation_s)),
                 other => (other.kind(), None),
@@ -433,7 +433,7 @@ impl TraceParts<'_> {
                 moment_correlation_s: correlation,
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
-                is_adequate: self.remainder.is_noise,
+                is_adequate: self.residual_analysis.is_noise,
                 rudder_sd_deg: self.rudder_noises[number].map(|error| to_deg(error.sd)),
                 outliers_s: self.outliers[number].clone(),
             }

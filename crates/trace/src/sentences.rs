@@ -10,11 +10,11 @@ use crate::naming::EffectNaming;
 use crate::residual_peak::ResidualPeak;
 
 /// Reason to keep the replay of the base.
-pub const KEEPS_BASE: &str = "adding effects does not improve the replay; the misfit looks like a random yaw moment, \
+pub const KEPT_BASE_REASON: &str = "adding effects does not improve the replay; the misfit looks like a random yaw moment, \
                               which no replay can reproduce";
 
 /// Reason to name no effect.
-pub const NOT_CREDIBLE: &str = "adding effects does not improve the replay, and no noise law describes the residual, \
+pub const NO_NAMED_EFFECT_REASON: &str = "adding effects does not improve the replay, and no noise law describes the residual, \
                                 so no effect is named";
 
 /// File name of a measured trial, or scenario of a simulated one.

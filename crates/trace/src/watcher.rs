@@ -8,7 +8,7 @@ pub trait Watcher: Sync {
     /// End of one fold.
     fn end_fold(&self) {}
 
-    /// `true` if the folds should stop; [`Analysis::left_out`](crate::Analysis::left_out) is then empty.
+    /// `true` if the folds should stop; [`Analysis::leave_one_out`](crate::Analysis::leave_one_out) is then empty.
     fn is_asked_to_stop(&self) -> bool {
         false
     }

@@ -278,7 +278,7 @@ impl Clock {
     }
 
     /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0.
-    pub fn time_of(&self, stamp: &Stamp) -> Option<f64> {
+    pub fn record_time(&self, stamp: &Stamp) -> Option<f64> {
         let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
         match stamp.date {

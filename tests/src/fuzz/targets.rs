@@ -109,7 +109,7 @@ pub fn stamp(data: &[u8]) -> bool {
         let clock = stamps.clock().expect("a stamp was read");
         assert_eq!(clock.time_of_day_at(seconds).len(), 8, "a time of day");
         assert!(clock.date_at(seconds).is_none_or(|date| date.len() <= 32), "a date");
-        assert!(clock.time_of(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
+        assert!(clock.record_time(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
         read = true;
     }
     read

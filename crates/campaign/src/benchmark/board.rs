@@ -98,7 +98,7 @@ pub(super) struct Scores {
 impl Scores {
     pub(super) fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
         let of_method = |method: &String| {
-            let scores: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
+            let scores: Option<Vec<f64>> = cases.iter().map(|case| case.method_score(method)).collect();
             Some((method.clone(), scores?))
         };
         let methods: Vec<(String, Vec<f64>)> = methods.iter().filter_map(of_method).collect();

@@ -202,12 +202,12 @@ impl BenchCase {
     }
 
     /// Ratio of the scores of two methods; `None` if one of them takes no part.
-    pub fn ratio_of(&self, method: &str, reference: &str) -> Option<f64> {
-        Some(ratio(self.score_of(method)?, self.score_of(reference)?))
+    pub fn score_ratio(&self, method: &str, reference: &str) -> Option<f64> {
+        Some(ratio(self.method_score(method)?, self.method_score(reference)?))
     }
 
     /// Score of a method: infinite if it failed, `None` if it takes no part.
-    pub fn score_of(&self, method: &str) -> Option<f64> {
+    pub fn method_score(&self, method: &str) -> Option<f64> {
         let answer = self.answers.iter().find(|answer| answer.method == method)?;
         Some(answer.score.unwrap_or(f64::INFINITY))
     }

@@ -197,7 +197,7 @@ fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
 fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
-        let trials = scenario.max_trials_of_cell(place);
+        let trials = scenario.max_cell_trials(place);
         let records = cell.records.into_iter().map(|steered| steered.record);
         match sets.iter_mut().find(|set| set.name == cell.set) {
             Some(set) => {

@@ -122,7 +122,7 @@ impl RowLayout {
     }
 
     /// Columns of rows, in order.
-    pub(super) fn columns_of<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
+    pub(super) fn value_columns<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
         self.columns().map(move |(_, source)| match source {
             ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
                 Access::Count(get, _) => Values::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),

@@ -17,7 +17,7 @@ use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::outside_estimates::OutsideEstimates;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
-use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::prose::{Presentation, Prose, Published};
 use crate::scenario::records::{self, RecordStudyWire};
 use crate::scenario::stop::StopRule;
@@ -82,7 +82,7 @@ impl Scenario {
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::check_file_name(&manifest.name).map_err(|unfit| {
                 let KeyFault { key, mark, problem, expected, advice } =
-                    of_text(KeyPath::from_dotted("name"), &manifest.name, unfit);
+                    text_fault(KeyPath::from_dotted("name"), &manifest.name, unfit);
                 Failure::in_text(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
@@ -107,10 +107,10 @@ impl Scenario {
             let span = locate::span(&text, &fault.key, fault.mark);
             Failure::in_text(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
-        let design = identity::design_of(document);
+        let design = identity::study_design(document);
         let design_sha256 = match document.contains_key(RECORDS) {
             true => records::design_sha256(&design, scenario.cells.iter().filter_map(DesignCell::record_set)),
-            false => identity::sha256_of(&design, folder)?,
+            false => identity::study_sha256(&design, folder)?,
         };
         let seed = seed.unwrap_or(scenario.seed);
         Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
@@ -216,13 +216,13 @@ impl Scenario {
     }
 
     /// Maximum number of trials of a cell; for measured records the number of splits.
-    pub fn max_trials_of_cell(&self, cell: usize) -> u64 {
+    pub fn max_cell_trials(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
     /// Maximum number of trials of all cells.
     pub fn max_trials(&self) -> u64 {
-        (0..self.cells.len()).map(|cell| self.max_trials_of_cell(cell)).sum()
+        (0..self.cells.len()).map(|cell| self.max_cell_trials(cell)).sum()
     }
 
     /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.

@@ -14,7 +14,7 @@ use crate::failure::{Failure, OnPath};
 use crate::scenario::part::ScenarioPart;
 
 /// Design of a document: its keys without prose and presentation.
-pub fn design_of(document: &Table) -> Table {
+pub fn study_design(document: &Table) -> Table {
     document
         .iter()
         .filter(|(key, _)| ScenarioPart::from_key(key) != ScenarioPart::Prose)
@@ -25,7 +25,7 @@ pub fn design_of(document: &Table) -> Table {
 /// SHA-256 of a design and of the records it replays, each with its sidecar, if any.
 ///
 /// Fails if an existing record cannot be read to its end.
-pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
+pub fn study_sha256(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
     while let Some(table) = tables.pop() {
@@ -131,6 +131,6 @@ mod tests {
         let described = document(
             "# Why?\nquestion = \"?\"\nanalysis = \"!\"\nseed    = 1\n[ship.yukun]\n[output]\nshowcase = true",
         );
-        assert_eq!(design_of(&bare), design_of(&described));
+        assert_eq!(study_design(&bare), study_design(&described));
     }
 }

@@ -12,7 +12,7 @@ use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
 use crate::scenario::outside_estimates::{self, OutsideEstimates};
-use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::{effect, limits, name};
 
 /// Method as named in a scenario.
@@ -75,7 +75,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
             Self::Trace(_) | Self::StraightOn => None,
-            Self::Answers(answers) => Some(answers.estimate_of((key.cell, key.replicate))),
+            Self::Answers(answers) => Some(answers.estimate((key.cell, key.replicate))),
         }
     }
 }
@@ -155,7 +155,7 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
         let key = list.child(index);
         let procedure = procedure(entry, &key)?;
         let label = entry.label.clone().unwrap_or_else(|| procedure.id().to_owned());
-        name::check_label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
+        name::check_label(&label).map_err(|unfit| text_fault(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(KeyFault::name(
                 key.child("label"),

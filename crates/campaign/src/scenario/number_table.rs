@@ -45,7 +45,7 @@ pub fn single_entry<'a>(
     let mut entries = named.iter();
     match (entries.next(), entries.next()) {
         (Some((name, numbers)), None) => Ok((name, place.child(name), numbers)),
-        _ => Err(reader::not_one_name(place.clone(), named.keys(), choices)),
+        _ => Err(reader::name_count_fault(place.clone(), named.keys(), choices)),
     }
 }
 

@@ -29,7 +29,7 @@ impl OutsideEstimates {
     }
 
     /// Estimate for a trial. Fails with the reason of a missing estimate.
-    pub fn estimate_of(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
+    pub fn estimate(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
             Some(Err(reason)) => Err(IdentifyError::outside(reason)),

@@ -20,7 +20,7 @@ use crate::disk;
 use crate::scenario::identity;
 use crate::scenario::method::IdentifierWire;
 use crate::scenario::predictions::RecordPredictWire;
-use crate::scenario::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::problem::{KeyFault, KeyPath, choice_index};
 use crate::scenario::prose::Presentation;
 use crate::scenario::sweep::AxisWire;
 
@@ -303,7 +303,7 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
                 let place = |name: &String| {
                     let messages = ["no record is called", "expected the name of a file, without its ending"];
                     let key = key.child(part);
-                    place_among(name, names, key, messages)
+                    choice_index(name, names, key, messages)
                 };
                 list.iter().filter(|name| !absent.contains(name)).map(place).collect()
             };

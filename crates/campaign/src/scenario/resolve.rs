@@ -19,7 +19,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         scenario: name.to_owned(),
-        gear: wire.steering_gear.with_defaults_of(&ship),
+        gear: wire.steering_gear.with_ship_defaults(&ship),
         helmsman: wire.helmsman,
         approach: wire.approach,
         recording: wire.recording,

@@ -107,7 +107,7 @@ mod tests {
             let covered = (0..samples).filter(|_| {
                 let mut sums = ErrorSums::default();
                 (0..size as u64).for_each(|replicate| sums.add(replicate, rng.sample::<f64, _>(StandardNormal)));
-                let [sd] = resamples.bootstrap(sums.batches(), |total| [sums.sd_of(total)]);
+                let [sd] = resamples.bootstrap(sums.batches(), |total| [sums.sd(total)]);
                 let [lo, hi] = sd.and_then(|figure| figure.ci95).expect("enough values");
                 lo <= 1.0 && 1.0 <= hi
             });
@@ -120,7 +120,7 @@ mod tests {
     fn few_values_have_no_interval() {
         let mut sums = ErrorSums::default();
         (0..5).for_each(|replicate| sums.add(replicate, replicate as f64));
-        let [mean, none] = Resamples::new(5).bootstrap(sums.batches(), |total| [sums.mean_of(total), None]);
+        let [mean, none] = Resamples::new(5).bootstrap(sums.batches(), |total| [sums.mean(total), None]);
         assert_eq!((mean, none), (Some(Statistic { value: 2.0, ci95: None }), None));
     }
 }

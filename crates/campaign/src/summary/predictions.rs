@@ -4,7 +4,7 @@ use std::array;
 use std::sync::LazyLock;
 
 use estimation::statistics::median;
-use predict::imo::limit_of;
+use predict::imo::imo_limit;
 use serde::{Deserialize, Serialize};
 
 use crate::rows::{PredictedCharacteristic, StudyRow};
@@ -163,7 +163,7 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
     for figure in row.predicted.iter().flatten() {
         let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
             let (cell, method, name) = (row.cell as usize, row.method, figure.name.clone());
-            let limited = length_over_speed.and_then(|scale| limit_of(&name, scale));
+            let limited = length_over_speed.and_then(|scale| imo_limit(&name, scale));
             let criterion = limited.map(|(name, limit)| ImoDecisionTally {
                 name: name.into(),
                 limit,

@@ -173,7 +173,7 @@ fn most_batches(methods: &[MethodTally]) -> usize {
 
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
-        resamples.bootstrap(pair.batches(), |total| [PairSums::difference_of(total), PairSums::ratio_of(total)]);
+        resamples.bootstrap(pair.batches(), |total| [PairSums::rms_difference(total), PairSums::rms_ratio(total)]);
     Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trials()) }
 }
 
@@ -337,7 +337,7 @@ impl IndexSums {
         let sizes = ordered.absolute_deviations(0.0);
         let sums = &self.sums;
         let [mean, sd, rms] =
-            resamples.bootstrap(sums.batches(), |total| [sums.mean_of(total), sums.sd_of(total), sums.rms_of(total)]);
+            resamples.bootstrap(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
         let (squares, count) = self.bounds;
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
         IndexErrors {

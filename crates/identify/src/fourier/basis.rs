@@ -275,7 +275,7 @@ impl Basis {
 
     /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the second function of its
     /// pair.
-    pub fn moments_of_derivative(&self, moments: &DVector<f64>) -> DVector<f64> {
+    pub fn derivative_moments(&self, moments: &DVector<f64>) -> DVector<f64> {
         -self.derivative(moments)
     }
 
@@ -367,7 +367,7 @@ mod tests {
                 assert_abs_diff_eq!(rates[i], curve.yaw_rate(*t), epsilon = 1e-12);
                 assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration(*t), epsilon = 1e-13);
             }
-            let by_coefficients = basis.moments_of_derivative(&basis.moments(&values));
+            let by_coefficients = basis.derivative_moments(&basis.moments(&values));
             let sum: f64 = rates.iter().zip(&values).map(|(r, y)| r * y).sum();
             assert_relative_eq!(by_coefficients.dot(&projection.coefficients), sum, max_relative = 1e-11);
             let covariance = basis.unscaled_covariance();

@@ -94,7 +94,7 @@ impl HullTrack {
 
     /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
     /// headings.
-    pub fn of_rudder(rudder: f64, duration: f64) -> Self {
+    pub fn from_rudder(rudder: f64, duration: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
             rudder: vec![rudder; 2],

@@ -31,7 +31,7 @@ pub(super) struct HardTurn([HullTrack; 2]);
 
 impl HardTurn {
     pub fn new() -> Self {
-        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::of_rudder(rudder, DURATION_LENGTHS)))
+        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::from_rudder(rudder, DURATION_LENGTHS)))
     }
 
     /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.

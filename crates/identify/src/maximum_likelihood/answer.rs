@@ -142,7 +142,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let scores: Vec<[Vec<f64>; 3]> = (maximum.derivatives.scores.iter().zip(parts))
         .map(|(scores, part)| scores.each_ref().map(|column| column.iter().map(|x| x / part.variance).collect()))
         .collect();
-    let long_run = robust::newey_west_of_three(&scores) * (readings as f64 / freedom);
+    let long_run = robust::newey_west_three(&scores) * (readings as f64 / freedom);
     let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, readings);

@@ -8,7 +8,7 @@ use trial::{Conditions, Loading, imo};
 
 use super::record::TestedManoeuvre;
 use crate::imo::{TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
-use crate::replay::file_of;
+use crate::replay::record_file;
 
 /// Remarks, in order of relevance.
 pub(crate) fn remarks(
@@ -21,7 +21,7 @@ pub(crate) fn remarks(
     let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
     for manoeuvre in tested {
         for text in of_record(manoeuvre) {
-            files.entry(text).or_default().push(file_of(manoeuvre.record.trial));
+            files.entry(text).or_default().push(record_file(manoeuvre.record.trial));
         }
     }
     if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
@@ -66,7 +66,7 @@ fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
 
 /// Remark on a current in the track of a record.
 fn of_current(tested: &TestedManoeuvre) -> Option<String> {
-    let file = file_of(tested.record.trial);
+    let file = record_file(tested.record.trial);
     match tested.record.current {
         Some(current) => Some(format!(
             "{file}: a current of {:.2} m/s that sets to {:.0}° was removed from the track",

@@ -24,7 +24,7 @@ impl Table {
         if self.columns.is_empty() {
             return String::from("% A table without columns.\n");
         }
-        let is_empty = |place: &usize| !self.rows.is_empty() && self.cells_of(*place).all(|cell| cell.is_none());
+        let is_empty = |place: &usize| !self.rows.is_empty() && self.column_cells(*place).all(|cell| cell.is_none());
         let shown = (0..self.columns.len()).filter(|place| !is_empty(place));
         let set: Vec<LatexColumn> = shown.map(|place| LatexColumn::new(self, place, &self.columns[place])).collect();
         let formats: Vec<&str> = set.iter().map(|column| column.format.as_str()).collect();

@@ -38,7 +38,7 @@ const fn row(
     prior: ListedPrior,
 ) -> ListedEffect {
     let description = Description { id, form, equation, parameters };
-    Row(ListedFormula { description, acts_on, formula, prior, of_weather: false })
+    Row(ListedFormula { description, acts_on, formula, prior, is_weather: false })
 }
 
 /// Row of a moment of the weather.
@@ -49,7 +49,7 @@ const fn weather(
     prior: ListedPrior,
 ) -> ListedEffect {
     let description = Description { id, form, equation, parameters };
-    Row(ListedFormula { description, acts_on: ActsOn::MOMENT, formula, prior, of_weather: true })
+    Row(ListedFormula { description, acts_on: ActsOn::MOMENT, formula, prior, is_weather: true })
 }
 
 /// Maximum of a prior that is limited by the range of its parameter alone.

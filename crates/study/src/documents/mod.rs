@@ -28,7 +28,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use trial::Trial;
 
-use crate::records::file_of;
+use crate::records::file_and_hash;
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
 
@@ -75,7 +75,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
         return Ok(place);
     };
     let is_same = |trial: &Trial| {
-        let (file, sha256) = file_of(trial);
+        let (file, sha256) = file_and_hash(trial);
         records.iter().any(|(file_then, hash)| file_then == file || hash == sha256)
     };
     if records.len() == trials.len() && trials.iter().all(is_same) {
@@ -86,7 +86,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
         "{} is the result of {}, not of {}; give another folder with --out",
         path.display(),
         few(&files),
-        few(&trials.iter().map(|trial| file_of(trial).0.to_owned()).collect::<Vec<_>>())
+        few(&trials.iter().map(|trial| file_and_hash(trial).0.to_owned()).collect::<Vec<_>>())
     )))
 }
 

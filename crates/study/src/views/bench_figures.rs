@@ -93,7 +93,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let column = |board: &&Board| {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
-            let ratios = cases.filter_map(|case| case.ratio_of(method, &results.reference));
+            let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
             let look = Look { hollow: true, ..curve_origin(method).look() };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };

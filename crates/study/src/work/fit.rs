@@ -29,7 +29,7 @@ use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
-use crate::records::{self, file_of, missing_track_warning, source_of};
+use crate::records::{self, file_and_hash, missing_track_warning, source_of};
 use crate::scales::{self, RescaledRecords};
 use campaign::curves::{angle_curve_deg, replay_curves, zigzag_figure};
 use campaign::identified_ship::{self, RecordFacts};
@@ -87,7 +87,7 @@ impl FitResult {
             angle_curve_deg(&time, &values)
         };
         FitRecord {
-            file: file_of(trial).0.to_owned(),
+            file: file_and_hash(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
             zigzag: zigzag.map(|zigzag| zigzag_figure(trial, &zigzag)),
@@ -172,7 +172,7 @@ pub fn fit(
 
 /// Document entry of a record; adds a warning if its first overshoot cannot be read.
 fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
-    let ((file, sha256), zigzag) = (file_of(trial), ZigZag::from_trial(trial));
+    let ((file, sha256), zigzag) = (file_and_hash(trial), ZigZag::from_trial(trial));
     warnings.extend(zigzag.as_ref().ok().and_then(|zigzag| late_begin(trial, zigzag)));
     TrialEntry {
         file: file.into(),
@@ -307,10 +307,10 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::in_file(file_of(record).0, message).with_code(ErrorCode::NoAnswer)
+    Failure::in_file(file_and_hash(record).0, message).with_code(ErrorCode::NoAnswer)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
     let replay = estimate.and_then(|estimate| replay(other, &estimate.response));
-    Validation { file: file_of(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
+    Validation { file: file_and_hash(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
 }

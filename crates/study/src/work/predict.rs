@@ -25,7 +25,7 @@ use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, 
 use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressStages;
-use crate::records::{file_of, rudder_logged_late, source_of};
+use crate::records::{file_and_hash, rudder_logged_late, source_of};
 
 /// Methods of fit.json in order of preference; others come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -271,7 +271,7 @@ fn after_earlier(
 
 /// Warning that a record is in one of the models and gives no validation.
 fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> {
-    let (_, sha256) = file_of(record);
+    let (_, sha256) = file_and_hash(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
     let text = format!("{} is fitted to it; the error on it validates nothing", model.file);
     Some(Warning::new(WarningCode::Repetition, source_of(record), text))
@@ -337,7 +337,7 @@ impl ReplayedModels<'_> {
     ) -> Result<(RecordReplay, Option<Correction>), Failure> {
         let Self { full, ballast, loading, scale, draws } = *self;
         let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
-        let file = file_of(record).0;
+        let file = file_and_hash(record).0;
         let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
         let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::in_file(file, error))?;
         let Some(replayed) = replayed else {

@@ -11,7 +11,7 @@ use ship::vessel::prior::HullParticulars;
 use trial::{Conditions, Trial};
 
 use crate::options::ScaleOptions;
-use crate::records::{file_of, source_of};
+use crate::records::{file_and_hash, source_of};
 
 /// Name and conditions of a sidecar.
 pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
@@ -39,7 +39,7 @@ impl TargetScale {
             return Ok(Some(Self { length, speed: asked.speed(), is_asked: true }));
         }
         let of_sidecar = declared.and_then(|(file, conditions)| Some((file, conditions.particulars?)));
-        let of_records = records.iter().filter_map(|record| Some((file_of(record).0, record.particulars()?)));
+        let of_records = records.iter().filter_map(|record| Some((file_and_hash(record).0, record.particulars()?)));
         let mut scales = of_records.chain(of_sidecar);
         let Some((file, first)) = scales.next() else { return Ok(None) };
         match scales.find(|(_, ship)| !is_same_length(ship.length, first.length)) {
@@ -73,7 +73,7 @@ pub fn scale_mismatch([(first, of_first), (other, of_other)]: [(&str, Option<Par
 pub fn is_same_scale(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
-    a.has_length_of(&b) && !differs_in_froude_number(&a, &b)
+    a.has_equal_length(&b) && !differs_in_froude_number(&a, &b)
 }
 
 /// Ship at a scale; a ship of unknown scale is assigned this scale.

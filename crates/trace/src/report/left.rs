@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 
 use super::TraceParts;
 use crate::model::TermName;
-use crate::remainder::sums_of_squares;
+use crate::residual_analysis::sums_of_squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {

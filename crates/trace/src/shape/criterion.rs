@@ -154,8 +154,8 @@ impl WhitenedStructure {
     }
 
     /// Criterion with whitened columns appended; infinite if they are linearly dependent.
-    pub fn criterion_of(&self, columns: &[HeadingColumn]) -> f64 {
-        self.criterion_of_products(&self.products(columns))
+    pub fn criterion_with(&self, columns: &[HeadingColumn]) -> f64 {
+        self.criterion_with_products(&self.products(columns))
     }
 
     /// Residual sum of squares after appended columns.
@@ -198,7 +198,7 @@ impl WhitenedStructure {
     }
 
     /// Criterion with columns of these products appended; infinite if they are linearly dependent.
-    pub fn criterion_of_products(&self, products: &GramProducts) -> f64 {
+    pub fn criterion_with_products(&self, products: &GramProducts) -> f64 {
         let Some(Extension { solution, .. }) = self.extension(products) else { return f64::INFINITY };
         self.criterion_with(&solution, self.square_with(&solution))
     }

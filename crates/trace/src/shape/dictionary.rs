@@ -174,7 +174,7 @@ impl Shape {
     }
 
     /// `true` if the shape depends on time, and so belongs to one record.
-    pub fn is_of_time(&self) -> bool {
+    pub fn is_time_dependent(&self) -> bool {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
 
@@ -263,7 +263,7 @@ impl Shape {
     }
 
     /// Number of continuous parameters.
-    pub fn place_count(&self) -> usize {
+    pub fn continuous_parameter_count(&self) -> usize {
         self.clone().places(1.0).len()
     }
 

@@ -198,7 +198,7 @@ impl<'a> ShapeProblem<'a> {
             (WhitenedStructure::new(&linearised, &weights, law.freedom), weights)
         };
         let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
-        let (criterion, law) = search::best_of_laws(&structure)?;
+        let (criterion, law) = search::best_law(&structure)?;
         Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 

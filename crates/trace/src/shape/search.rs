@@ -100,17 +100,17 @@ impl ShapeSearch<'_> {
         let records = self.motions.len();
         let penalty = |shape: &Shape, places: usize, all: &[(Shape, usize)]| {
             let choices = if places > 1 { places } else { forms(shape.class(), all) };
-            let records = if shape.is_of_time() { records } else { 1 };
+            let records = if shape.is_time_dependent() { records } else { 1 };
             2.0 * ((choices * records) as f64).ln() + 2.0 * CLASSES.ln()
         };
         let of_ship = all(longest);
         let mut requested: Vec<(Shape, Option<usize>, f64)> = Vec::new();
-        for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_of_time()) {
+        for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_time_dependent()) {
             requested.push((*shape, None, penalty(shape, *places, &of_ship)));
         }
         for motion in self.motions {
             let of_record = all(motion);
-            for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_of_time()) {
+            for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_time_dependent()) {
                 requested.push((*shape, Some(motion.number), penalty(shape, *places, &of_record)));
             }
         }
@@ -145,7 +145,7 @@ impl ShapeSearch<'_> {
     fn best_law(&self, structures: &[Option<WhitenedStructure>], shapes: &[&Candidate]) -> (f64, usize) {
         let penalty: f64 = shapes.iter().map(|shape| shape.penalty).sum();
         let criterion = |(law, structure): (usize, &Option<WhitenedStructure>)| {
-            let criterion = structure.as_ref()?.criterion_of(&self.white(law, shapes).concat());
+            let criterion = structure.as_ref()?.criterion_with(&self.white(law, shapes).concat());
             Some((criterion + penalty, law))
         };
         structures.par_iter().enumerate().filter_map(criterion).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(NONE)
@@ -186,7 +186,7 @@ impl ShapeSearch<'_> {
                     cross.extend(weighted.iter().map(|other| product(column, other)));
                 }
                 let structure = structures[law].as_ref();
-                lowest = lowest.min(structure.map_or(f64::INFINITY, |s| s.criterion_of_products(products)));
+                lowest = lowest.min(structure.map_or(f64::INFINITY, |s| s.criterion_with_products(products)));
             }
             lowest + candidate.penalty
         };
@@ -224,7 +224,7 @@ impl ShapeSearch<'_> {
     /// Best explanation with the criteria without each shape, and all explanations that were tried.
     pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
         let library = self.library(unit);
-        let (criterion, law) = best_of_laws(self.structure).unwrap_or(NONE);
+        let (criterion, law) = best_law(self.structure).unwrap_or(NONE);
         let laws = screening_laws(self.laws, law);
         let mut current = Explanation { shapes: Vec::new(), criterion, law };
         let mut all = vec![current.clone()];
@@ -275,7 +275,7 @@ impl ShapeSearch<'_> {
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
         let (criterion, law) = if all.is_empty() {
-            best_of_laws(self.structure).unwrap_or(NONE)
+            best_law(self.structure).unwrap_or(NONE)
         } else {
             self.best_law(self.structure, &all)
         };
@@ -289,11 +289,11 @@ impl ShapeSearch<'_> {
         let mut shapes = from.shapes.clone();
         let white = |shape: &Candidate| self.white(from.law, &[shape]).concat();
         let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|shape| white(shape)).collect();
-        let mut lowest = structure.criterion_of(&columns.concat());
+        let mut lowest = structure.criterion_with(&columns.concat());
         let mut has_moved = false;
         for scale in [1.0, 0.5, 0.25] {
             for number in 0..shapes.len() {
-                for (place, sign) in (0..shapes[number].shape.place_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+                for (place, sign) in (0..shapes[number].shape.continuous_parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
                     for _ in 0..3 {
                         let Candidate { shape, only, penalty, .. } = *shapes[number];
                         let motion = &self.motions[only.unwrap_or(0)];
@@ -301,7 +301,7 @@ impl ShapeSearch<'_> {
                         let moved = shape.moved(place, sign * scale, extent);
                         let Some(next) = moved.and_then(|shape| self.candidate(shape, only, penalty)) else { break };
                         let before = std::mem::replace(&mut columns[number], white(&next));
-                        let criterion = structure.criterion_of(&columns.concat());
+                        let criterion = structure.criterion_with(&columns.concat());
                         if criterion >= lowest - 1e-6 {
                             columns[number] = before;
                             break;
@@ -348,7 +348,7 @@ pub fn residual_sum_of_squares(linear: &Linearisation, shapes: &[Arc<Candidate>]
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
 /// Criterion and index of the best law of structures; `None` if all are `None`.
-pub fn best_of_laws(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
+pub fn best_law(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
     let criteria = structures.iter().enumerate().filter_map(|(law, s)| Some((s.as_ref()?.criterion(), law)));
     criteria.min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -215,7 +215,7 @@ impl ZigZag {
     }
 
     /// Period from the first executes.
-    pub fn period_of(&self, executes: usize) -> Option<Quantity> {
+    pub fn period_over(&self, executes: usize) -> Option<Quantity> {
         period(self.executes.get(..executes).unwrap_or(&self.executes), self.first_side.is_some())
     }
 

@@ -67,7 +67,7 @@ pub(super) struct ListedFormula {
     /// Prior of every constant.
     pub(super) prior: ListedPrior,
     /// `true` for a moment of the weather.
-    pub(super) of_weather: bool,
+    pub(super) is_weather: bool,
 }
 
 /// Prior of the constants in given records: mean, standard deviation and maximum.
@@ -285,7 +285,7 @@ impl Effect for Formula {
     }
 
     fn is_environmental(&self) -> bool {
-        self.listed.is_some_and(|row| row.of_weather)
+        self.listed.is_some_and(|row| row.is_weather)
     }
 
     /// `false`: the lateral way is relative to the initial course, so it does not depend on the absolute heading.

@@ -42,7 +42,7 @@ impl Innovations {
 
 /// Judgement of the residual that the structures leave: noise, credible, or unexplained.
 #[derive(Debug, Clone)]
-pub struct Remainder {
+pub struct ResidualAnalysis {
     /// `true` if the noise law describes the residual and its bands cover the records.
     pub is_noise: bool,
     /// `true` if the noise law describes the residual, or the structures replay better than the base; otherwise
@@ -60,7 +60,7 @@ const MIN_UNEXPLAINED_RATIO: f64 = 0.3;
 /// Minimum unexplained residual, in standard deviations of the white noise.
 const MIN_UNEXPLAINED_SD: f64 = 1.5;
 
-impl Remainder {
+impl ResidualAnalysis {
     /// Analyses the residual of the most probable structure and of the average.
     pub fn new(
         problem: &FittedRecords,
